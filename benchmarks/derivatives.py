@@ -14,7 +14,7 @@ from benchmarks.figures import Figure
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
-from fe_contact.microgeometry.linearized_design import curve_derivatives
+from fe_contact.microgeometry.curve_derivatives import curve_derivatives
 from fe_contact.microgeometry.variables import modified
 from fe_contact.types import FloatArray
 

@@ -13,7 +13,7 @@ from benchmarks.figures import Figure
 from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
-from fe_contact.ste.curve import METHOD
+from fe_contact.ste.curve_errors import METHOD
 
 PAGE = MEASURED / "accuracy.md"
 SECTION = "finest"

@@ -15,15 +15,13 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning.plan import (
+from fe_contact.planning.discretization import (
     FINER_SLICES,
     Discretization,
     FaceDiscretization,
-    Plan,
     PlaneDiscretization,
-    make_plan,
-    patch_rules,
 )
+from fe_contact.planning.plan import Plan, make_plan, patch_rules
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 

@@ -17,7 +17,7 @@ from benchmarks.marked_section import MEASURED, replace_section
 from fe_contact import SteDatabase, analyze
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
-from fe_contact.ste.curve import AT_NODES, METHOD, PLANE, all_sources
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, PLANE, all_sources
 from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.types import FloatArray
 from lineofaction.report.drawing import figure as drawn

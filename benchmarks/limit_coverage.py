@@ -16,12 +16,12 @@ from benchmarks.figures import Figure
 from benchmarks.finest_solution import FACE_POSITIONS, PLANE_POSITIONS
 from benchmarks.pair_cases import PairCase
 from fe_contact import analyze
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import NO_SCATTER
 from fe_contact.options import AnalysisOptions, Run
-from fe_contact.planning.plan import FaceDiscretization
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 

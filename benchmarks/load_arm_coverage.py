@@ -21,8 +21,9 @@ from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import load_arm
-from fe_contact.planning.plan import FINER_SLICES, make_plan, patch_rules
-from fe_contact.ste.curve import all_sources
+from fe_contact.planning.discretization import FINER_SLICES
+from fe_contact.planning.plan import make_plan, patch_rules
+from fe_contact.ste.curve_errors import all_sources
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 

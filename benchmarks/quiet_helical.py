@@ -22,7 +22,7 @@ from fe_contact.analysis.request.influences import estimated_influences
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.effects.influence.estimate import RIPPLE_FLOOR, Influence, signed
+from fe_contact.effects.influence.influence import RIPPLE_FLOOR, Influence, signed
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 
 SECTION = "quiet helical"

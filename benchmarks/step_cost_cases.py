@@ -12,8 +12,10 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.assembly.assemble import assemble
 from dynamics.forces.elements import evaluate
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.explicit_step import accelerate, set_motion, write_powers
+from dynamics.integrators.explicit_step import accelerate
+from dynamics.integrators.instant_powers import write_powers
 from dynamics.integrators.march import march_on, start_march
+from dynamics.integrators.stage_parts import set_motion
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.kernels.compiled import compiled

@@ -17,7 +17,7 @@ from benchmarks.marked_section import MEASURED, replace_section
 from benchmarks.pair_cases import PairCase
 from benchmarks.stored_runs import finest_run, table_run
 from fe_contact import AllowedError
-from fe_contact.ste.curve import METHOD
+from fe_contact.ste.curve_errors import METHOD
 from fe_contact.types import FloatArray
 
 PAGE, SECTION = MEASURED / "accuracy.md", "tolerance"

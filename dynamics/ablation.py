@@ -87,8 +87,8 @@ def _run_figures(result: RunResult, seconds: float, quantity: LevelQuantity) -> 
     bearings = np.empty((0, HIGHEST))
     if result.bearing_force.size:
         bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
-    own = np.mean(error, axis=1), np.ptp(error, axis=1), seconds
-    return RunFigures(*own, transmission, bearings, *_lines_of(result, quantity))
+    figures = np.mean(error, axis=1), np.ptp(error, axis=1), seconds
+    return RunFigures(*figures, transmission, bearings, *_lines_of(result, quantity))
 
 
 def _lines_of(result: RunResult, quantity: LevelQuantity) -> tuple[FloatArray, FloatArray]:
@@ -208,7 +208,7 @@ def ablate(
         (InputError, SolveError),
         progress,
         workers,
-        seconds * sum(any(part["possible"] for part in own) for own in parts.values()),
+        seconds * sum(any(part["possible"] for part in rows) for rows in parts.values()),
     )
     return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
 

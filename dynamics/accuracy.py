@@ -269,8 +269,8 @@ def _of_one_speed(response: HarmonicResponse, system: System, blocks: BlockGrid)
 
 def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> FloatArray:
     """Amplitudes at the multiples 1 to `orders` of `ratio`; 0 where nothing is excited."""
-    own = ratio * np.arange(1, orders + 1)
-    match = np.abs(order[None, :] - own[:, None]) <= ORDER_MATCH * own[:, None]
+    multiples = ratio * np.arange(1, orders + 1)
+    match = np.abs(order[None, :] - multiples[:, None]) <= ORDER_MATCH * multiples[:, None]
     return np.asarray(np.sum(np.where(match, amplitude[None, :], 0.0), axis=1))
 
 
@@ -391,10 +391,10 @@ def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], f
     """
     scene.require_meshes()
     BlockGrid.of(assemble(scene))
-    runs = (own for own in FIDELITIES if isinstance(own, TimeIntegration) and own.name in names)
+    runs = (run for run in FIDELITIES if isinstance(run, TimeIntegration) and run.name in names)
     tolerance = scene.integration.tolerance
-    valid = (own.tolerance or tolerance for own in runs if own.refusal(scene) is None)
-    return [(tolerance / own) ** STEPS for own in valid], 0.0
+    valid = (run.tolerance or tolerance for run in runs if run.refusal(scene) is None)
+    return [(tolerance / run) ** STEPS for run in valid], 0.0
 
 
 def _chosen_fidelity(scene: Scene, fidelities: Sequence[_Fidelity]) -> str | None:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
-from enum import IntEnum
+from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 
@@ -15,132 +14,37 @@ from dynamics.orders import highest_valid_order, order_waterfall, window_spectru
 from dynamics.results import RunResult
 from dynamics.results.run_result import SAMPLED
 from dynamics.types import FloatArray, Json
+from dynamics.universal_datasets import (
+    SPECTRUM,
+    FunctionType,
+    NodalFunction,
+    Quantity,
+    function_dataset,
+    nodes_dataset,
+    units_dataset,
+)
 from host.directories import whole_file
 
-# Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes). Pyuff,
-# which reads them, writes neither spectra (function 12) nor orders (24), and a digit less of every ordinate.
-
-
-DOUBLE = 4  # ordinates are real, double precision
-EVEN = 1  # abscissa by its first value and its increment
-NO_AXIS = (0, 0, 0, "NONE", "NONE")
 FUNCTIONS = ("time", "spectrum", "orders")
 FIRST_MESH_NODE = 1001
 """Bearings are nodes 1, 2 ... in the order of the run, meshes 1001, 1002 ..."""
 HIGHEST_ORDER = 20
 ROTATIONS = ("bearing_moment",)
-SPECTRUM = "amplitude (peak), Hann window"
 TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
 
 
-class _FunctionType(IntEnum):
-    """Kinds of function of dataset 58."""
-
-    TIME_RESPONSE = 1
-    SPECTRUM = 12
-    ORDER = 24
-
-
-@dataclass(frozen=True)
-class _Quantity:
-    """An axis of dataset 58."""
-
-    code: int
-    """Specific data type: 8 displacement, 9 reaction force, 12 acceleration, 17 time, 18 frequency, 19
-    revolutions per minute, 20 order.
-    """
-    length: int
-    force: int
-    """`length`, `force`: Exponents of the units of length and force."""
-    label: str
-    unit: str
-    """`label`, `unit`: At most 20 characters."""
-
-
-@dataclass(frozen=True)
-class _NodalFunction:
-    """A function for dataset 58."""
-
-    kind: _FunctionType
-    lines: tuple[str, ...]
-    """Up to five lines of text."""
-    entity: str
-    """Name of the response, at most 10 characters."""
-    node: int
-    direction: int
-    """`node`, `direction`: Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
-    """
-    abscissa: _Quantity
-    ordinate: _Quantity
-    first: float
-    increment: float
-    """`first`, `increment`: Of the abscissa; the file keeps six digits."""
-    values: FloatArray
-    """Shape (N,)."""
-
-
-def _units_dataset() -> str:
-    factors = "".join(f"{value:25.16E}" for value in (1.0, 1.0, 1.0)).replace("E", "D")
-    offset = f"{273.15:25.16E}".replace("E", "D")
-    return _dataset(164, [f"{1:10d}{'SI: Meter (newton)':<20}{2:10d}", factors, offset])
-
-
-def _nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
-    """Return dataset 2411: labels and positions (3,) in m, in the fixed frame."""
-    records = []
-    for label, origin in nodes:
-        records.append(f"{label:10d}{1:10d}{1:10d}{11:10d}")
-        records.append("".join(f"{value:25.16E}" for value in origin).replace("E", "D"))
-    return _dataset(2411, records)
-
-
-def _function_dataset(function: _NodalFunction) -> str:
-    lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
-    entity = f"{function.entity[:10]:<10}"
-    node = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"
-    form = f"{DOUBLE:10d}{function.values.size:10d}{EVEN:10d}"
-    axes = [_axis(quantity) for quantity in (function.abscissa, function.ordinate, None, None)]
-    return _dataset(
-        58,
-        [
-            *lines,
-            f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{node}",
-            f"{form}{function.first:13.5E}{function.increment:13.5E}{0.0:13.5E}",
-            *axes,
-            *_numbers(function.values),
-        ],
-    )
-
-
-def _axis(quantity: _Quantity | None) -> str:
-    code, length, force, label, unit = vars(quantity).values() if quantity else NO_AXIS
-    return f"{code:10d}{length:5d}{force:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
-
-
-def _numbers(values: FloatArray) -> list[str]:
-    """Four numbers a record."""
-    whole = values.size // 4 * 4
-    rows = (("%20.12E" * 4 + "\n") * (whole // 4) % tuple(values[:whole])).splitlines()
-    rest = values[whole:]
-    return [*rows, "%20.12E" * rest.size % tuple(rest)] if np.size(rest) else rows
-
-
-def _dataset(number: int, records: list[str]) -> str:
-    return "\n".join([f"{-1:6d}", f"{number:6d}", *records, f"{-1:6d}"]) + "\n"
-
-
 ORDINATES = {
-    "bearing_force": _Quantity(9, 0, 1, "Force", "N"),
-    "bearing_moment": _Quantity(9, 1, 1, "Moment", "N m"),
-    "bearing_acceleration": _Quantity(12, 1, 0, "Acceleration", "m/s2"),
-    "mesh_force": _Quantity(9, 0, 1, "Mesh force", "N"),
-    "dynamic_transmission_error": _Quantity(8, 1, 0, "Transmission error", "m"),
+    "bearing_force": Quantity(9, 0, 1, "Force", "N"),
+    "bearing_moment": Quantity(9, 1, 1, "Moment", "N m"),
+    "bearing_acceleration": Quantity(12, 1, 0, "Acceleration", "m/s2"),
+    "mesh_force": Quantity(9, 0, 1, "Mesh force", "N"),
+    "dynamic_transmission_error": Quantity(8, 1, 0, "Transmission error", "m"),
 }
-TACHO = _Quantity(19, 0, 0, "Speed", "rpm")
+TACHO = Quantity(19, 0, 0, "Speed", "rpm")
 ABSCISSAE = {
-    "time": (_FunctionType.TIME_RESPONSE, _Quantity(17, 0, 0, "Time", "s")),
-    "spectrum": (_FunctionType.SPECTRUM, _Quantity(18, 0, 0, "Frequency", "Hz")),
-    "orders": (_FunctionType.ORDER, _Quantity(20, 0, 0, "Mesh order", "1")),
+    "time": (FunctionType.TIME_RESPONSE, Quantity(17, 0, 0, "Time", "s")),
+    "spectrum": (FunctionType.SPECTRUM, Quantity(18, 0, 0, "Frequency", "Hz")),
+    "orders": (FunctionType.ORDER, Quantity(20, 0, 0, "Mesh order", "1")),
 }
 
 
@@ -182,15 +86,15 @@ def write_universal_file(
     window, count = result.window(float(first), float(result.time[-1] if end is None else end)), 0
     part = replace(result, **{name: getattr(result, name)[..., window] for name in SAMPLED})
     with whole_file(path) as draft, draft.open("w", encoding="ascii", errors="replace") as file:
-        file.write(_units_dataset())
-        file.write(_nodes_dataset(_nodes(result)))
+        file.write(units_dataset())
+        file.write(nodes_dataset(_nodes(result)))
         for nodal in chain(_functions(part, function), _tachos(part, function)):
-            file.write(_function_dataset(nodal))
+            file.write(function_dataset(nodal))
             count += 1
     return count
 
 
-def _functions(result: RunResult, function: str) -> Iterator[_NodalFunction]:
+def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
     """Yield one function per component of every exported series."""
     kind, abscissa = ABSCISSAE[function]
     for series, ordinate in ORDINATES.items():
@@ -207,12 +111,12 @@ def _functions(result: RunResult, function: str) -> Iterator[_NodalFunction]:
             lines = (title, TEXT[function], "NONE", _origin(result))
             node = component_index[0] + (FIRST_MESH_NODE if at_mesh else 1)
             axes = (abscissa, ordinate, first, increment)
-            yield _NodalFunction(
+            yield NodalFunction(
                 kind, lines, names[component_index[0]], node, direction, *axes, values[component_index]
             )
 
 
-def _tachos(result: RunResult, function: str) -> Iterator[_NodalFunction]:
+def _tachos(result: RunResult, function: str) -> Iterator[NodalFunction]:
     """Yield the speed at every mesh, of the mean motion: what orders are tracked by."""
     if function != "time":
         return
@@ -223,7 +127,7 @@ def _tachos(result: RunResult, function: str) -> Iterator[_NodalFunction]:
         start = float(result.time[0]), 1.0 / result.sample_rate
         speed = result.mesh_frequency[index] * 60.0 / teeth[driver]
         kind, abscissa = ABSCISSAE[function]
-        yield _NodalFunction(
+        yield NodalFunction(
             kind, lines, mesh["name"], FIRST_MESH_NODE + index, 0, abscissa, TACHO, *start, speed
         )
 

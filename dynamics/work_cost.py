@@ -89,11 +89,11 @@ def measured(
     from model_studies.run_log import record  # noqa: PLC0415
 
     predicted = on_this_host(kind, cost, cache)
-    held, peak, began = memory_figure("VmRSS"), peak_memory(), spent(workers)
+    memory, peak, began = memory_figure("VmRSS"), peak_memory(), spent(workers)
     result = work()
     seconds, highest = spent(workers) - began, peak_memory()
     record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
-    grown = float(highest - held) if held is not None and highest > peak else None
+    grown = float(highest - memory) if memory is not None and highest > peak else None
     return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)
 
 

@@ -64,8 +64,6 @@ class DatabaseError(FeContactError):
     """A file is not an STE database this version can read."""
 
 
-# Checks of single values, each raising one clear `InputError`; see `bounds.Checks`.
-
 _CHECKS = Checks(InputError)
 
 finite = _CHECKS.finite

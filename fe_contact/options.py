@@ -14,8 +14,6 @@ from fe_contact.types import FloatArray, Json
 from model_studies import Progress, silent
 from model_studies.workers import InProcess, Workers
 
-# Axes of a table as they are requested: its loads, misalignments and changes of the center distance.
-
 LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometers given as meters."""
 LARGEST_PERIOD = 1_000_000
@@ -90,9 +88,6 @@ class TableAxes:
         return self._levels if self.torques is None else pair.normal_force(self._levels)
 
 
-# One load and one alignment of a pair.
-
-
 @dataclass(frozen=True)
 class OperatingPoint:
     """One load and one alignment of a pair, for results on flanks, roots and deformed gears."""
@@ -113,9 +108,6 @@ class OperatingPoint:
             misalignments=[self.misalignment],
             center_distance_changes=[self.center_distance_change],
         )
-
-
-# The resources of a run: workers, cache, progress.
 
 
 def _unplanned(_stages: Mapping[str, float]) -> None:

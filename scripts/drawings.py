@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.flank.relief import SHAPES
+from fe_contact.flank.relief_shape import SHAPES
 
 FOLDER = Path(__file__).parents[1] / "docs" / "images" / "glossary"
 INK, SOFT, STRONG = "#24323f", "#8a97a3", "#c2571a"

@@ -147,6 +147,6 @@ class SystemArrays(NamedTuple):
         changed = self._replace(**matrices)
         springs = (changed.drive.stiffness, changed.drive.damping)
         others = (changed.inertial, changed.reference.vector, changed.load.direction, *springs)
-        own = (changed.mass, changed.damping, changed.stiffness)
-        sparse = sparse_matrices(*own, changed.direction, changed.turn, others)
+        matrices_of_motion = (changed.mass, changed.damping, changed.stiffness)
+        sparse = sparse_matrices(*matrices_of_motion, changed.direction, changed.turn, others)
         return changed._replace(sparse=sparse)

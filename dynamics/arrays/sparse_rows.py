@@ -11,112 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.arrays.modal_freedoms import ModalFreedoms, modal_freedoms_of, subtract_modal_resistance
 from dynamics.kernels.compiled import inner, inner_sums
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Modal freedoms: amplitudes that force elements alone couple, and their compiled products.
-
-
-LEAST = 16
-"""Freedoms from which on a dense block is faster than entries one by one."""
-TOGETHER = 4
-"""Rows of a product taken at a time: amplitudes and forces on them are read a fourth as often."""
-
 _NONE = np.zeros((0, 0))
-
-
-class ModalFreedoms(NamedTuple):
-    """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `LEAST`."""
-
-    first: int
-    """Freedoms before them."""
-    row: IntArray
-    """Local coordinates that they move; s is a multiple of `TOGETHER`, what is missing to it repeats one.
-    Shape (s,).
-    """
-    shape: FloatArray
-    """Motion of these coordinates per amplitude: a block of `SystemArrays.direction`; 0 where one repeats.
-    Shape (s, b).
-    """
-    mass: FloatArray
-    damping: FloatArray
-    stiffness: FloatArray
-    """`mass`, `damping`, `stiffness`: Diagonals. Shape (b,) each."""
-
-
-def modal_freedoms_of(
-    mass: FloatArray, damping: FloatArray, stiffness: FloatArray, direction: FloatArray, others: FloatArray
-) -> ModalFreedoms:
-    """Find the modal freedoms of a system: matrices (n, n), `direction` (R, n), all `others` (..., n)."""
-    size, entries = mass.shape[0], (mass != 0.0) | (damping != 0.0) | (stiffness != 0.0)
-    joined = entries & ~np.eye(size, dtype=bool)
-    bound = np.any(joined, axis=1) | np.any(others != 0.0, axis=0)
-    first = int(np.max(np.flatnonzero(bound), initial=-1)) + 1
-    if size - first < LEAST:
-        first = size
-    block = direction[:, first:]
-    row = np.flatnonzero(np.any(block != 0.0, axis=1))
-    missing = -row.size % TOGETHER
-    shape = np.concatenate([block[row], np.zeros((missing, size - first))])
-    return ModalFreedoms(
-        first,
-        np.concatenate([row, np.full(missing, row[0] if row.size else 0)]).astype(np.int64),
-        np.ascontiguousarray(shape),
-        *(np.ascontiguousarray(np.diag(matrix)[first:]) for matrix in (mass, damping, stiffness)),
-    )
-
-
-@inner_sums
-def _four_sums(modal: ModalFreedoms, r: int, q: FloatArray) -> tuple[float, float, float, float]:
-    """Return four rows of the shape, from `r` on, times the amplitudes in `q` (n,)."""
-    a, b, c, d, first = 0.0, 0.0, 0.0, 0.0, np.uint64(modal.first)
-    for i in range(np.uint64(modal.damping.size)):
-        amplitude = q[first + i]
-        a += modal.shape[r, i] * amplitude
-        b += modal.shape[r + 1, i] * amplitude
-        c += modal.shape[r + 2, i] * amplitude
-        d += modal.shape[r + 3, i] * amplitude
-    return a, b, c, d
-
-
-@inner
-def add_modal_motion(modal: ModalFreedoms, q: FloatArray, coordinate: FloatArray) -> None:
-    """Add the motion by the amplitudes in `q` (n,) to local coordinates (R,); likewise rates."""
-    for r in range(0, modal.row.size, TOGETHER):
-        a, b, c, d = _four_sums(modal, r, q)
-        coordinate[modal.row[r]] += a
-        coordinate[modal.row[r + 1]] += b
-        coordinate[modal.row[r + 2]] += c
-        coordinate[modal.row[r + 3]] += d
-
-
-@inner_sums
-def modal_loss(modal: ModalFreedoms, velocity: FloatArray) -> float:
-    """Return the power lost in the modes' own dampers at `velocity` (n,), W."""
-    lost, first = 0.0, np.uint64(modal.first)
-    for i in range(np.uint64(modal.damping.size)):
-        lost += modal.damping[i] * velocity[first + i] * velocity[first + i]
-    return lost
-
-
-@inner
-def _subtract_modal_resistance(modal: ModalFreedoms, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
-    """Subtract what the modes' own dampers and springs exert at `q` and `v` (n,) from `force` (n,)."""
-    first = np.uint64(modal.first)
-    for i in range(np.uint64(modal.damping.size)):
-        force[first + i] -= modal.damping[i] * v[first + i] + modal.stiffness[i] * q[first + i]
-
-
-@inner
-def subtract_modal_forces(modal: ModalFreedoms, local: FloatArray, force: FloatArray) -> None:
-    """Subtract the local forces `local` (R,) on the amplitudes from `force` (n,)."""
-    first = np.uint64(modal.first)
-    for r in range(0, modal.row.size, TOGETHER):
-        a, b = local[modal.row[r]], local[modal.row[r + 1]]
-        c, d = local[modal.row[r + 2]], local[modal.row[r + 3]]
-        for i in range(np.uint64(modal.damping.size)):
-            pushed = modal.shape[r, i] * a + modal.shape[r + 1, i] * b
-            force[first + i] -= pushed + (modal.shape[r + 2, i] * c + modal.shape[r + 3, i] * d)
 
 
 class _SparseRows(NamedTuple):
@@ -267,9 +166,9 @@ def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, fo
     """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
     damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
     for i in range(sparse.modal.first):
-        damped, held = row_products(sparse.damping, i, damping, v, stiffness, q)
-        force[i] -= damped + held
-    _subtract_modal_resistance(sparse.modal, q, v, force)
+        damped, elastic = row_products(sparse.damping, i, damping, v, stiffness, q)
+        force[i] -= damped + elastic
+    subtract_modal_resistance(sparse.modal, q, v, force)
 
 
 @inner_sums
@@ -291,7 +190,7 @@ def subtract_resistance_by_runs(
     damping, stiffness, runs = sparse.damping.weight, sparse.stiffness.weight, sparse.resistance_runs
     for i in range(sparse.modal.first):
         force[i] -= run_product(runs, damping, i, v) + run_product(runs, stiffness, i, q)
-    _subtract_modal_resistance(sparse.modal, q, v, force)
+    subtract_modal_resistance(sparse.modal, q, v, force)
 
 
 @inner

@@ -18,16 +18,16 @@ from dynamics.effects import EFFECTS, EffectLedger
 from dynamics.forces.elements import Element
 from dynamics.mechanism.additions import BEARING_LAWS, ELEMENT_PASSING, HOUSING_AMPLITUDES
 from dynamics.mechanism.base_pitches import Corrections
-from dynamics.mechanism.bearing_elements import BearingElement, housed_bearings
-from dynamics.mechanism.bodies import Bodies, resting_housings, under_laws
-from dynamics.mechanism.connections import (
-    CouplingRows,
-    Seats,
-)
+from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.connections import Seats
+from dynamics.mechanism.coupling_rows import CouplingRows
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
+from dynamics.mechanism.housed_bearings import housed_bearings
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.line_of_action import LineOfAction
+from dynamics.mechanism.resting_housings import resting_housings, under_laws
 from dynamics.mechanism.sampling import Sampling, choose_sampling
 from dynamics.mechanism.supports import Supports
 from dynamics.mechanism.train_phases import TrainPhases

@@ -10,7 +10,8 @@ from dynamics.bearings.linear_bearing import LinearBearingLaws
 from dynamics.forces.elements import Element
 from dynamics.forces.laws import LAW_BY_ARRAYS
 from dynamics.kernels.by_address import by_address
-from dynamics.mechanism.bearing_elements import housed_bearing_elements, housed_bearings, supports_by_name
+from dynamics.mechanism.bearing_elements import supports_by_name
+from dynamics.mechanism.housed_bearings import housed_bearing_elements, housed_bearings
 from dynamics.mechanism.phases import repeating_phases
 from dynamics.mechanism.supports import seat_error, seat_motion
 

@@ -91,8 +91,8 @@ def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
     """Return the motions (n, m) that springs or bearings resist, orthonormal in meters."""
     gradient = arrays.direction[bearing_rows(arrays)]
     typical = arrays.elements.stiffness[bearing_rows(arrays)]
-    held = matrix + gradient.T @ (typical[:, None] * gradient)
-    value, vector = np.linalg.eigh(held / np.outer(arrays.scale, arrays.scale))
+    stiffness = matrix + gradient.T @ (typical[:, None] * gradient)
+    value, vector = np.linalg.eigh(stiffness / np.outer(arrays.scale, arrays.scale))
     return np.asarray(vector[:, value > UNRESISTED * value[-1]] / arrays.scale[:, None])
 
 

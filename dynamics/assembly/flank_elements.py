@@ -10,7 +10,8 @@ from dynamics.assembly.model import Model
 from dynamics.effects.force_terms import CENTER_DISTANCE, MISALIGNMENT, SLIDING, FlankInSpace, FlankTerms
 from dynamics.forces.elements import Element
 from dynamics.forces.laws import Law
-from dynamics.mechanism.line_of_action import approach, line_of_action, middle_from_driver
+from dynamics.mechanism.flank_gradients import approach, middle_from_driver
+from dynamics.mechanism.line_of_action import line_of_action
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.spatial_flank import SpatialFlankLaws
 from dynamics.types import FloatArray

@@ -11,12 +11,15 @@ import numpy as np
 
 from dynamics.assembly.model import Model
 from dynamics.forces.elements import Element
-from dynamics.forces.frames import FrameCouplingLaws, FrameTerm, RotatingFrameLaws
+from dynamics.forces.frame_coupling import FrameCouplingLaws
+from dynamics.forces.frames import FrameTerm, RotatingFrameLaws
 from dynamics.forces.laws import Law
 from dynamics.mechanism.bearing_elements import tilt_lever
+from dynamics.mechanism.carried_planets import ROTATION
 from dynamics.mechanism.columns import section_rows
-from dynamics.mechanism.connections import ACROSS, frame_couplings, full_matrix
-from dynamics.mechanism.freedoms import ROTATION, Freedoms
+from dynamics.mechanism.coupling_rows import ACROSS, full_matrix
+from dynamics.mechanism.frame_couplings import frame_couplings
+from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.types import FloatArray
 

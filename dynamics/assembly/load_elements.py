@@ -15,11 +15,13 @@ from dynamics.forces.elements import Element
 from dynamics.forces.laws import Law
 from dynamics.loads.applied_force import AppliedForce
 from dynamics.loads.load_course import BySpeed, Orders
-from dynamics.loads.load_laws import ForceCourseLaws, SpeedTorqueLaws, UnbalanceLaws
+from dynamics.loads.load_laws import ForceCourseLaws
+from dynamics.loads.speed_torque_law import SpeedTorqueLaws
+from dynamics.loads.unbalance_law import UnbalanceLaws
 from dynamics.mechanism.bearing_elements import tilt_lever
 from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.carried_planets import ROTATION
 from dynamics.mechanism.columns import column_count, section_rows, turn_row
-from dynamics.mechanism.freedoms import ROTATION
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repeating_phases, unbalance_phase
 from dynamics.scene.scene import Scene

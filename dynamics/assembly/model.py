@@ -35,7 +35,7 @@ def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
     flanks = flank_laws(mechanism)
     mechanism, ledger = _on_rotors(mechanism, flanks, [e for e in registry if isinstance(e, RotorEffect)])
     added = [ledger.on_rotor(rotor.shaft.name) for rotor in mechanism.rotors]
-    kinds = [{kind for effect in own for kind in effect.adds} for own in added]
+    kinds = [{kind for effect in effects for kind in effect.adds} for effects in added]
     freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, kinds)
     mass = mass_terms(mechanism.rotors)[0][freedoms.column]
     for name, value in zip(freedoms.name, mass, strict=True):

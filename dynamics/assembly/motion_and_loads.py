@@ -14,11 +14,13 @@ from dynamics.arrays.arrays import Drives, KinematicMotion, Loads, revolutions
 from dynamics.joints import ImposedRotation
 from dynamics.kernels.cubics import Cubics
 from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.carried_planets import ROTATION, carried_motion
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.mechanism.connections import Connections
-from dynamics.mechanism.freedoms import ROTATION, Freedoms, carried_motion
-from dynamics.mechanism.kinematics import Kinematics, check_loads
+from dynamics.mechanism.freedoms import Freedoms
+from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.motion_checks import check_loads
 from dynamics.mechanism.phases import phases
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray

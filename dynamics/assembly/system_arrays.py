@@ -16,9 +16,10 @@ from dynamics.forces.laws import ElementLaws
 from dynamics.kernels.by_address import by_address
 from dynamics.mechanism.bearing_elements import tilt_lever
 from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.carried_planets import FREEDOMS, ROTATION
 from dynamics.mechanism.columns import column_count, times_mass, turn_row
 from dynamics.mechanism.connections import elastic_matrices
-from dynamics.mechanism.freedoms import FREEDOMS, ROTATION, Freedoms
+from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import mesh_shafts
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import phases

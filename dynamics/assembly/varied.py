@@ -54,8 +54,8 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
         spatial = spatial._replace(grid=grid, damping=spatial.damping.copy())
     changed = by_address(elements._replace(laws=elements.laws._replace(flank=plain, spatial_flank=spatial)))
     arrays = by_address(system.arrays._replace(elements=changed))
-    own = replace(system, arrays=arrays, flanks=replace(system.flanks, law=plain))
-    return _damped(own, mesh, used)
+    changed_system = replace(system, arrays=arrays, flanks=replace(system.flanks, law=plain))
+    return _damped(changed_system, mesh, used)
 
 
 def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Iterator[System]:
@@ -63,16 +63,16 @@ def with_flanks(system: System, mesh: int, tables: Sequence[MeshTable]) -> Itera
 
     They share its arrays. Raises as `with_flank`.
     """
-    own = with_flank(system, mesh, tables[0])
-    yield own
-    plain, spatial = _laws(own)
+    changed_system = with_flank(system, mesh, tables[0])
+    yield changed_system
+    plain, spatial = _laws(changed_system)
     for table in tables[1:]:
-        used = _used(own, mesh, table)
+        used = _used(changed_system, mesh, table)
         plain.table.overwrite(mesh, used)
-        if own.arrays.elements.law[mesh] == SPATIAL_FLANK:
-            spatial.grid.overwrite(int(own.arrays.elements.entry[mesh]), used)
-        own = _damped(own, mesh, used)
-        yield own
+        if changed_system.arrays.elements.law[mesh] == SPATIAL_FLANK:
+            spatial.grid.overwrite(int(changed_system.arrays.elements.entry[mesh]), used)
+        changed_system = _damped(changed_system, mesh, used)
+        yield changed_system
 
 
 def _laws(system: System) -> tuple[FlankLaws, SpatialFlankLaws]:
@@ -100,7 +100,7 @@ def _damped(system: System, mesh: int, used: PlainTable) -> System:
         if elements.law[mesh] == SPATIAL_FLANK:
             spatial.damping[elements.entry[mesh]] *= factor
     stiffnesses = np.where(np.arange(flanks.mean_stiffness.size) == mesh, stiffness, flanks.mean_stiffness)
-    tables = tuple(used if index == mesh else own for index, own in enumerate(flanks.tables))
+    tables = tuple(used if index == mesh else table for index, table in enumerate(flanks.tables))
     return replace(system, flanks=replace(flanks, tables=tables, mean_stiffness=stiffnesses))
 
 
@@ -161,11 +161,11 @@ def with_static_reference(system: System, displacement: FloatArray, time: float 
         [[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes]
     ).reshape(-1, 2)
     points = operating_points_at(system, displacement, time)
-    moved = np.any(points != fixed, axis=1)
-    if not np.any(moved):
+    displaced = np.any(points != fixed, axis=1)
+    if not np.any(displaced):
         return system
     tables = [
         (table_at_operating_point if moves else table_at)(mesh.table, float(m), float(a))
-        for mesh, moves, (m, a) in zip(system.scene.meshes, moved, points, strict=True)
+        for mesh, moves, (m, a) in zip(system.scene.meshes, displaced, points, strict=True)
     ]
     return replace(system, flanks=replace(system.flanks, static=pack_tables(tables)))

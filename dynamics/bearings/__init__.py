@@ -1,12 +1,7 @@
 """Bearings: rolling elements by geometry, bushings, what they do to a seat, their laws, loads and life."""
 
-from dynamics.bearings.rolling_bearing import (
-    BallBearing,
-    CatalogLine,
-    EllipticContact,
-    RollerBearing,
-    RollingBearing,
-)
+from dynamics.bearings.elliptic_contact import EllipticContact
+from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine, RollerBearing, RollingBearing
 from dynamics.bearings.seat import BearingStiffness, Bushing, PlanetBearing
 
 __all__ = [

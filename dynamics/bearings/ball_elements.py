@@ -26,8 +26,6 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-# How a row of rolling elements is laid out for compiled functions, and the grooves its balls lie between.
-
 HOLDS = ALONG | AGAINST
 STEPS = 100
 SETTLED = 1e-12  # of the sum of the loads of all balls
@@ -84,7 +82,7 @@ class BallElements(NamedTuple):
             balls=np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64),
             held=np.array([HELD[place.locating] for _, place in rows], dtype=np.int64),
             **{
-                name: np.array([own[name] for own in figures], dtype=float)
+                name: np.array([values[name] for values in figures], dtype=float)
                 for name in cls._fields
                 if name not in ("balls", "held")
             },
@@ -126,19 +124,6 @@ def _grooves(
     return v_r, v_z, math.sqrt(v_r * v_r + v_z * v_z)
 
 
-# The axial seat of a ring: where a ring that its seat does not hold slides to.
-#
-# It has neither mass nor friction: it stands where the balls push it nowhere, at the least energy. With
-# E(y, z) that of the balls at the axial displacement z of the rings, the bearing's is
-#
-#     E*(y) = min E(y, z)    over all z, or over those in the direction in which the seat does not hold.
-#
-# E has no hollows in y and z together, nor has E* in y.
-
-
-# The angle of a bearing's cage among the positions of a local state.
-
-
 @inner
 def cage_angle(local: LocalState, turned: int) -> float:
     """Return the angle of the position `turned`, which is in revolutions, rad; 0 if it is -1: averaged."""
@@ -159,10 +144,10 @@ def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turn
         thrust on the seat (N), 0 of a ring that slides; the derivatives of the thrust in the five
         displacements at this z.
     """
-    y, angle, held = local.coordinate, cage_angle(local, turned), laws.held[entry]
-    if held != 0:
+    y, angle, hold = local.coordinate, cage_angle(local, turned), laws.held[entry]
+    if hold != 0:
         thrust, kx, ky, kz, ktx, kty, _ = _thrust(laws, entry, angle, y, row, y[row + 2])
-        if (thrust >= 0.0 and held & ALONG) or (thrust <= 0.0 and held & AGAINST):
+        if (thrust >= 0.0 and hold & ALONG) or (thrust <= 0.0 and hold & AGAINST):
             return 1.0, y[row + 2], thrust, kx, ky, kz, ktx, kty
     reach = laws.arm_radius[entry] * math.sqrt(y[row + 3] * y[row + 3] + y[row + 4] * y[row + 4])
     z = -laws.axial[entry]
@@ -211,9 +196,6 @@ def _thrust(laws: BallElements, entry: int, angle: float, y: FloatArray, row: in
     return thrust, kx, ky, kz, ktx, kty, total
 
 
-# Forces, derivatives and energy of all balls.
-
-
 @routine
 def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> None:
     """Write forces and derivatives of a bearing into its five rows, the first of which is `row`.
@@ -234,9 +216,9 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
             local.tangent[row + i, j], local.viscous[row + i, j] = 0.0, 0.0
     y, angle, loose = local.coordinate, cage_angle(local, turned), laws.held[entry] != HOLDS
     z, axial_rate = y[row + AXIAL], 0.0 if loose else local.rate[row + AXIAL]
-    held, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    hold, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if loose:
-        held, z, thrust, kx, ky, kz, ktx, kty = axial_seat(laws, entry, local, row, turned)
+        hold, z, thrust, kx, ky, kz, ktx, kty = axial_seat(laws, entry, local, row, turned)
     radius, height = laws.arm_radius[entry], laws.arm_axial[entry]
     step = 2.0 * math.pi / laws.balls[entry]
     for ball in range(laws.balls[entry]):
@@ -251,7 +233,7 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
         g = (e_r * c, e_r * s, e_z, -s * along, c * along)
         h = (-e_z * c, -e_z * s, e_r, -s * across, c * across)
         _add(local, row, g, h, rigid, press, laws.damping[entry], length, axial_rate)
-    if loose and held > 0.0:
+    if loose and hold > 0.0:
         _press_seat(local, row, thrust, (kx, ky, kz, ktx, kty), laws.damping[entry])
     elif loose:
         _condense(local, row, (kx, ky, kz, ktx, kty))
@@ -348,9 +330,9 @@ def _energy(
             continue
         load = laws.stiffness[entry] * math.sqrt(press) * press
         turning = y[row + 4] * s + y[row + 3] * c
-        beside = y[row + 1] * c - y[row] * s - laws.arm_axial[entry] * turning
+        across = y[row + 1] * c - y[row] * s - laws.arm_axial[entry] * turning
         energy += 0.4 * load * press
-        slope += load * (v_r * beside + v_z * laws.arm_radius[entry] * turning) / length
+        slope += load * (v_r * across + v_z * laws.arm_radius[entry] * turning) / length
     return energy, 2.0 * math.pi * slope
 
 

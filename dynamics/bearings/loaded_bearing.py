@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.bearings import BallBearing, Bushing, RollerBearing
+from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.ball_elements import (
     BallElements,
     RowPlacement,
@@ -19,7 +19,6 @@ from dynamics.bearings.ball_elements import (
     balls,
     balls_energy,
 )
-from dynamics.bearings.matrix import matrix_rows
 from dynamics.bearings.roller_elements import RollerElements, roller_reaction, rollers, rollers_energy
 from dynamics.bearings.rolling_bearing import BOTH, check_locating
 from dynamics.bearings.seat import SEAT
@@ -32,7 +31,6 @@ from dynamics.types import FloatArray
 TOLERANCE = 1e-12  # of the load
 STEPS = 500
 LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
-ANGLES = 32
 
 
 @dataclass(frozen=True)
@@ -141,67 +139,3 @@ class LoadedBearing:
             else:
                 damping *= 4.0
         raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")
-
-
-# Element passing: how a shaft moves under a constant load as the elements pass it, without inertia.
-
-
-@dataclass(frozen=True)
-class _ElementPassing:
-    """The motion of a bearing's inner ring over the passing of one element."""
-
-    order: float
-    """Passings per revolution of the inner ring, the outer at rest."""
-    angle: FloatArray
-    """Of the first element from x towards y, rad; one pitch, its end left out. Shape (T,)."""
-    displacement: FloatArray
-    """m, rad. Shape (T, 5)."""
-
-    @property
-    def peak_to_peak(self) -> FloatArray:
-        """Return the size of the motion in each direction, (5,), m and rad."""
-        return np.asarray(np.ptp(self.displacement, axis=0))
-
-
-def element_passing(
-    bearing: BallBearing | RollerBearing, load: ArrayLike, angles: int = ANGLES
-) -> _ElementPassing:
-    """Return the motion of `bearing` under `load` (5,), N and N m, at evenly spaced angles of the cage.
-
-    Raises `SolveError`: the bearing does not carry the load.
-    """
-    loaded = LoadedBearing(bearing)
-    pitch = 2.0 * math.pi / bearing.count
-    angle = np.arange(angles) * pitch / angles
-    moved = [loaded.displacement(load, float(turned)) for turned in angle]
-    return _ElementPassing(bearing.count * bearing.cage_ratio, angle, np.array(moved))
-
-
-# A bearing by geometry as the linear bushing that it is for small motions.
-
-
-def tangent_bushing(
-    bearing: LoadedBearing, place: tuple[str, str, float], displacement: ArrayLike, angle: float = 0.0
-) -> Bushing:
-    """Return the bushing with force and tangent of `bearing` at a displacement.
-
-    Exact there and to first order about it. Where loads follow from statics alone, take
-    `LoadedBearing.displacement` of the load; otherwise the displacement at which a scene rests on these
-    bushings is the next, better one (Newton's method).
-
-    Parameters
-    ----------
-    bearing : LoadedBearing
-        Its outer ring is held by the ground, its center is on the shaft's axis.
-    place : (str, str, float)
-        Name of the bushing, its shaft, position along it (m).
-    displacement : (5,) array_like
-        Of the shaft at the bushing: x, y, z (m), tilt_x, tilt_y (rad).
-    angle : float
-        Of the first element from x towards y, rad.
-    """
-    name, shaft, position = place
-    at = bearing.evaluate(displacement, angle)
-    preload = at.tangent @ np.asarray(displacement, dtype=float) - at.force
-    stiffness = matrix_rows(0.5 * (at.tangent + at.tangent.T))
-    return Bushing(name, shaft, position, stiffness=stiffness, preload=tuple(map(float, preload)))

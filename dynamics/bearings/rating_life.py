@@ -76,16 +76,16 @@ def _ball_ratings(bearing: BallBearing, rating: float) -> tuple[float, float]:
     inner, outer = bearing.inner_groove, bearing.outer_groove
     osculation = inner / outer * (2.0 * outer - 1.0) / (2.0 * inner - 1.0)
     ratio = 1.044 * ((1.0 - share) / (1.0 + share)) ** 1.72 * osculation**0.41
-    each = rating / (bearing.count * math.cos(bearing.contact_angle) ** 0.7)
-    return _of_rings(each, ratio, BALL_RINGS, 10.0 / 3.0)
+    element_rating = rating / (bearing.count * math.cos(bearing.contact_angle) ** 0.7)
+    return _of_rings(element_rating, ratio, BALL_RINGS, 10.0 / 3.0)
 
 
 def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float]:
     """Return the loads of a lamina that belong to C at the inner and at the outer ring, N."""
     share = bearing.slenderness
     ratio = 1.038 * ((1.0 - share) / (1.0 + share)) ** (143.0 / 108.0)
-    each = rating / (ROLLER_QUALITY * bearing.count * math.cos(bearing.contact_angle))
-    return _of_rings(each * bearing.laminae ** (-7.0 / 9.0), ratio, ROLLER_RINGS, 4.5)
+    element_rating = rating / (ROLLER_QUALITY * bearing.count * math.cos(bearing.contact_angle))
+    return _of_rings(element_rating * bearing.laminae ** (-7.0 / 9.0), ratio, ROLLER_RINGS, 4.5)
 
 
 def _of_rings(each: float, ratio: float, constants: tuple[float, float], slope: float) -> tuple[float, float]:

@@ -57,11 +57,11 @@ class RollerElements(NamedTuple):
         figures = [_figures(bearing, at) for bearing, at in rows]
         places = [bearing.lamina_places for bearing, _ in rows]
         drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
-        own = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
+        places_over_lever = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
         return cls(
             rollers=np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
             first=np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
-            place=np.concatenate([np.empty(0), *own]),
+            place=np.concatenate([np.empty(0), *places_over_lever]),
             drop=np.concatenate([np.empty(0), *drops]),
             **{
                 name: np.array([figure[name] for figure in figures], dtype=float)
@@ -178,14 +178,14 @@ def rollers_energy(
         c, s = math.cos(angle + roller * step), math.sin(angle + roller * step)
         pressed, turn = _middle(laws, entry, c, s, y, row)
         turning = -(y[row + 4] * s + y[row + 3] * c)
-        beside = (y[row + 1] * c - y[row] * s) * laws.cosine[entry] - laws.arm[entry] * turning
+        across = (y[row + 1] * c - y[row] * s) * laws.cosine[entry] - laws.arm[entry] * turning
         for lamina in range(laws.first[entry], laws.first[entry + 1]):
             x = laws.place[lamina]
             press = pressed - laws.play[entry] + x * turn - laws.drop[lamina]
             if press > 0.0:
                 q = laws.stiffness[entry] * press**EXPONENT
                 energy += q * press / (EXPONENT + 1.0)
-                slope += q * (beside + x * turning)
+                slope += q * (across + x * turning)
     return energy, 2.0 * math.pi * slope
 
 

@@ -26,9 +26,10 @@ from bounds import (
     integers,
     required,
 )
+from dynamics.bearings.elliptic_contact import EllipticContact
 from dynamics.bearings.ring_fits import BORE, OUTSIDE, RingFits
 from dynamics.bearings.seat import POSITION, SEAT_TEMPERATURE, Bushing
-from dynamics.checks import declared_fields, one_of, positive
+from dynamics.checks import declared_fields, one_of
 from dynamics.errors import InputError
 from dynamics.shafts.bodies import (
     EXPANSION,
@@ -38,9 +39,6 @@ from dynamics.shafts.bodies import (
     TEMPERATURE,
 )
 from dynamics.types import FloatArray
-
-# Rows of equal elements, and a line of a bearing catalog.
-
 
 COUNT = Declared(Kind.COUNT, "", integers(3, 500), "Number of rolling elements", 8)
 DIAMETER = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Diameter of a rolling element", 0.008)
@@ -62,7 +60,6 @@ CLEARANCE = Declared(
     written="µm",
 )
 RATING = Declared(Kind.FORCE, "N", between(1.0, 1e9), "Basic static load rating C_0", 11600.0)
-LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
 GROOVE = Declared(Kind.RATIO, "", between(0.501, 1.0), "Groove radius over ball diameter", 0.52)
 MODULUS = Declared(Kind.STIFFNESS, "Pa", between(1e9, 1e12), "Young's modulus of rings and balls", 206e9)
 POISSON = Declared(Kind.RATIO, "", between(0.0, 0.49), "Poisson's ratio of rings and balls", 0.3)
@@ -183,68 +180,6 @@ class CatalogLine:
             raise InputError("outside_diameter", self.outside_diameter, above(self.bore, "m", "the bore"))
 
 
-# Hertz contact of two elastic bodies over an ellipse, by exact integrals.
-
-
-@dataclass(frozen=True)
-class EllipticContact:
-    """A Hertz contact."""
-
-    small_radius: float
-    large_radius: float
-    """`small_radius`, `large_radius`: Relative radii of curvature in the two principal planes, m, > 0."""
-    modulus: float
-    """E*, Pa."""
-
-    def __post_init__(self) -> None:
-        for name in ("small_radius", "large_radius", "modulus"):
-            positive(name, getattr(self, name))
-
-    @property
-    def axis_ratio(self) -> float:
-        """Return b/a, from 0 to 1."""
-        from scipy.optimize import brentq  # noqa: PLC0415 (start-up time)
-        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
-
-        ratio = self.small_radius / self.large_radius
-        if ratio > 1.0:
-            return EllipticContact(self.large_radius, self.small_radius, self.modulus).axis_ratio
-        if math.isclose(ratio, 1.0, rel_tol=1e-14):
-            return 1.0
-
-        def missed(logarithm: float) -> float:
-            square = math.exp(2.0 * logarithm)
-            return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
-
-        # below 0 by as much as rounding needs where the radii are almost equal
-        return math.exp(float(brentq(missed, math.log(LEAST_RATIO), 1e-12, xtol=1e-15)))
-
-    @property
-    def spring_constant(self) -> float:
-        """Return c of load = c approach^1.5, N/m^1.5."""
-        return float((1.0 / self.approach(1.0)) ** 1.5)
-
-    def axes(self, load: float) -> tuple[float, float]:
-        """Return the half-axes a >= b of the ellipse under `load` (N), m."""
-        from scipy.special import elliprd  # noqa: PLC0415 (start-up time)
-
-        q, radius = self.axis_ratio, min(self.small_radius, self.large_radius)
-        a = (load * radius * float(elliprd(0.0, 1.0, q * q)) / (math.pi * self.modulus)) ** (1.0 / 3.0)
-        return a, q * a
-
-    def approach(self, load: float) -> float:
-        """Return how far the bodies approach under `load` (N, > 0), m."""
-        from scipy.special import elliprf  # noqa: PLC0415 (start-up time)
-
-        a, b = self.axes(load)
-        return 1.5 * load * float(elliprf(0.0, (b / a) ** 2, 1.0)) / (math.pi * self.modulus * a)
-
-    def peak_pressure(self, load: float) -> float:
-        """Return the peak pressure under `load` (N, > 0), Pa."""
-        a, b = self.axes(load)
-        return 1.5 * load / (math.pi * a * b)
-
-
 @described
 @dataclass(frozen=True)
 class BallBearing(_Row):
@@ -309,12 +244,6 @@ class BallBearing(_Row):
     def peak_pressure(self, load: float) -> float:
         """Return the larger of the peak pressures of a ball under `load` (N) on both rings, Pa."""
         return max(contact.peak_pressure(load) for contact in self.contacts()) if load > 0.0 else 0.0
-
-
-# Profiles of rollers, and the stiffness of their laminae, by ISO/TS 16281.
-
-
-# Cylindrical and tapered roller bearings by their internal geometry, in laminae.
 
 
 @described

@@ -21,7 +21,7 @@ from dynamics.deflection.loaded_scene import (
 )
 from dynamics.deflection.mesh_alignment import MeshAlignment, mesh_alignment
 from dynamics.deflection.rest_positions import rest_over
-from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.common_period import common_period
 from dynamics.mechanism.shaft_axes import ShaftAxes, shaft_axes
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import LoadCase, check_forces

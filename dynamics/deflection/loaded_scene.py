@@ -11,8 +11,8 @@ from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
 from dynamics.loads import AppliedForce, BySpeed, TimeLaw
 from dynamics.loads.load_course import mean_factor
-from dynamics.mechanism.bodies import resting_housings
 from dynamics.mechanism.kinematics import Kinematics, at_steady_speeds, solve_kinematics
+from dynamics.mechanism.resting_housings import resting_housings
 from dynamics.scene.scene import Scene
 from dynamics.settings.load_case import DRIVE, CaseForce, LoadCase, Vector
 from dynamics.types import FloatArray

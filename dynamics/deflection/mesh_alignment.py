@@ -12,7 +12,7 @@ from dynamics.deflection.bearing_strain import BearingStrain
 from dynamics.deflection.rest_positions import Rest
 from dynamics.mechanism.bearing_elements import supports_by_name
 from dynamics.mechanism.columns import elastic_columns, section_rows
-from dynamics.mechanism.line_of_action import (
+from dynamics.mechanism.flank_gradients import (
     common_face_width,
     distance_gradient,
     misalignment_gradient,

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.forces.laws import Law
 from dynamics.integrators import static_equilibrium
-from dynamics.mechanism.line_of_action import common_face_width, middle_from_driver
+from dynamics.mechanism.flank_gradients import common_face_width, middle_from_driver
 from dynamics.motion.observation import observe
 from dynamics.types import FloatArray, StaticStatus
 

@@ -7,8 +7,8 @@ import numpy as np
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.errors import InputError
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 
 BALANCED = 1e-6
 """Part of the single thrusts below which those on a shaft cancel: lines of action are known to rounding."""
@@ -28,8 +28,8 @@ class Axial(RotorEffect):
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)
         influence = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / stiffness
-        own = [force for force in rotor.mechanism.scene.forces if force.shaft == rotor.rotor.shaft.name]
-        if influence == 0.0 and any(force.force[2] != 0.0 for force in own):
+        forces = [force for force in rotor.mechanism.scene.forces if force.shaft == rotor.rotor.shaft.name]
+        if influence == 0.0 and any(force.force[2] != 0.0 for force in forces):
             return Verdict(True, True, "a force pushes along the axis", 0.0)
         if influence == 0.0:
             return Verdict(False, True, "spur: no force along the axis", 0.0)
@@ -54,8 +54,8 @@ class Axial(RotorEffect):
                 if force.shaft == name and force.force[2] != 0.0:
                     bound = f'0 on "{name}", which nothing holds along its axis'
                     raise InputError(f"forces[{index}].force.z", force.force[2], bound, advice)
-            own = [(k, gear) for k, gear in enumerate(scene.gears) if gear.shaft == name]
-            helical = [(k, gear) for k, gear in own if gear.base_helix_angle != 0.0]
+            gears = [(k, gear) for k, gear in enumerate(scene.gears) if gear.shaft == name]
+            helical = [(k, gear) for k, gear in gears if gear.base_helix_angle != 0.0]
             if abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
                 bound = f'on a shaft with axial support, which "{name}" lacks'
             elif any(pushes) and len({gear.base_helix_angle > 0.0 for _, gear in helical}) == 2:
@@ -69,11 +69,11 @@ class Axial(RotorEffect):
 def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:
     """Return the axial forces of the meshes on a rotor, N; of unit mesh forces where there is no load."""
     scene, force = mechanism.scene, mechanism.nominal_force
-    own = {gear.name for gear in scene.gears if gear.shaft == rotor.shaft.name}
+    gears = {gear.name for gear in scene.gears if gear.shaft == rotor.shaft.name}
     size = np.where(force > 0.0, force, 1.0)
     return [
         sign * float(force * line.force[2])
         for mesh, line, force in zip(scene.meshes, mechanism.lines, size, strict=True)
         for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0))
-        if name in own
+        if name in gears
     ]

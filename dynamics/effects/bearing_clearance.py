@@ -24,8 +24,8 @@ class BearingClearance(RotorEffect):
         mechanism = rotor.mechanism
         duties, own_supports = mechanism.bearing_duty, {part.name for part in rotor.rotor.supports}
         laws = [law for law in mechanism.scene.bearing_laws if law.bushing in own_supports]
-        own = [law.missed(duties[law.bushing]) for law in laws]
-        if not own:
+        errors = [law.missed(duties[law.bushing]) for law in laws]
+        if not errors:
             return Verdict(False, False, "no bearing with clearance or a nonlinear law", 0.0)
         reason = "bearings with clearance or nonlinear laws; off: their tangents at the load"
-        return Verdict(True, True, reason, max(own))
+        return Verdict(True, True, reason, max(errors))

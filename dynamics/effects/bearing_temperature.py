@@ -101,8 +101,8 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
         return high - low, 0.0
 
     def force(moved: float, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
-        own = (part for part in bearings if math.copysign(1.0, part.row.contact_angle) in sides)
-        laws = (row_law(part) for part in own)
+        opposed = (part for part in bearings if math.copysign(1.0, part.row.contact_angle) in sides)
+        laws = (row_law(part) for part in opposed)
         return sum(
             float(law.loaded.evaluate((0.0, 0.0, moved + law.shift, 0.0, 0.0)).force[2]) for law in laws
         )
@@ -113,12 +113,12 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
 
 def _moved(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
     """Return the largest change of the displacement at a mesh, linear between the bearings, m."""
-    mechanism, own = rotor.mechanism, rotor.rotor
+    mechanism, bearings_rotor = rotor.mechanism, rotor.rotor
     duties, more, at = mechanism.bearing_duty, [], []
     for row in rows:
         duty = duties[row.drawn.name]
         more.append(row_law(row.warm).way(duty) - row_law(row.drawn).way(duty))
-        at.append(own.shaft.origin[2] + row.drawn.position - float(own.center[2]))
+        at.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
     levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
     line = np.polyfit(at, more, 1 if np.ptp(at) > 0.0 else 0)
     return float(np.max(np.abs(np.polyval(line, levers))))

@@ -30,21 +30,21 @@ class CentrifugalLoad(RotorEffect):
 
         Its influence is how far that load, held by the bearing alone, moves it along a line of action.
         """
-        own, mechanism = rotor.rotor, rotor.mechanism
-        if own.carrier is None:
+        body, mechanism = rotor.rotor, rotor.mechanism
+        if body.carrier is None:
             return Verdict(False, False, "no planet: the shaft's axis is its frame's", 0.0)
-        if own.radial_stiffness == 0.0:
+        if body.radial_stiffness == 0.0:
             return Verdict(False, False, "no bearing with radial stiffness: held rigidly", 0.0)
-        if mechanism.freely_turned[own.carrier]:
+        if mechanism.freely_turned[body.carrier]:
             reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
             return Verdict(False, False, reason, 0.0)
-        x, y = _arm(mechanism, rotor.index, own.carrier)
+        x, y = _arm(mechanism, rotor.index, body.carrier)
         radius = math.hypot(x, y)
-        force = own.inertia.mass * radius * float(mechanism.largest_speed[own.carrier]) ** 2
+        force = body.inertia.mass * radius * float(mechanism.largest_speed[body.carrier]) ** 2
         along = [abs(x * mesh.direction[0] + y * mesh.direction[1]) / radius for mesh in rotor.meshes]
         pulled, pushed = engineering(force), engineering(rotor.pushed)
         reason = f"up to {pulled} N away from the carrier's axis; mesh forces are {pushed} N"
-        influence = force / own.radial_stiffness * max(along, default=0.0)
+        influence = force / body.radial_stiffness * max(along, default=0.0)
         return Verdict(force > SHARE * rotor.pushed, True, reason, influence)
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
@@ -52,9 +52,9 @@ class CentrifugalLoad(RotorEffect):
         rotor = mechanism.rotors[index]
         if rotor.carrier is None:
             return ()
-        own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 2]
+        columns = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 2]
         x, y = _arm(mechanism, index, rotor.carrier)
-        return [FrameTerm(own, load=(rotor.inertia.mass * x, rotor.inertia.mass * y))]
+        return [FrameTerm(columns, load=(rotor.inertia.mass * x, rotor.inertia.mass * y))]
 
 
 def _arm(mechanism: Mechanism, planet: int, carrier: int) -> tuple[float, float]:

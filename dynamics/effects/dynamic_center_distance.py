@@ -8,7 +8,7 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import CENTER_DISTANCE, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE
-from dynamics.mechanism.line_of_action import distance_gradient
+from dynamics.mechanism.flank_gradients import distance_gradient
 
 
 class DynamicCenterDistance(MeshEffect):

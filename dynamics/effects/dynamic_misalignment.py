@@ -8,7 +8,7 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism import additions
-from dynamics.mechanism.line_of_action import misalignment_gradient
+from dynamics.mechanism.flank_gradients import misalignment_gradient
 
 
 class DynamicMisalignment(MeshEffect):

@@ -29,16 +29,16 @@ class ElementPassing(RotorEffect):
         Its influence is that motion: from peak to peak, along the typical load. Averaged without a tolerance.
         """
         mechanism, shaft = rotor.mechanism, rotor.rotor.shaft.name
-        own = [bearing for bearing in mechanism.scene.rolling_bearings if bearing.shaft == shaft]
-        if not own:
+        bearings = [bearing for bearing in mechanism.scene.rolling_bearings if bearing.shaft == shaft]
+        if not bearings:
             return Verdict(False, False, "no rolling bearing by its geometry", 0.0)
-        size = max(row_law(part).passing_motion(mechanism.bearing_duty[part.name]) for part in own)
+        size = max(row_law(part).passing_motion(mechanism.bearing_duty[part.name]) for part in bearings)
         tolerance = mechanism.scene.tolerance
-        moved = f"elements that pass move the shaft by {engineering(1e6 * size)} µm"
+        reason = f"elements that pass move the shaft by {engineering(1e6 * size)} µm"
         if tolerance is None:
-            return Verdict(False, True, f"{moved}; averaged, as no tolerance is stated", size)
+            return Verdict(False, True, f"{reason}; averaged, as no tolerance is stated", size)
         yielding = float(np.min(rotor.flanks.nominal_force / rotor.flanks.mean_stiffness))
-        words = f"{moved}, {engineering(size / yielding)} of what the meshes yield"
+        words = f"{reason}, {engineering(size / yielding)} of what the meshes yield"
         return Verdict(size > tolerance * yielding, True, words, size)
 
     def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
@@ -48,5 +48,5 @@ class ElementPassing(RotorEffect):
             for rotor, verdict in zip(mechanism.rotors, decided, strict=True)
             if verdict is not None
         }
-        own = (part.name for part in mechanism.scene.rolling_bearings if part.shaft in shafts)
-        return replace(mechanism, passing=frozenset(own))
+        names = (part.name for part in mechanism.scene.rolling_bearings if part.shaft in shafts)
+        return replace(mechanism, passing=frozenset(names))

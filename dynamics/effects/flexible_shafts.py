@@ -12,12 +12,12 @@ from dynamics.bearings.seat import SEAT
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 from dynamics.loads.load_course import mean_factor
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
 from dynamics.mechanism.connections import gather_connections, seated
+from dynamics.mechanism.flank_gradients import approach, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
-from dynamics.mechanism.line_of_action import approach, misalignment_gradient
 from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 from dynamics.mechanism.sampling import shaft_resolution
 from dynamics.scene.scene import Scene
 from dynamics.shafts import Disc, ElasticShaft, PointOfApplication, elastic_shaft
@@ -60,8 +60,8 @@ def _elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     """
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
-    held = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
-    bends = held and {"x", "tilt_x"} <= mechanism.additions.possible
+    supported = rotor.radial_stiffness > 0.0 and rotor.tilt_stiffness > 0.0
+    bends = supported and {"x", "tilt_x"} <= mechanism.additions.possible
     drive = next((d for d in scene.drives if d.shaft == shaft.name and d.rigid), None)
     discs = tuple(Disc(rotor.on_shaft(body.position), body.inertia) for body in scene.mounted(shaft.name))
     return elastic_shaft(
@@ -149,11 +149,11 @@ class FlexibleShafts(RotorEffect):
             if part is not None and part.mass.size == 0:
                 refusals[index], elastic[index] = NOTHING_BENDS, None
         flexible = _with_elastic(mechanism, elastic)
-        held = _held(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
+        stiffness = _held(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
         return [
             _Bending(False, False, refusal, 0.0)
             if part is None
-            else _influence(flexible, flanks, index, held, part)
+            else _influence(flexible, flanks, index, stiffness, part)
             for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
         ]
 
@@ -178,26 +178,28 @@ def _influence(
     along = [2] if elastic.extension.mass.size else []
     rigid = [6 * index + kind for kind in (*across, *along)]  # freedoms that bearings hold; it does not turn
     coordinates = elastic_columns(rotors, index)
-    own = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
+    axes = np.array([*rigid, *range(coordinates.start, coordinates.stop)])
     rows = {
-        mesh: approach(scene, rotors, mesh, mechanism.lines[mesh])[own] for mesh in _meshes(mechanism, index)
+        mesh: approach(scene, rotors, mesh, mechanism.lines[mesh])[axes] for mesh in _meshes(mechanism, index)
     }
-    force = _torques(mechanism, index)[own] - sum(
-        (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(own.size)
+    force = _torques(mechanism, index)[axes] - sum(
+        (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(axes.size)
     )
-    moved = np.linalg.lstsq(held[np.ix_(own, own)], force, rcond=1e-13)[0]
-    moved[: len(rigid)] -= np.linalg.lstsq(held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13)[0]
+    displacement = np.linalg.lstsq(held[np.ix_(axes, axes)], force, rcond=1e-13)[0]
+    displacement[: len(rigid)] -= np.linalg.lstsq(
+        held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13
+    )[0]
     loads: list[OnShaft] = [*scene.forces, *scene.unbalances]
     if not rows and scene.shafts[index].name in [part.shaft for part in loads]:
         return _Bending(True, True, "loads act on the shaft, which no mesh measures", 0.0, elastic)
     away, share, tilted = 0.0, 0.0, 0.0
     for mesh, row in rows.items():
-        here = abs(float(row @ moved))
+        influence = abs(float(row @ displacement))
         pressed = float(mechanism.nominal_force[mesh] / flanks.mean_stiffness[mesh])
         sense = mechanism.kinematics.mesh_sense[mesh]
-        turn = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[own]
-        away, tilted = max(away, here), max(tilted, abs(float(turn @ moved)))
-        share = max(share, here / pressed if pressed > 0.0 else 0.0)
+        turn = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[axes]
+        away, tilted = max(away, influence), max(tilted, abs(float(turn @ displacement)))
+        share = max(share, influence / pressed if pressed > 0.0 else 0.0)
     tilted = tilted if tilted > ROUNDING * away else 0.0
     reason = (
         f"the nominal force bends and twists the shaft by {engineering(1e6 * away)} µm along the line of "

@@ -11,9 +11,10 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import SLIDING, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.errors import InputError
+from dynamics.mechanism.carried_planets import ROTATION
 from dynamics.mechanism.columns import gear_row
-from dynamics.mechanism.freedoms import ROTATION
-from dynamics.mechanism.line_of_action import UNIT_Z, table_sense
+from dynamics.mechanism.flank_gradients import table_sense
+from dynamics.mechanism.line_of_action import UNIT_Z
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.types import FloatArray
 

@@ -37,19 +37,19 @@ class Gyroscopic(RotorEffect):
         A tilting shaft of spin w whirls at its frequency f times 1 +- I_p w/(2 sqrt(I_t k_t)); one seen from
         a frame of speed W at f +- W/(2 pi).
         """
-        own, mechanism = rotor.rotor, rotor.mechanism
-        if own.tilt_stiffness == 0.0 and own.frame is None:
+        body, mechanism = rotor.rotor, rotor.mechanism
+        if body.tilt_stiffness == 0.0 and body.frame is None:
             return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
-        free = bool(mechanism.freely_turned[rotor.index if own.frame is None else own.frame])
-        if own.frame is not None and free:
+        free = bool(mechanism.freely_turned[rotor.index if body.frame is None else body.frame])
+        if body.frame is not None and free:
             reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
             return Verdict(False, False, reason, 0.0)
         if free:
             return Verdict(True, True, "torques alone turn the shaft: its speed is not known in advance", 0.0)
         share = max(_tilt_share(rotor), _frame_share(rotor))
-        held = rotor.pushed / own.radial_stiffness if own.radial_stiffness > 0.0 else 0.0
+        deflection = rotor.pushed / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"
-        return Verdict(share > SHARE, True, reason, min(share, 1.0) * held)
+        return Verdict(share > SHARE, True, reason, min(share, 1.0) * deflection)
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
         """Return the terms of a shaft of spin w in a frame of speed W (0: fixed), with J = z x.
@@ -60,23 +60,23 @@ class Gyroscopic(RotorEffect):
         """
         rotor, lever = mechanism.rotors[index], tilt_lever(mechanism.scene)
         mass, polar, across = rotor.inertia.mass, rotor.inertia.polar, rotor.inertia.transverse
-        own = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 6]
+        columns = np.eye(column_count(mechanism.rotors))[6 * index : 6 * index + 6]
         terms = []
         if rotor.frame is not None:
-            terms.append(FrameTerm(own[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0)))
+            terms.append(FrameTerm(columns[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0)))
         if rotor.elastic is not None and rotor.elastic.bends:
             return [*terms, *_along_the_shaft(mechanism, index, lever)]
         square = lever**2
         tilt = (-polar / square, 2.0 * across / square, polar / square, -across / square, 0.0)
-        terms.append(FrameTerm(lever * own[list(TILT)], tilt))
+        terms.append(FrameTerm(lever * columns[list(TILT)], tilt))
         return [*terms, *_dampers(connections, index, lever)]
 
 
 def _tilt_share(rotor: LoadedRotor) -> float:
     """I_p w/(2 sqrt(I_t k_t)) at the largest speed w of the run."""
-    own, speed = rotor.rotor, rotor.mechanism.largest_speed
-    held = math.sqrt(own.inertia.transverse * own.tilt_stiffness)
-    return own.inertia.polar * float(speed[rotor.index]) / (2.0 * held) if held > 0.0 else 0.0
+    body, speed = rotor.rotor, rotor.mechanism.largest_speed
+    resistance = math.sqrt(body.inertia.transverse * body.tilt_stiffness)
+    return body.inertia.polar * float(speed[rotor.index]) / (2.0 * resistance) if resistance > 0.0 else 0.0
 
 
 def _frame_share(rotor: LoadedRotor) -> float:
@@ -85,9 +85,9 @@ def _frame_share(rotor: LoadedRotor) -> float:
     if frame is None:
         return 0.0
     members = [other for other in rotor.mechanism.rotors if other.frame == frame]
-    held = [member for member in members if member.radial_stiffness > 0.0]
+    supported = [member for member in members if member.radial_stiffness > 0.0]
     shares = (
-        float(speed[frame]) * math.sqrt(member.inertia.mass / member.radial_stiffness) for member in held
+        float(speed[frame]) * math.sqrt(member.inertia.mass / member.radial_stiffness) for member in supported
     )
     return max(shares, default=0.0)
 

@@ -57,9 +57,9 @@ class HousingModes(RotorEffect):
 
 
 def _housings_of(mechanism: Mechanism, index: int) -> list[Housing]:
-    own = {part.name for part in mechanism.rotors[index].supports}
+    names = {part.name for part in mechanism.rotors[index].supports}
     massive = (part for part in mechanism.scene.housings if part.mass is not None)
-    return [part for part in massive if not own.isdisjoint(part.bushings)]
+    return [part for part in massive if not names.isdisjoint(part.bushings)]
 
 
 def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
@@ -78,8 +78,8 @@ def _verdict(rotor: LoadedRotor, housing: Housing) -> Verdict:
     source, first = max(content, key=lambda name: content[name]), float(modal.frequency[0])
     share = (content[source] / first) ** 2
     supports = [part.name for part in rotor.rotor.supports]
-    own = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
-    softest = float(np.max(np.sum(own**2 / modal.stiffness, axis=2)))
+    seats = np.array([modal.seat(name)[:2] for name in supports if name in modal.bearings])
+    softest = float(np.max(np.sum(seats**2 / modal.stiffness, axis=2)))
     influence = min(share, 1.0) * (rotor.pushed / len(supports) * softest)  # an equal share of mesh forces
     reason = f"{source} reach {content[source]:.4g} Hz, the first mode of {housing.name} {first:.4g} Hz"
     if any(at.name in housing.bushings for at in rotor.mechanism.bearings):

@@ -120,8 +120,8 @@ class EffectLedger:
 
     def with_entries_of(self, other: EffectLedger, addition: str) -> EffectLedger:
         """Return the ledger with the decisions of `other` on the effect that adds `addition`."""
-        kept = (entry for entry in self.entries if addition not in entry.decided.adds)
-        return EffectLedger((*kept, *other.adding(addition)))
+        entries = (entry for entry in self.entries if addition not in entry.decided.adds)
+        return EffectLedger((*entries, *other.adding(addition)))
 
     def without(self, additions: frozenset[str], reason: str, choices: Mapping[str, str]) -> EffectLedger:
         """Return the ledger in which no effect that adds one of `additions` is possible."""
@@ -140,13 +140,13 @@ class EffectLedger:
 
     def on_rotor(self, shaft: str) -> list[RotorEffect]:
         """Return the effects of rotors that are on for `shaft`."""
-        own = [entry.decided for entry in self.entries if entry.on and entry.part == shaft]
-        return [effect for effect in own if isinstance(effect, RotorEffect)]
+        effects = [entry.decided for entry in self.entries if entry.on and entry.part == shaft]
+        return [effect for effect in effects if isinstance(effect, RotorEffect)]
 
     def on_mesh(self, mesh: str) -> list[MeshEffect]:
         """Return the effects of meshes that are on for `mesh`."""
-        own = [entry.decided for entry in self.entries if entry.on and entry.part == mesh]
-        return [effect for effect in own if isinstance(effect, MeshEffect)]
+        effects = [entry.decided for entry in self.entries if entry.on and entry.part == mesh]
+        return [effect for effect in effects if isinstance(effect, MeshEffect)]
 
     def of(self, effect: str) -> list[_LedgerEntry]:
         """Return the decisions on one effect, one per part."""
@@ -193,10 +193,10 @@ def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechan
         If a choice is unknown, parts do not fit each other, or an effect cannot do without a part.
     """
     mechanism = _shared_mechanism(scene, registry)
-    own = {name: getattr(scene, name) for name in UNSHARED}
-    if all(getattr(mechanism.scene, name) is part for name, part in own.items()):
+    unshared = {name: getattr(scene, name) for name in UNSHARED}
+    if all(getattr(mechanism.scene, name) is part for name, part in unshared.items()):
         return mechanism
-    return replace(mechanism, scene=replace(mechanism.scene, **own))
+    return replace(mechanism, scene=replace(mechanism.scene, **unshared))
 
 
 def _shared_parts(scene: Scene) -> tuple[object, ...]:

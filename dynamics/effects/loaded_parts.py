@@ -8,12 +8,13 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Rotor
 from dynamics.mechanism.connections import Connections, elastic_matrices
+from dynamics.mechanism.flank_gradients import approach, distance_gradient, misalignment_gradient
 from dynamics.mechanism.flanks import Flanks
 from dynamics.mechanism.freedoms import Freedoms
-from dynamics.mechanism.line_of_action import approach, distance_gradient, misalignment_gradient
-from dynamics.mechanism.mechanism import Mechanism, mean_forces
+from dynamics.mechanism.mean_forces import mean_forces
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.rotor import Rotor
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.shafts.shaft import OnShaft
 from dynamics.types import FloatArray
@@ -58,12 +59,12 @@ class LoadedRotor:
     @property
     def applied(self) -> tuple[float, ...]:
         """Where forces and unbalances act across it: distances from its center of mass, m; weight: at 0."""
-        scene, own = self.mechanism.scene, self.rotor
+        scene, body = self.mechanism.scene, self.rotor
         across = [part for part in scene.forces if any((*part.force[:2], *part.moment[:2]))]
         parts: list[OnShaft] = [*across, *scene.unbalances]
-        at = [part.position for part in parts if part.shaft == own.shaft.name]
+        at = [part.position for part in parts if part.shaft == body.shaft.name]
         weight = (0.0,) if any(scene.gravity[:2]) else ()
-        return (*(own.shaft.origin[2] + position - float(own.center[2]) for position in at), *weight)
+        return (*(body.shaft.origin[2] + position - float(body.center[2]) for position in at), *weight)
 
 
 def loaded_rotors(mechanism: Mechanism, flanks: Flanks) -> tuple[LoadedRotor, ...]:
@@ -112,9 +113,9 @@ class LoadedTrain:
         """Displacements and tilts per force and moment on supports and shafts, in m, rad, N."""
         freedoms, supports, bends = self.freedoms, self.connections.supports, ~self.freedoms.turns
         moves = freedoms.keep(supports.motion)
-        held = supports.matrix(supports.stiffness, moves, moves)
-        held = held + elastic_matrices(self.mechanism.rotors, freedoms)[0]
-        return np.asarray(np.linalg.pinv(held[np.ix_(bends, bends)]))
+        stiffness = supports.matrix(supports.stiffness, moves, moves)
+        stiffness = stiffness + elastic_matrices(self.mechanism.rotors, freedoms)[0]
+        return np.asarray(np.linalg.pinv(stiffness[np.ix_(bends, bends)]))
 
     @cached_property
     def mean_force(self) -> FloatArray:
@@ -177,9 +178,9 @@ class LoadedMesh:
         """
         mesh, mechanism = self.mesh, self.train.mechanism
         pushed = approach(mechanism.scene, mechanism.rotors, self.index, mechanism.lines[self.index])
-        moved = -self.force * float(self.axes[axis] @ self.train.compliance @ self.train.bends(pushed))
+        shift = -self.force * float(self.axes[axis] @ self.train.compliance @ self.train.bends(pushed))
         knots = np.asarray((mesh.table.misalignment, mesh.table.center_distance_change)[axis], dtype=float)
         at = (mesh.misalignment, mesh.center_distance_change)[axis]
         mean = np.mean(np.asarray(mesh.table.deflection)[..., self.level], axis=-1)
         along = mean.mean(axis=1 - axis)
-        return float(abs(np.interp(at + moved, knots, along) - np.interp(at, knots, along)))
+        return float(abs(np.interp(at + shift, knots, along) - np.interp(at, knots, along)))

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedMesh
-from dynamics.mechanism.thermal_expansion import warmed_meshes
+from dynamics.mechanism.warm_meshes import warmed_meshes
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmMesh
 from dynamics.types import FloatArray
@@ -37,10 +37,10 @@ class MeshTemperature(MeshEffect):
         change = warm.meshes[mesh.index]
         if not any(vars(change).values()):
             return Verdict(False, False, "temperatures change nothing of this mesh", 0.0)
-        moved = np.array([change.misalignment, change.apart])
-        here = np.array([mesh.mesh.misalignment, mesh.mesh.center_distance_change])
-        other = here + (moved if scene.temperatures.meshes is None else -moved)
-        influence = abs(_mean_error(mesh, here) - _mean_error(mesh, other))
+        shift = np.array([change.misalignment, change.apart])
+        point = np.array([mesh.mesh.misalignment, mesh.mesh.center_distance_change])
+        other = point + (shift if scene.temperatures.meshes is None else -shift)
+        influence = abs(_mean_error(mesh, point) - _mean_error(mesh, other))
         if mesh.mesh.coast is not None and np.min(mesh.train.mean_force[mesh.index]) <= 0.0:
             influence = max(influence, abs(change.backlash))
         return Verdict(True, True, _words(mesh, change), influence)

@@ -11,7 +11,7 @@ from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.force_terms import MISALIGNMENT, FlankInSpace, FlankTerms
 from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import LOAD_ARM
-from dynamics.mechanism.line_of_action import common_face_width, misalignment_gradient
+from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 
 CENTERED = 1e-9  # of the face width
 

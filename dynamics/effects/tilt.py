@@ -22,14 +22,14 @@ class Tilt(RotorEffect):
         A center of mass off the supports' center couples tilt to lateral motion and calls for it too, as do
         other loads off that center.
         """
-        own = rotor.rotor
-        if own.tilt_stiffness == 0.0:
+        body = rotor.rotor
+        if body.tilt_stiffness == 0.0:
             return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
         influence = sum(
-            mesh.force * ((mesh.lever - own.elastic_lever) ** 2 + (mesh.axial * mesh.radius) ** 2)
+            mesh.force * ((mesh.lever - body.elastic_lever) ** 2 + (mesh.axial * mesh.radius) ** 2)
             for mesh in rotor.meshes
         )
-        influence /= own.tilt_stiffness
+        influence /= body.tilt_stiffness
         reason = _why(rotor)
         if reason:
             return Verdict(True, True, reason, influence)
@@ -40,16 +40,16 @@ class Tilt(RotorEffect):
 
 def _why(rotor: LoadedRotor) -> str:
     """Return what tilts the shaft; empty: nothing does."""
-    own, forces = rotor.rotor, rotor.mechanism.scene.forces
-    limit = CENTERED * own.shaft.length
+    body, forces = rotor.rotor, rotor.mechanism.scene.forces
+    limit = CENTERED * body.shaft.length
     if any(mesh.axial * mesh.radius > 0.0 for mesh in rotor.meshes):
         return "a helical mesh tilts the shaft"
-    if any(abs(mesh.lever - own.elastic_lever) > limit for mesh in rotor.meshes):
+    if any(abs(mesh.lever - body.elastic_lever) > limit for mesh in rotor.meshes):
         return "a mesh is off the supports' center"
-    if (rotor.meshes or rotor.applied) and abs(own.elastic_lever) > limit:
+    if (rotor.meshes or rotor.applied) and abs(body.elastic_lever) > limit:
         return "the center of mass is off the supports' center"
-    if any(abs(along - own.elastic_lever) > limit for along in rotor.applied):
+    if any(abs(along - body.elastic_lever) > limit for along in rotor.applied):
         return "a load is off the supports' center"
-    if any(any(force.moment[:2]) for force in forces if force.shaft == own.shaft.name):
+    if any(any(force.moment[:2]) for force in forces if force.shaft == body.shaft.name):
         return "a moment tilts the shaft"
     return ""

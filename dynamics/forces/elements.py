@@ -98,7 +98,7 @@ class Elements(NamedTuple):
         carried = np.append(
             np.flatnonzero(np.any(np.concatenate([np.empty((0, motions)), *drift]), axis=1)), sum(sizes)
         )
-        turned = np.append(np.flatnonzero([np.any(each) for each in speed]), len(sizes))
+        turned = np.append(np.flatnonzero([np.any(rates) for rates in speed]), len(sizes))
         return by_address(
             cls(
                 np.array([int(element.law) for element in elements], dtype=np.int64),
@@ -118,13 +118,15 @@ class Elements(NamedTuple):
     def prepare(self, addressed: Elements) -> None:
         """Compile the routines that its laws call; `addressed` are these elements as they take them."""
         present = (Law(law) for law in np.unique(self.law))
-        apart = [(law, each) for law in present for each in COMPILED[law].routines if not each.prepared]
-        common = [each for each in (evaluate_all, potential) if not each.prepared]
-        local = by_address(make_local(self, 0)) if apart or common else None
-        for law, each in apart:
-            each.prepare(by_address(getattr(self.laws, law.name.lower())), local)
-        for each in common:
-            each.prepare(addressed, local)
+        routines = [
+            (law, target) for law in present for target in COMPILED[law].routines if not target.prepared
+        ]
+        common = [target for target in (evaluate_all, potential) if not target.prepared]
+        local = by_address(make_local(self, 0)) if routines or common else None
+        for law, target in routines:
+            target.prepare(by_address(getattr(self.laws, law.name.lower())), local)
+        for target in common:
+            target.prepare(addressed, local)
 
 
 def make_local(elements: Elements, meshes: int) -> LocalState:
@@ -133,12 +135,9 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
     return LocalState.empty(elements.offset.size, most, meshes, elements.law.size, elements.drift.shape[0])
 
 
-# The dispatch is written from the list of laws: a chain of comparisons, each with the call of its law.
-
-
 def _call(law: Law, function: Callable[..., Any]) -> str:
-    own = {**_ARGUMENTS, "laws": f"elements.laws.{law.name.lower()}"}
-    return f"{function.__name__}({', '.join(own[name] for name in signature(function).parameters)})"
+    arguments = {**_ARGUMENTS, "laws": f"elements.laws.{law.name.lower()}"}
+    return f"{function.__name__}({', '.join(arguments[name] for name in signature(function).parameters)})"
 
 
 def _potential(law: Law, row: Compiled) -> str:
@@ -156,8 +155,8 @@ def _dispatch(name: str, branch: Callable[[Law, Compiled], str], otherwise: str)
     lines = [f"def {name}(elements, local, e):", "    kind = elements.law[e]"]
     for law, row in COMPILED.items():
         lines += [f"    {'if' if law == 0 else 'elif'} kind == {int(law)}:", f"        {branch(law, row)}"]
-    functions = [each for row in COMPILED.values() for each in (row.force, row.energy) if each is not None]
-    names = {each.__name__: each for each in functions} | {"__name__": __name__}
+    functions = [call for row in COMPILED.values() for call in (row.force, row.energy) if call is not None]
+    names = {call.__name__: call for call in functions} | {"__name__": __name__}
     text = "\n".join([*lines, f"    {otherwise}"])
     exec(text, names)
     names[name].__source__ = text  # no file has it
@@ -204,19 +203,19 @@ def power_along_axes(elements: Elements, local: LocalState, e: int) -> tuple[flo
 
     And the one that the table stores as it is read elsewhere along them.
     """
-    given, stored = 0.0, 0.0
+    power, stored = 0.0, 0.0
     if elements.law[e] == SPATIAL_FLANK:
         row, entry, laws = elements.first[e], elements.entry[e], elements.laws.spatial_flank
         for axis in range(2):
             to = laws.row[entry, axis]
             if to > 0:
-                given += local.elastic[row + to] * local.rate[row + to]
+                power += local.elastic[row + to] * local.rate[row + to]
         to_m, to_a = laws.row[entry, 0], laws.row[entry, 1]
         if laws.follows[entry, 0] + laws.follows[entry, 1] > 0:
             _, _, in_m, in_a = spatial_energy(laws, entry, local, row, elements.mesh[e])
             stored += in_m * local.rate[row + to_m] if to_m > 0 else 0.0
             stored += in_a * local.rate[row + to_a] if to_a > 0 else 0.0
-    return given, stored
+    return power, stored
 
 
 @inner

@@ -26,24 +26,12 @@ from dynamics.bearings.rolling_contact import (
     rolling_contact_energy,
 )
 from dynamics.bearings.spring_curve import SpringCurve, SpringCurveLaws, spring_curve, spring_curve_energy
-from dynamics.forces.frames import (
-    FrameCouplingLaws,
-    RotatingFrameLaws,
-    frame_coupling,
-    frame_coupling_energy,
-    rotating_frame,
-    rotating_frame_energy,
-)
+from dynamics.forces.frame_coupling import FrameCouplingLaws, frame_coupling, frame_coupling_energy
+from dynamics.forces.frames import RotatingFrameLaws, rotating_frame, rotating_frame_energy
 from dynamics.kernels.routine import Routine
-from dynamics.loads.load_laws import (
-    ForceCourseLaws,
-    SpeedTorqueLaws,
-    UnbalanceLaws,
-    applied_force,
-    speed_torque,
-    unbalance,
-    unbalance_energy,
-)
+from dynamics.loads.load_laws import ForceCourseLaws, applied_force
+from dynamics.loads.speed_torque_law import SpeedTorqueLaws, speed_torque
+from dynamics.loads.unbalance_law import UnbalanceLaws, unbalance, unbalance_energy
 from dynamics.meshes.flank_force import FlankLaws, flank, flank_energy
 from dynamics.meshes.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
 from dynamics.types import BoolArray, IntArray
@@ -103,7 +91,7 @@ class Compiled(NamedTuple):
     @property
     def routines(self) -> tuple[Routine, ...]:
         """All that is compiled apart, when a scene first has the law: flanks are part of every loop."""
-        return tuple(each for each in (*self.inside, self.force, self.energy) if isinstance(each, Routine))
+        return tuple(call for call in (*self.inside, self.force, self.energy) if isinstance(call, Routine))
 
 
 COMPILED = {

@@ -20,7 +20,8 @@ from dynamics.housings.mesh_files import SIZE, TEXTS, UNITS
 from dynamics.housings.mesh_worker import OtherCells, UnreadableMesh, mesh_arrays
 from dynamics.housings.step_worker import step_answer
 from dynamics.housings.tetrahedral_mesh import FACES
-from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, mesh_text
+from dynamics.mesh_content import mesh_text
+from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
 MOST_TRIANGLES = 20_000

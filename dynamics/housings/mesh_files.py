@@ -16,7 +16,8 @@ from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.housings.quadrature import determinants
 from dynamics.housings.tetrahedral_mesh import EDGES, TetrahedralMesh, raised
-from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES, check_mesh_content, mesh_text
+from dynamics.mesh_content import check_mesh_content, mesh_text
+from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
 

@@ -9,7 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, eigh
 
 from bounds import Quantity, Text
 from dynamics.bearings.matrix import Matrix, matrix_rows
@@ -20,6 +20,8 @@ from dynamics.housings.supports import SeatFrame
 from dynamics.joints import Housing
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import WorkCost
+from model_studies.netcdf import UnreadableFile
+from model_studies.record_file import read_record, write_record
 
 SCHEMA = "lineofaction reduced housing"
 SINGULAR = 1e-14
@@ -115,8 +117,6 @@ class ReducedHousing:
         Motions without mass are left out. The first `len(frequency)` are modes of the housing; the rest carry
         what its higher modes give statically.
         """
-        from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
-
         diagonal = np.diag(self.mass)
         scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
         if np.linalg.eigvalsh(scale[:, None] * self.mass * scale)[0] > SINGULAR:
@@ -128,8 +128,6 @@ class ReducedHousing:
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the housing; the file appears whole or not at all."""
-        from model_studies.record_file import write_record  # noqa: PLC0415 (start-up time)
-
         write_record(self, Path(path), SCHEMA)
 
     @classmethod
@@ -138,9 +136,6 @@ class ReducedHousing:
 
         Raises `ResultError`: the file is missing, damaged, or no reduced housing.
         """
-        from model_studies.netcdf import UnreadableFile  # noqa: PLC0415 (start-up time)
-        from model_studies.record_file import read_record  # noqa: PLC0415
-
         try:
             housing = read_record(Path(path), {SCHEMA: cls})
         except UnreadableFile as error:

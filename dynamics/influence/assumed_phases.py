@@ -10,7 +10,8 @@ from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.errors import DynamicsError
 from dynamics.influence.level_change import decibels
-from dynamics.influence.linear_figures import FEWER, POSITIONS, operating_conditions
+from dynamics.influence.linear_figures import POSITIONS
+from dynamics.influence.operating_conditions import FEWER, operating_conditions
 from dynamics.linearize.harmonic_response import bearing_forces
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.linearize.steady_vibration import Excited, excited, flank_forces, swept_vibration
@@ -109,11 +110,11 @@ def _change(at: Excited, angle: AssumedAngle, harmonics: IntArray, parts: Comple
     squares = np.einsum("amh,anh,mnsh->ash", phase.conj(), phase, products, optimize=True).real
     level = np.sqrt(np.maximum(np.max(squares, axis=1), 0.0))  # (angles, H)
     least, most = level.min(axis=0), level.max(axis=0)
-    heard = most > AUDIBLE * most.max(initial=0.0)
-    if not np.any(heard):
+    audible = most > AUDIBLE * most.max(initial=0.0)
+    if not np.any(audible):
         return {"decibels": 0.0, "order": 1.0}
     by_order = np.array([decibels(a, b) for a, b in zip(least, most, strict=True)])
-    index = int(np.argmax(np.where(heard, by_order, -1.0)))
+    index = int(np.argmax(np.where(audible, by_order, -1.0)))
     above = decibels(float(level[0, index]), float(most[index]))
     return {
         "decibels": float(by_order[index]),

@@ -22,14 +22,12 @@ from dynamics.influence.level_change import (
     in_relative,
     level_change,
 )
-from dynamics.influence.linear_figures import (
-    COMPARED,
+from dynamics.influence.linear_figures import COMPARED, LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import (
     FEWER,
     SPEEDS,
-    LinearFigures,
     OperatingCondition,
     conditions_at,
-    linear_figures,
     operating_conditions,
 )
 from dynamics.kernels.by_address import by_value
@@ -42,8 +40,6 @@ from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from model_studies import in_unit
 from model_studies.stage_clock import TimeTaken
-
-# The change by leaving an effect out, by linear theory: an ablation before integration.
 
 _Key = tuple[bytes | None, float, bool]
 _KNOWN: dict[_Key, dict[str, Influence]] = {}
@@ -142,12 +138,12 @@ class Influence:
     def to_json(self) -> Json:
         """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
         facts: Json = {"words": self.words}
-        for each in fields(self):
-            value, unit = getattr(self, each.name), each.metadata.get("unit")
+        for item in fields(self):
+            value, unit = getattr(self, item.name), item.metadata.get("unit")
             if isinstance(value, LevelChange):
-                facts[each.name] = asdict(value)
-            elif each.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
-                facts[f"{each.name}_{unit}" if unit else each.name] = np.asarray(value).tolist()
+                facts[item.name] = asdict(value)
+            elif item.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
+                facts[f"{item.name}_{unit}" if unit else item.name] = np.asarray(value).tolist()
         return facts
 
 
@@ -237,8 +233,8 @@ def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCos
     freedoms, switched = system.freedoms.column.size, len(_switchable(system))
     at = excited(system, 0.0, max(orders, FEWER))
     lines = (possible_lines(at, count, speed).size for count in (orders, FEWER))
-    each, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
-    return ResponseCost(each, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
+    seconds, fewer = (_VARYING + _SOLVED * freedoms**2 * count for count in lines)
+    return ResponseCost(seconds, _BEGUN + fewer * min(speed.size, SPEEDS), 1 + switched)
 
 
 def _influences(
@@ -351,9 +347,6 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
     size = np.broadcast_to(np.abs(np.asarray(value, dtype=float)), change.shape)
     part = np.divide(np.abs(change), size, out=np.zeros(change.shape), where=size > 0.0)
     return float(np.max(part, initial=0.0))
-
-
-# The decision of "auto" by a tolerance: effects too small to be seen are neglected, larger ones are on.
 
 
 @dataclass(frozen=True)

@@ -22,12 +22,12 @@ def sized_ledger(ledger: Json, automatic: Mapping[str, str], influences: Mapping
 
 
 def _sized(entry: Json, automatic: Mapping[str, str], influences: Mapping[str, Influence]) -> Json:
-    name, own = entry["effect"], dict(entry)
+    name, sized = entry["effect"], dict(entry)
     if entry["price"] and not entry["on"] and name in influences:
-        own["price"] = f"left out: {influences[name].words}"
+        sized["price"] = f"left out: {influences[name].words}"
     if name in automatic and entry["possible"]:
-        own |= {"choice": "auto", "reason": automatic[name], "price": ""}
-    return own
+        sized |= {"choice": "auto", "reason": automatic[name], "price": ""}
+    return sized
 
 
 def left_out_effects(ledger: EffectLedger, influences: Mapping[str, Influence]) -> Json:

@@ -6,13 +6,14 @@ import math
 from typing import NamedTuple
 
 from dynamics.arrays.arrays import SystemArrays
-from dynamics.integrators.explicit_step import accelerate, add_drive_work, explicit_step, write_powers
+from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
+from dynamics.integrators.instant_powers import add_drive_work, write_powers
 from dynamics.integrators.sampler import Sampler, SampleRing, move_sampled_trains, sample_step, store_if_due
+from dynamics.integrators.speed_jump import next_jump, step_to_jump
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LEVELS_PER_OCTAVE, LOSSES, Count, Workspace
 from dynamics.kernels.compiled import compiled, inner
-from dynamics.kernels.cubics import Cubics, piece_at
 from dynamics.motion.motion import SPEED, law_speed, write_motion
 from dynamics.motion.sampled_states import States
 from dynamics.types import RunStatus
@@ -21,10 +22,6 @@ SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its chan
 RISE_LIMIT = math.log2(2.0)
 FALL_LIMIT = math.log2(0.2)
 POSITION_LIMIT = 1.0 / 64.0  # base pitches
-ROUNDING = 4.0 * 2.0**-52
-"""Part of a knot's time by which a step ends before it: its last stage still sees the law's old piece."""
-SMOOTH = 1e-9
-"""Jump of an acceleration over what the law's pieces make of it, below which it is rounding."""
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
 UNSOLVED = 1e10  # the error of a step in which Newton's method failed
@@ -110,37 +107,6 @@ def next_level(work: Workspace, control: Control, error: float, accepted: bool) 
     return int(min(max(level, 0), smallest))
 
 
-# Compiled steps that end where a speed law has a knot: the inertia of the kinematic motion jumps there.
-
-
-@inner
-def _next_jump(laws: Cubics, time: float) -> float:
-    """Return when the next piece of any law begins if the slope jumps there; infinite if none does."""
-    nearest = math.inf
-    for k in range(laws.first.size - 1):
-        piece = piece_at(laws, k, time)
-        if piece + 1 < laws.first[k + 1]:
-            start, c = laws.start[piece + 1], laws.coefficient
-            s = start - laws.start[piece]
-            before = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
-            size = abs(c[piece, 1]) + abs(before) + abs(c[piece + 1, 1])
-            if abs(c[piece + 1, 1] - before) > SMOOTH * size:
-                nearest = min(nearest, start)
-    return nearest
-
-
-@inner
-def _step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float) -> int:
-    """Return the landing level, made to end at `jump`, if the step of `level` would pass it; else `level`."""
-    step = jump * (1.0 - ROUNDING) - work.time[0]
-    if not 0.0 < step <= work.step_sizes[level]:
-        return level
-    landing = int(work.step_sizes.size - 1)
-    work.step_sizes[landing] = step
-    work.ready[landing] = False
-    return landing
-
-
 def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: bool) -> None:
     """Compile the method that a run takes, and the powers if it audits them."""
     method = (implicit_step, solve_stage) if implicit else (explicit_step,)
@@ -182,8 +148,8 @@ def advance(
         if control.adaptive:
             level = _slow_enough(system, work, level)
             count[Count.LEVEL] = level
-            jump = _next_jump(system.reference.speed, work.time[0])
-            level = _step_to_jump(system, work, level, jump)
+            jump = next_jump(system.reference.speed, work.time[0])
+            level = step_to_jump(system, work, level, jump)
         landing = level == work.step_sizes.size - 1
         if control.implicit:
             solved = implicit_step(system, work, level, control.force_tolerance, control.audit)

@@ -208,7 +208,7 @@ class March:
     def structure(self) -> dict[Any, Known]:
         """What `advance` gets by address, and what of it belongs to the structure of the run."""
         known = {"work": Known.DIMENSIONS, "ring": Known.DIMENSIONS}
-        fixed = {each: known.get(name, Known.ALL) for name, each in self.compiled._asdict().items()}
+        fixed = {function: known.get(name, Known.ALL) for name, function in self.compiled._asdict().items()}
         return {**fixed, by_address(self.widths.states(0)): Known.WIDTHS}
 
     @property
@@ -335,13 +335,13 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
     end, before, points = float(work.time[0]), *(int(work.counts[at]) for at in (Count.OUTPUT, Count.POINT))
     samples = min((points - 1) // march.sampler.factor + 1, march.samples)
     room = sink.room(before, samples - before)
-    kept = [(part, part.copy()) for part in (work.counts, ring.point, ring.removed, ring.folded)]
+    copies = [(part, part.copy()) for part in (work.counts, ring.point, ring.removed, ring.folded)]
     work.counts[Count.FIRST_ROW] = before
-    held = passed.work, passed.sampler, passed.ring
-    continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
+    buffers = passed.work, passed.sampler, passed.ring
+    continue_past_the_end(*buffers, march.sampler.taps.size // 2, by_address(room))
     sink.keep(before, samples - before)
     figures = _sample_figures(march.system, ring, points, samples)
-    for part, values in kept:
+    for part, values in copies:
         part[...] = values
     final = _audited_energy(march.system, march.control, end, work)
     done = work.work.copy()

@@ -92,8 +92,8 @@ def choose_method(system: System, displacement: FloatArray, integration: Integra
     arrays, n = system.arrays, displacement.size
     at_rest = np.zeros(n)
     balance = force_balance(arrays, 0.0, displacement, at_rest, at_rest)
-    moved = np.linalg.solve(arrays.mass, np.hstack([balance.stiffness, balance.damping]))
-    first_order = np.vstack([np.eye(n, 2 * n, n), -moved])
+    response = np.linalg.solve(arrays.mass, np.hstack([balance.stiffness, balance.damping]))
+    first_order = np.vstack([np.eye(n, 2 * n, n), -response])
     rate = float(np.max(np.abs(np.linalg.eigvals(first_order)), initial=0.0))
     fastest, decay = _excited_motions(
         system, 0.5 * (balance.stiffness + balance.stiffness.T), balance.damping

@@ -25,12 +25,12 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.meshes.packed_tables import PackedTables
 from dynamics.meshes.table_lookup import deflection_from, level_below
+from dynamics.motion.local_accelerations import set_acceleration
 from dynamics.motion.motion import (
     MOTION_COLUMNS,
     QUANTUM,
     add_motion,
     move_free_trains,
-    set_acceleration,
     set_drift,
     set_phases,
     write_motion,
@@ -80,25 +80,29 @@ class Sampler(NamedTuple):
         static, nominal = system.flanks.static, system.flanks.nominal_force
         rows, n = system.arrays.direction.shape
         bodies, outputs = system.arrays.sparse.modal.first, system.scene.outputs
-        own, modal, first = np.arange(bodies), np.arange(n - bodies), rows + 2 * bodies + nominal.size
+        body, modal, first = (
+            np.arange(bodies),
+            np.arange(n - bodies),
+            rows + 2 * bodies + nominal.size,
+        )
         q, v = first + modal, first + modal.size + modal
-        channels = np.concatenate([np.arange(rows), rows + own, q, rows + bodies + own, v])
+        channels = np.concatenate([np.arange(rows), rows + body, q, rows + bodies + body, v])
         signals = system.bearing_map if outputs.bearing_forces else NO_SIGNALS
         bearings = signals._replace(column=channels[signals.column])
-        asked = outputs.displacements or outputs.accelerations
-        filtered = rows + 2 * (n if asked else bodies) + nominal.size
-        kept = n if asked or not _dispensable(system) else bodies
+        wanted = outputs.displacements or outputs.accelerations
+        filtered = rows + 2 * (n if wanted else bodies) + nominal.size
+        displacements = n if wanted or not _dispensable(system) else bodies
         level = [level_below(by_address(static), m, float(force)) for m, force in enumerate(nominal)]
-        rest = (np.array(level, dtype=np.int64), bearings, bodies, kept, filtered, whole)
+        rest = (np.array(level, dtype=np.int64), bearings, bodies, displacements, filtered, whole)
         taps, rate = sampling.filter_taps(), sampling.inner_rate
         return cls(taps, HIGH_PASS, sampling.factor, rate, static, nominal, *rest)
 
 
 def _dispensable(system: System) -> bool:
     """Return whether samples do without modal freedoms: they are of housings, and no law accelerates."""
-    own = system.freedoms.column[system.arrays.sparse.modal.first :]
+    columns = system.freedoms.column[system.arrays.sparse.modal.first :]
     unbalanced = unwrap(has_unbalance)(system.arrays.elements)  # as Python: not compiled for this alone
-    return bool(np.all(own >= system.rotors.first_of_housings)) and not unbalanced
+    return bool(np.all(columns >= system.rotors.first_of_housings)) and not unbalanced
 
 
 class _Peaks(NamedTuple):
@@ -220,9 +224,9 @@ def continue_past_the_end(
 def _mirror(ring: SampleRing, center: int, source: int, target: int) -> None:
     """Write the point `source`, turned about the point `center`, to `target`: values and trends go on."""
     size = ring.point.shape[0]
-    here, there, at = center % size, source % size, target % size
+    middle, origin, at = center % size, source % size, target % size
     for c in range(ring.point.shape[1]):
-        ring.point[at, c] = 2.0 * ring.point[here, c] - ring.point[there, c]
+        ring.point[at, c] = 2.0 * ring.point[middle, c] - ring.point[origin, c]
 
 
 @inner

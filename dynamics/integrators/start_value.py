@@ -106,9 +106,9 @@ class StartValue:
     def widened(self, states: States, march: March) -> States:
         """Return samples of the other march as those of `march`; elements beside its own carried no force."""
         rows = march.ring.local.force.size
-        to, kept = self._channels(march), states.filtered.shape[1]
+        to, width = self._channels(march), states.filtered.shape[1]
         filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
-        filtered[:, to[:kept]] = states.filtered
+        filtered[:, to[:width]] = states.filtered
         least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
         least[:, self.rows_of], largest[:, self.rows_of] = states.least, states.largest
         return states._replace(filtered=filtered, least=least, largest=largest)
@@ -123,13 +123,13 @@ class StartValue:
         self._fill_ring(march)
 
     def _fill_ring(self, march: March) -> None:
-        ring, rows, own = march.ring, march.ring.local.force.size, self.rows_of
+        ring, rows, sampled_rows = march.ring, march.ring.local.force.size, self.rows_of
         ring.point[...] = 0.0
         ring.point[:, self._channels(march)] = self.at.point
         ring.whole[...] = self.at.whole
         supports = np.arange(rows, ring.peaks.largest.size)
-        signals = np.concatenate([own, supports])
-        columns = (signals, signals, signals, own, own)
+        signals = np.concatenate([sampled_rows, supports])
+        columns = (signals, signals, signals, sampled_rows, sampled_rows)
         for target, known, to in zip(_figures(ring), self.at.figures, columns, strict=True):
             target[...] = 0.0
             target[..., to] = known

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
-import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
@@ -13,7 +11,7 @@ from typing import Any, BinaryIO, Protocol
 import numpy as np
 
 from dynamics.errors import InputError, ResultError
-from dynamics.kernels.by_address import by_value
+from dynamics.integrators.checkpoints import Arrays, read_checkpoint, write_checkpoint
 from dynamics.motion.sampled_states import States, Widths
 from dynamics.types import FloatArray
 from host import lock
@@ -21,9 +19,6 @@ from host import lock
 BLOCK = 8192
 """Samples that are in memory at once where a run is streamed, and that series are made of at once always, so
 that both ways give the same bits."""
-
-VERSION = 3
-Arrays = dict[str, Any]
 
 
 class StateSink(Protocol):
@@ -61,72 +56,6 @@ def blocks(samples: int) -> Iterator[tuple[int, int]]:
     """Yield first and last + 1 of the blocks of a run with that many samples."""
     for first in range(0, samples, BLOCK):
         yield first, min(first + BLOCK, samples)
-
-
-# Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
-
-
-def leaves_of(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield the dotted names and values of all that nested (named) tuples hold."""
-    state = by_value(state)
-    if not isinstance(state, tuple):
-        yield name, state
-        return
-    fields = getattr(state, "_fields", range(len(state)))
-    for field, value in zip(fields, state, strict=True):
-        yield from leaves_of(value, f"{name}.{field}" if name else str(field))
-
-
-def fingerprint(*parts: Any) -> str:
-    """Return the SHA-256 of names, types, shapes and bytes of everything in `parts`."""
-    digest = hashlib.sha256(f"checkpoint {VERSION}".encode())
-    for name, value in leaves_of(parts):
-        array = np.asarray(value)
-        digest.update(f"{name} {array.dtype.str} {array.shape};".encode())
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
-
-
-def restore(state: Any, arrays: Arrays, path: Path) -> None:
-    """Write `arrays` into the arrays of `state`, in place.
-
-    Raises
-    ------
-    ResultError
-        If one is missing or of another shape or type: the file is of another version of the program.
-    """
-    for name, target in leaves_of(state):
-        stored = arrays.get(name)
-        if stored is None or stored.shape != target.shape or stored.dtype != target.dtype:
-            raise ResultError(f"{path}: {name} is not that of this version. Start a new run.")
-        target[...] = stored
-
-
-def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
-    """Write the arrays of `state`, and `facts`, to a neighbor of `path`; then move it there in one step."""
-    part = path.with_suffix(".part")
-    with part.open("wb") as file:
-        np.savez(file, **dict(leaves_of(state)), **{f"fact {name}": value for name, value in facts.items()})
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
-
-
-def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
-    """Return the arrays of the state, and the facts.
-
-    Raises
-    ------
-    ResultError
-        If the file is damaged.
-    """
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            content = {name: file[name] for name in file.files}
-    except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
-        raise ResultError(f"{path.name}: not a readable checkpoint. Start a new run.") from error
-    facts = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
-    return {name: value for name, value in content.items() if name[:5] != "fact "}, facts
 
 
 class StateSpool:
@@ -167,9 +96,9 @@ class StateSpool:
 
     def keep(self, first: int, count: int) -> None:
         """Append."""
-        kept = self._room.rows(0, count)
+        rows = self._room.rows(0, count)
         self._file.seek(8 * self._record * first)
-        self._file.write(np.hstack([part.view(np.float64) for part in kept]).tobytes())
+        self._file.write(np.hstack([part.view(np.float64) for part in rows]).tobytes())
 
     def states(self, first: int, stop: int) -> States:
         """Read the records back."""
@@ -182,10 +111,10 @@ class StateSpool:
         self._file.seek(8 * record * first)
         content = self._file.read(8 * record * (stop - first))
         table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
-        q, v, carried, moved, *rest = (
+        q, v, carried, quanta, *rest = (
             np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
         )
-        return States(q, v, carried, moved.view(np.int64), *rest)
+        return States(q, v, carried, quanta.view(np.int64), *rest)
 
     def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
         """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.

@@ -103,10 +103,10 @@ class RestsBeside:
         """Return the rest of a system whose elements differ a little; its residual is that of the other."""
         arrays = at_mean_loads(system.arrays)
         local = local_state(arrays, self.time, self.displacement, np.zeros(self.displacement.size))
-        moved = self.compliance @ ((self.force - local.force) @ arrays.direction)
-        force = local.force + block_diagonal(arrays.elements, local.tangent) @ (arrays.direction @ moved)
+        shift = self.compliance @ ((self.force - local.force) @ arrays.direction)
+        force = local.force + block_diagonal(arrays.elements, local.tangent) @ (arrays.direction @ shift)
         flanks = force[system.driving_rows]
-        return StaticSolution(StaticStatus.CONVERGED, self.displacement + moved, flanks, self.residual, 1)
+        return StaticSolution(StaticStatus.CONVERGED, self.displacement + shift, flanks, self.residual, 1)
 
 
 def _external(system: System, time: float) -> FloatArray:
@@ -225,10 +225,10 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
 
     Nothing holds a free train, and no force is left along its motion: without that it could rest anywhere.
     """
-    own = arrays.reference.freedom[arrays.reference.freedom >= 0]
-    held = np.zeros((own.size, len(q)))
-    held[np.arange(own.size), own] = float(np.max(np.abs(matrix), initial=1.0))
-    left, right = np.concatenate([matrix, held]), np.concatenate([force, -held @ q])
+    trains = arrays.reference.freedom[arrays.reference.freedom >= 0]
+    constraint = np.zeros((trains.size, len(q)))
+    constraint[np.arange(trains.size), trains] = float(np.max(np.abs(matrix), initial=1.0))
+    left, right = np.concatenate([matrix, constraint]), np.concatenate([force, -constraint @ q])
     return np.asarray(np.linalg.lstsq(left, right, rcond=1e-14)[0])
 
 

@@ -162,8 +162,8 @@ class Housing:
     @property
     def columns(self) -> tuple[int, ...]:
         """Rows of the matrix among the five directions of all seats, without rotations about z."""
-        kept = min(self.per_seat, SEAT)
-        return tuple(SEAT * seat + kind for seat in range(len(self.bushings)) for kind in range(kept))
+        amplitudes = min(self.per_seat, SEAT)
+        return tuple(SEAT * seat + kind for seat in range(len(self.bushings)) for kind in range(amplitudes))
 
     @property
     def own_columns(self) -> tuple[int, ...]:
@@ -182,11 +182,11 @@ class Housing:
         stiffness = np.array(self.stiffness, dtype=float)
         damping = np.zeros_like(stiffness) if self.damping is None else np.array(self.damping, dtype=float)
         stiffness, damping = 0.5 * (stiffness + stiffness.T), 0.5 * (damping + damping.T)
-        kept = np.array(self.own_columns, dtype=np.int64)
-        out = np.setdiff1d(np.arange(rows), kept)
-        follow = np.zeros((rows, kept.size))
-        follow[kept] = np.eye(kept.size)
-        follow[out] = -np.linalg.pinv(stiffness[np.ix_(out, out)]) @ stiffness[np.ix_(out, kept)]
+        columns = np.array(self.own_columns, dtype=np.int64)
+        out = np.setdiff1d(np.arange(rows), columns)
+        follow = np.zeros((rows, columns.size))
+        follow[columns] = np.eye(columns.size)
+        follow[out] = -np.linalg.pinv(stiffness[np.ix_(out, out)]) @ stiffness[np.ix_(out, columns)]
         return follow.T @ stiffness @ follow, follow.T @ damping @ follow
 
 

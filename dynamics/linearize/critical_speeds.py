@@ -9,57 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at, terms_at
+from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.linearize.operating_speeds import law_speeds, mesh_frequencies
+from dynamics.linearize.operating_speeds import mesh_frequencies
+from dynamics.linearize.speed_matrices import SpeedMatrices, speed_matrices
 from dynamics.types import ComplexArray, FloatArray, IntArray
-
-# The matrices of a rotating system as polynomials of speed, in meters.
 
 CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
 ITERATIONS = 12
 HALVINGS = 12
 ALIKE = 0.5  # modal assurance with the mode at either speed
-
-
-@dataclass(frozen=True)
-class _SpeedMatrices:
-    """P(s, W) = s^2 M + s (C + W G) + K + W S + W^2 T of n freedoms in meters, W the leading law's speed.
-
-    Gyroscopic terms G grow with the speed, centripetal ones T with its square, dampers across frames (S) with
-    it.
-    """
-
-    mass: FloatArray
-    damping: FloatArray
-    stiffness: FloatArray
-    gyroscopic: FloatArray
-    swept: FloatArray
-    centripetal: FloatArray
-
-    def at(self, eigenvalue: complex, speed: float) -> ComplexArray:
-        """Return P."""
-        rate = self.damping + speed * self.gyroscopic
-        rest = self.stiffness + speed * self.swept + speed**2 * self.centripetal
-        return np.asarray(eigenvalue**2 * self.mass + eigenvalue * rate + rest)
-
-    def by_eigenvalue(self, eigenvalue: complex, speed: float) -> ComplexArray:
-        """Return dP/ds."""
-        return np.asarray(2.0 * eigenvalue * self.mass + self.damping + speed * self.gyroscopic)
-
-    def by_speed(self, eigenvalue: complex, speed: float) -> ComplexArray:
-        """Return dP/dW."""
-        return np.asarray(eigenvalue * self.gyroscopic + self.swept + 2.0 * speed * self.centripetal)
-
-
-def _speed_matrices(system: System, linear: LinearSystem, speed: float) -> _SpeedMatrices:
-    """Return the matrices, their speed terms from those at `speed` (rad/s, not 0) and at twice that."""
-    per_meter = 1.0 / linear.scale
-    gyroscopic, once = terms_at(system, law_speeds(system, speed))
-    twice = terms_at(system, law_speeds(system, 2.0 * speed))[1]
-    swept, centripetal = (4.0 * once - twice) / (2.0 * speed), (twice - 2.0 * once) / (2.0 * speed**2)
-    parts = (linear.mass, linear.damping, linear.stiffness, gyroscopic / speed, swept, centripetal)
-    return _SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))
 
 
 @dataclass(frozen=True)
@@ -88,7 +47,7 @@ def critical_speeds(
     method finds eigenvector, damping and speed together.
     """
     turns = float(np.max(branches.speed, initial=0.0))
-    matrices = _speed_matrices(system, linear, turns) if turns > 0.0 else None
+    matrices = speed_matrices(system, linear, turns) if turns > 0.0 else None
     per_speed = mesh_frequencies(system, np.ones(1))[:, 0] if branches.speed.size else np.empty(0)
     rows: list[tuple[_Crossing, int, int, int]] = []
     for mesh, rate in enumerate(per_speed):
@@ -148,7 +107,7 @@ def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Betw
     return _Between(speed, frequency - rate * speed, frequency, ratio, shape, rate)
 
 
-def _refined(system: System, linear: LinearSystem, matrices: _SpeedMatrices, between: _Between) -> _Crossing:
+def _refined(system: System, linear: LinearSystem, matrices: SpeedMatrices, between: _Between) -> _Crossing:
     """Find a crossing.
 
     Where Newton's method leaves the two speeds or the mode (modes that veer), they are halved: the mode in
@@ -164,7 +123,7 @@ def _refined(system: System, linear: LinearSystem, matrices: _SpeedMatrices, bet
     return _Crossing(*(float(value[end]) for value in values))
 
 
-def _newton(linear: LinearSystem, matrices: _SpeedMatrices, between: _Between) -> _Crossing | None:
+def _newton(linear: LinearSystem, matrices: SpeedMatrices, between: _Between) -> _Crossing | None:
     """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None without convergence to it.
 
     The steps x + dx = -P^-1 (P_s ds + P_W dW) x keep c^H x = 1, c along the first guess: a complex equation
@@ -191,18 +150,18 @@ def _newton(linear: LinearSystem, matrices: _SpeedMatrices, between: _Between) -
         both = np.array([columns.real, columns.imag])
         if abs(np.linalg.det(both)) == 0.0 or not np.all(np.isfinite(both)):
             return None
-        change, moved = np.linalg.solve(both, [-1.0, 0.0])
-        x = -(by_value * (change + 1j * per_speed * moved) + by_speed * moved)
-        decay, speed = decay + float(change), speed + float(moved)
+        change, shift = np.linalg.solve(both, [-1.0, 0.0])
+        x = -(by_value * (change + 1j * per_speed * shift) + by_speed * shift)
+        decay, speed = decay + float(change), speed + float(shift)
         if not low - (high - low) <= speed <= high + (high - low):
             return None
-        if abs(complex(change, per_speed * moved)) <= CLOSE * abs(value):
+        if abs(complex(change, per_speed * shift)) <= CLOSE * abs(value):
             return _accepted(linear, matrices, between, x, complex(decay, per_speed * speed))
     return None
 
 
 def _accepted(
-    linear: LinearSystem, matrices: _SpeedMatrices, between: _Between, x: ComplexArray, value: complex
+    linear: LinearSystem, matrices: SpeedMatrices, between: _Between, x: ComplexArray, value: complex
 ) -> _Crossing | None:
     """Return the crossing if it is between the speeds and of the mode."""
     frequency = value.imag / (2.0 * math.pi)

@@ -2,240 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from bounds.brief import brief
 from dynamics.assembly.assemble import System
-from dynamics.assembly.motion_and_loads import drive_springs
-from dynamics.bearings.seat import SEAT
 from dynamics.errors import InputError
-from dynamics.forces.laws import Law
-from dynamics.linearize.flank_cycles import FlankCycle
 from dynamics.linearize.harmonic_response import (
     HarmonicResponse,
     excited_lines,
     response_of,
     varied_floor,
 )
-from dynamics.linearize.linear_system import HELD_BY, LinearSystem, natural_modes
-from dynamics.linearize.load_harmonics import load_cycles, load_harmonics
+from dynamics.linearize.linear_system import HELD_BY
+from dynamics.linearize.load_harmonics import load_cycles
+from dynamics.linearize.natural_modes import natural_modes
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
+from dynamics.linearize.power_balance import PowerBalance, power_balance
 from dynamics.linearize.steady_vibration import (
     Excited,
-    Steady,
-    gyroscopic_terms,
     heard_harmonics,
-    speed_blocks,
 )
 from dynamics.linearize.strongest_lines import require_memory
 from dynamics.linearize.varying_stiffness import varied_vibration
-from dynamics.mechanism.columns import elastic_columns, elastic_terms, housing_columns
-from dynamics.mechanism.connections import frame_couplings
-from dynamics.motion.force_balance import swept_by_frames
-from dynamics.motion.observation import local_state
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
-from dynamics.types import ComplexArray, FloatArray, Json
+from dynamics.types import FloatArray, Json
 from host import cpu_seconds
 
-# The parts of a linearized system that take power from its vibration, each assembled by itself.
-
-
 KINDS = (*HELD_BY, "load", "frame")
-FLANKS = (Law.FLANK, Law.SPATIAL_FLANK)
-LOADS = "loads"
-FRAMES = "rotating frames"
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
-
-
-@dataclass(frozen=True)
-class _Absorber:
-    """A part with k coordinates y = rows q, whose force against its motion is stiffness y + damping y'."""
-
-    name: str
-    kind: str
-    """`name`, `kind`: Of the part; one of `KINDS`."""
-    rows: FloatArray
-    """Shape (k, n)."""
-    stiffness: FloatArray
-    damping: FloatArray
-    """`stiffness`, `damping`: N/m, N s/m. A symmetric stiffness takes no power over a cycle, and is 0 where
-    it is known to be. Shape (k, k) each.
-    """
-
-
-def _elements(
-    system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
-) -> Iterator[_Absorber]:
-    """Yield the force elements but those of rotating frames."""
-    arrays, elements = system.arrays, system.arrays.elements
-    rest = np.zeros(arrays.mass.shape[0])
-    local = local_state(arrays, time, linear.equilibrium.displacement, rest)
-    tangents = local.tangent - swept_by_frames(elements, local, local.pace)
-    for e, (first, end) in enumerate(zip(elements.first[:-1], elements.first[1:], strict=True)):
-        if elements.law[e] == Law.ROTATING_FRAME:
-            continue
-        own = slice(first, end)
-        tangent = cycles[e].tangent if e < len(cycles) else tangents[own, : end - first]
-        damping = local.viscous[own, : end - first]
-        yield _Absorber(*_element_part(system, e), arrays.direction[own], tangent, damping)
-
-
-def _element_part(system: System, element: int) -> tuple[str, str]:
-    """Return the name of the part that a force element belongs to, and its kind."""
-    scene, elements = system.scene, system.arrays.elements
-    law, entry, count = elements.law[element], int(elements.entry[element]), elements.law.size
-    on_bearings = (*system.housed, *system.bearings)
-    if element >= count - len(on_bearings):
-        return on_bearings[element - count].name, "bearing"
-    if law in FLANKS:
-        return scene.meshes[int(elements.mesh[element])].name, "mesh"
-    if law == Law.FRAME_COUPLING:
-        return system.couplings.name[frame_couplings(scene)[entry].coupling], "coupling"
-    if law == Law.SPEED_TORQUE:
-        return scene.speed_torques[entry].name, "load"
-    loads = scene.forces if law == Law.APPLIED_FORCE else scene.unbalances
-    return loads[entry].name, "load"
-
-
-def _bearings(system: System) -> Iterator[_Absorber]:
-    """Yield linear bearings: those that are springs, and groups with matrices, on a massless housing one."""
-    supports, seats, keep = system.supports, system.seats, system.freedoms.keep
-    held = ~supports.carried
-    for index in np.flatnonzero(held):
-        damping = np.diag(supports.damping[index])
-        yield _damper(supports.name[index], "bearing", keep(supports.motion[index]), damping)
-    on = np.repeat(held[seats.support], SEAT)
-    for name, at in seats.group:
-        yield _damper(name, "bearing", keep(seats.motion[at]), seats.damping[at, at] * on[at])
-
-
-def _couplings(system: System) -> Iterator[_Absorber]:
-    """Yield couplings, as far as no frame turns them, and elastic drives."""
-    couplings, keep = system.couplings, system.freedoms.keep
-    for name, motion, damping in zip(couplings.name, couplings.motion, couplings.damping, strict=True):
-        yield _damper(name, "coupling", keep(motion), damping)
-    for _, drive, row in drive_springs(system.scene, system.kinematics, system.rotors, system.freedoms):
-        yield _damper(drive.name, "drive", row[None, :], np.array([[drive.damping]]))
-
-
-def _bodies(system: System) -> Iterator[_Absorber]:
-    """Yield the shafts that bend and the housings that move."""
-    rotors, dampers = system.rotors, elastic_terms(system.rotors)[1]
-    columns = [(rotor.shaft.name, "shaft", elastic_columns(rotors, i)) for i, rotor in enumerate(rotors)]
-    columns += [(part.name, "housing", housing_columns(rotors, i)) for i, part in enumerate(rotors.housings)]
-    for name, kind, own in columns:
-        yield _damper(name, kind, system.freedoms.motion[own], dampers[own, own])
-
-
-def _damper(name: str, kind: str, rows: FloatArray, damping: FloatArray) -> _Absorber:
-    return _Absorber(name, kind, rows, np.zeros_like(damping), damping)
-
-
-# Power balance of a harmonic vibration: what excitation puts in, and what parts lose, by harmonic.
-
-
-@dataclass(frozen=True)
-class _PowerBalance:
-    """Mean powers of H harmonics at S speeds, W; p sources, a sinks."""
-
-    source: tuple[str, ...]
-    """Meshes, by their transmission errors; `LOADS`: forces and unbalances, where they excite."""
-    input: FloatArray
-    """By each, negative where it brakes the vibration. Shape (p, S, H)."""
-    sink: tuple[str, ...]
-    kind: tuple[str, ...]
-    """`sink`, `kind`: Parts and what they are, one of `KINDS`."""
-    loss: FloatArray
-    """In each. A mesh whose friction feeds the vibration has a negative one. Shape (a, S, H)."""
-
-    @property
-    def fields(self) -> dict[str, Any]:
-        """The fields of `ForcedResponse` that hold it."""
-        own = {"source": self.source, "input": self.input, "sink": self.sink}
-        own |= {"sink_kind": self.kind, "loss": self.loss}
-        return {f"power_{name}": value for name, value in own.items()}
-
-    @property
-    def residual(self) -> float:
-        """Power that is put in and lost nowhere over that put in, all harmonics, at the worst speed."""
-        missing = np.abs(np.sum(self.input, axis=0) - np.sum(self.loss, axis=0)).sum(axis=-1)
-        turned = np.abs(self.input).sum(axis=(0, 2))
-        return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
-
-    def by_kind(self) -> dict[str, FloatArray]:
-        """Return what parts of a kind lose together, all harmonics, (S,)."""
-        total = np.sum(self.loss, axis=2)
-        return {
-            kind: np.sum(total[[own == kind for own in self.kind]], axis=0)
-            for kind in dict.fromkeys(self.kind)
-        }
-
-
-def _power_balance(at: Excited, speed: FloatArray, steady: Steady) -> _PowerBalance:
-    """Return where the power of a vibration at `speed` (S,) comes from and goes to.
-
-    Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
-    assembled by itself, so the residual tells what the linear solves and the sum of the parts leave.
-    """
-    gained: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
-    lost: dict[tuple[str, str], list[FloatArray]] = {}
-    loaded = False
-    for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
-        u, own = steady.displacement[part], dict[tuple[str, str], FloatArray]()
-        rate = 1j * steady.omega[part, :, None] * u
-        for name, cycle in zip(gained, at.cycles, strict=False):
-            along = rate @ at.system.arrays.direction[cycle.rows].T
-            force = steady.force if len(steady.force) == 1 else steady.force[part]
-            gained[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
-        loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
-        loaded = loaded or bool(np.any(loads))
-        gained.setdefault(LOADS, []).append(_power(loads, rate))
-        for name, kind, power in _losses(at, speed[part], u, rate):
-            own[name, kind] = own.get((name, kind), 0.0) + power
-        for key, power in own.items():
-            lost.setdefault(key, []).append(power)
-    if not loaded:
-        gained.pop(LOADS, None)
-    return _PowerBalance(
-        tuple(gained),
-        np.array([np.concatenate(each) for each in gained.values()]).reshape(-1, *steady.omega.shape),
-        tuple(name for name, _ in lost),
-        tuple(kind for _, kind in lost),
-        np.array([np.concatenate(each) for each in lost.values()]).reshape(-1, *steady.omega.shape),
-    )
-
-
-def _losses(
-    at: Excited, speed: FloatArray, u: ComplexArray, rate: ComplexArray
-) -> Iterable[tuple[str, str, FloatArray]]:
-    """Yield name, kind and power (S, H) of parts; one part may come several times.
-
-    The sum of all parts with damping about the equilibrium, driving flanks by their mean tangents, is the
-    damping of `LinearSystem`; what gyroscopic and frame terms do comes last.
-    """
-    elements = _elements(at.system, at.linear, at.cycles, at.time)
-    for part in (*elements, *_bearings(at.system), *_couplings(at.system), *_bodies(at.system)):
-        if not (np.any(part.damping) or np.any(part.stiffness)):
-            continue
-        along = rate @ part.rows.T
-        force = (u @ part.rows.T) @ part.stiffness.T + along @ part.damping.T
-        yield part.name, part.kind, _power(force, along)
-    if at.turning:
-        terms = gyroscopic_terms(at.system, speed)
-        damping, stiffness = (np.stack([term[k] for term in terms]) for k in (0, 1))
-        force = np.einsum("sij,shj->shi", damping, rate) + np.einsum("sij,shj->shi", stiffness, u)
-        yield FRAMES, "frame", _power(force, rate)
-
-
-def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
-    """Return the mean power of forces (..., k) on rates (..., k), peak amplitudes, W."""
-    return np.asarray(0.5 * np.real(np.sum(force * rate.conj(), axis=-1)))
 
 
 @brief
@@ -296,9 +95,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         ArrayFile.to_netcdf(replace(self, floor=None), path)
 
     @property
-    def power(self) -> _PowerBalance:
+    def power(self) -> PowerBalance:
         """Where the power of the vibration comes from and goes to, with the residual of the balance."""
-        return _PowerBalance(
+        return PowerBalance(
             self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
         )
 
@@ -347,7 +146,7 @@ def forced_response(
     if not harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     steady, *largest = varied_vibration(at, speeds, harmonics, progress)
-    response, power = response_of(at, speeds, steady), _power_balance(at, speeds, steady)
+    response, power = response_of(at, speeds, steady), power_balance(at, speeds, steady)
     response = replace(response, floor=varied_floor(at, speeds, lines, response))
     floor, floor_error = (np.empty((0, 0)),) * 2 if response.floor is None else response.floor.of_bearings()
     seconds["response"] = cpu_seconds() - began
@@ -426,11 +225,11 @@ def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:
         gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0, initial=0.0)] * len(names)
         inner = amplitude[:, 1:-1]
         maxima = np.nonzero((inner > amplitude[:, :-2]) & (inner >= amplitude[:, 2:]))
-        own = [
+        candidates = [
             _peak(response, quantity, names[k], (s + 1, h), float(amplitude[k, s + 1, h]), gains[k])
             for k, s, h in zip(*(index.tolist() for index in maxima), strict=True)
         ]
-        rows += sorted(own, key=lambda peak: -peak.amplitude)
+        rows += sorted(candidates, key=lambda peak: -peak.amplitude)
     return tuple(rows)
 
 

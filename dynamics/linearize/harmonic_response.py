@@ -16,7 +16,6 @@ from dynamics.checks import integer, one_of, positive
 from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.line_floor import LineFloor, floor_frequencies, floor_inputs
-from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.linearize.steady_vibration import (
     EXCITATIONS,
@@ -27,16 +26,11 @@ from dynamics.linearize.steady_vibration import (
     receptances,
     speed_blocks,
     steady_vibration,
-    swept_vibration,
 )
 from dynamics.linearize.strongest_lines import Lines, strongest_lines
-from dynamics.linearize.varying_stiffness import varied
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-
-# Harmonic forced response to the transmission error, about the static equilibrium, over speeds.
-
 
 GRID = ("speed", "order")
 MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
@@ -207,8 +201,8 @@ def varied_floor(
     listed = 0.5 * np.sum(np.abs(shared[:, :3]) ** 2, axis=(1, 3))
     change = 0.5 * np.sum(np.abs(changed[:, :3]) ** 2, axis=(1, 3))
     part = np.sqrt(change / np.maximum(listed, 1e-300))
-    beside = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
-    return replace(floor, changed=2.0 * part * beside + part**2)
+    factor = 1.0 + np.sqrt(listed / np.maximum(squares, 1e-300))
+    return replace(floor, changed=2.0 * part * factor + part**2)
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
@@ -241,7 +235,7 @@ def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicRespo
 
 def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
     """Return the harmonics of moments (N m) and friction (N) of the static mesh forces, (2, m, H)."""
-    elements, found = at.system.arrays.elements, np.zeros((2, len(at.cycles), harmonics.size), dtype=complex)
+    elements, loads = at.system.arrays.elements, np.zeros((2, len(at.cycles), harmonics.size), dtype=complex)
     laws = elements.laws.spatial_flank
     for mesh, cycle in enumerate(at.cycles):
         if elements.law[mesh] != Law.SPATIAL_FLANK:
@@ -250,10 +244,10 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
         tilting, _, sliding = (int(row) for row in laws.row[entry])
         if laws.per_face[entry] > 0.0:
             moment = -cycle.force[:, tilting] / laws.per_face[entry]
-            found[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
+            loads[0, mesh] = harmonics_of(at, mesh, moment, harmonics)
         if sliding > 0:
-            found[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
-    return found
+            loads[1, mesh] = harmonics_of(at, mesh, cycle.force[:, sliding], harmonics)
+    return loads
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
@@ -306,12 +300,15 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
-    own = harmonic % harmonic[:1] == 0
-    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(own):
+    whole = harmonic % harmonic[:1] == 0
+    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(whole):
         if order.size > MOST_PARTED:
             most = np.sum(np.abs(amplitude), axis=-1)
             return -most, most
-        parts = extremes(amplitude[..., own], order[own]), extremes(amplitude[..., ~own], order[~own])
+        parts = (
+            extremes(amplitude[..., whole], order[whole]),
+            extremes(amplitude[..., ~whole], order[~whole]),
+        )
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     if samples > MOST_SAMPLES:
         samples = next_fast_len(samples, real=True)
@@ -332,44 +329,3 @@ def _harmonics(order: tuple[float, ...]) -> IntArray:
     scale = math.lcm(*(part.denominator for part in parts))
     multiples = [int(part * scale) for part in parts]
     return np.array(multiples, dtype=np.int64) // max(math.gcd(*multiples), 1)
-
-
-def parametric_response(
-    at: Excited,
-    speed: FloatArray,
-    rate: FloatArray,
-    orders: int = 10,
-    gyroscopic: bool = False,
-    varying: bool = True,
-) -> tuple[HarmonicResponse, FloatArray]:
-    """Return the response of a system to its errors and loads, the stiffness varying with position: `varied`.
-
-    And by how much the mean transmission errors differ from the mean static ones, (m, S), m.
-
-    Parameters
-    ----------
-    speed, rate : (S,) arrays
-        Of the leading law, rad/s, and how fast it changes, rad/s^2.
-    orders : int
-        Harmonics of each mesh.
-    gyroscopic : bool
-        With gyroscopic and frame terms.
-    varying : bool
-        False: with mean tangents, whose errors have the static means.
-    """
-    harmonics = _all_harmonics(at, orders, speed)
-    steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
-    if not varying:
-        return response_of(at, speed, steady), np.zeros((len(at.cycles), speed.size))
-    steady, shift = varied(at, steady)
-    return response_of(at, speed, steady), shift
-
-
-def _all_harmonics(at: Excited, orders: int, speed: FloatArray) -> IntArray:
-    """Return the multiples of the common period's frequency at which meshes (to `orders`) or loads excite."""
-    multiples = set(load_multiples(at.system, at.period, float(np.max(np.abs(speed))), at.time).tolist())
-    for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
-        period = mesh.table.period
-        step = abs(pitches) // period
-        multiples |= {step * k for k in range(1, orders * period + 1)} if step else set()
-    return strongest_lines(at, np.array(sorted(multiples), dtype=np.int64), speed).harmonics

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.linearize.linear_system import natural_modes
+from dynamics.linearize.natural_modes import natural_modes
 from dynamics.linearize.steady_vibration import Excited, flank_forces
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
@@ -47,7 +47,7 @@ class FloorPower(NamedTuple):
         """Return the sum of several powers of the same lines."""
         power = np.sum([part.power for part in parts], axis=0)
         share = [part.power / np.maximum(power, 1e-300) for part in parts]
-        mean = np.sum([part.frequency * own for part, own in zip(parts, share, strict=True)], axis=0)
+        mean = np.sum([part.frequency * ratio for part, ratio in zip(parts, share, strict=True)], axis=0)
         frequency = np.where(power > 0.0, mean, parts[0].frequency)
         return cls(frequency, power, np.sum([part.missed for part in parts], axis=0))
 
@@ -99,12 +99,12 @@ class LineFloor:
         """Return the mean squares of the forces on bearings, (b, S) N^2, and their errors."""
         squares = [self.of_bearing(index) for index in range(len(self.bearing))]
         shape = len(squares), self.pace.size
-        power = np.reshape([np.sum(each.power, axis=1) for each in squares], shape)
-        return power, np.reshape([np.sum(each.missed, axis=1) for each in squares], shape)
+        power = np.reshape([np.sum(square.power, axis=1) for square in squares], shape)
+        return power, np.reshape([np.sum(square.missed, axis=1) for square in squares], shape)
 
     def _along(self, hertz: FloatArray, products: Iterable[FloatArray], form: list[FloatArray]) -> FloatArray:
         terms = zip(products, form, strict=True)
-        return np.asarray(sum(own * np.interp(hertz, self.frequency, term) for own, term in terms))
+        return np.asarray(sum(column * np.interp(hertz, self.frequency, term) for column, term in terms))
 
     @staticmethod
     def _bin(hertz: FloatArray) -> IntArray:
@@ -115,8 +115,8 @@ class LineFloor:
         """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
-        missed = np.square(np.maximum(step[1:], step[:-1])) * bend * MISSED
-        return np.concatenate([missed[:1], missed, missed[-1:]])
+        curvature_error = np.square(np.maximum(step[1:], step[:-1])) * bend * MISSED
+        return np.concatenate([curvature_error[:1], curvature_error, curvature_error[-1:]])
 
 
 def _of_three(size: FloatArray) -> FloatArray:
@@ -127,16 +127,16 @@ def _of_three(size: FloatArray) -> FloatArray:
 
 def _real_terms(matrix: ComplexArray) -> list[FloatArray]:
     """Return the terms (G,) of Hermitian forms that `_products` multiply, diagonals first."""
-    own = range(matrix.shape[1])
-    mixed = [matrix[:, a, b] for a in own for b in own[a + 1 :]]
-    return [matrix[:, a, a].real for a in own] + [part for each in mixed for part in (each.real, each.imag)]
+    axis = range(matrix.shape[1])
+    mixed = [matrix[:, a, b] for a in axis for b in axis[a + 1 :]]
+    return [matrix[:, a, a].real for a in axis] + [part for term in mixed for part in (term.real, term.imag)]
 
 
 def _products(inputs: ComplexArray) -> list[FloatArray]:
-    own = range(len(inputs))
-    squares = [np.square(np.abs(each)) for each in inputs]
-    mixed = [2.0 * inputs[a].conj() * inputs[b] for a in own for b in own[a + 1 :]]
-    return squares + [part for each in mixed for part in (each.real, -each.imag)]
+    single = range(len(inputs))
+    squares = [np.square(np.abs(term)) for term in inputs]
+    mixed = [2.0 * inputs[a].conj() * inputs[b] for a in single for b in single[a + 1 :]]
+    return squares + [part for term in mixed for part in (term.real, -term.imag)]
 
 
 class FloorInputs(NamedTuple):
@@ -163,8 +163,8 @@ def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
 def floor_frequencies(at: Excited, lowest: float, highest: float) -> FloatArray:
     """Return frequencies (G,) from `lowest` to `highest`, Hz, that resolve every mode of the system."""
     modes = natural_modes(at.linear)
-    own = modes.frequency > 0.0
-    natural, ratio = modes.frequency[own], np.maximum(modes.damping_ratio[own], LEAST_RATIO)
+    elastic = modes.frequency > 0.0
+    natural, ratio = modes.frequency[elastic], np.maximum(modes.damping_ratio[elastic], LEAST_RATIO)
     hertz = [lowest]
     while hertz[-1] < highest:
         near = OF_MODE * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))

@@ -2,39 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.linalg import eigh, null_space
 
-from bounds import engineering
 from dynamics.assembly.assemble import System
 from dynamics.assembly.motion_and_loads import drive_springs
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.mechanism.columns import elastic_terms
-from dynamics.mechanism.connections import frame_couplings, frame_joint
+from dynamics.mechanism.frame_couplings import frame_couplings, frame_joint
 from dynamics.motion.force_balance import at_mean_loads, force_balance
 from dynamics.motion.observation import local_state
-from dynamics.types import ComplexArray, FloatArray
+from dynamics.types import FloatArray
 
 HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
-MOVES = {
-    "x": "lateral",
-    "y": "lateral",
-    "z": "axial",
-    "tilt_x": "tilting",
-    "tilt_y": "tilting",
-    "rotation": "torsional",
-    "bending_x": "bending",
-    "bending_y": "bending",
-    "stretch": "axial",
-    "twist": "torsional",
-    "mode": "housing",
-}
 
 
 @dataclass(frozen=True)
@@ -150,8 +132,8 @@ def _springs(
     ]
     for index, name in enumerate(supports.name):
         if index not in system.seats.support:
-            own = zip("xyz", moves[index], supports.stiffness[index], strict=True)
-            springs += [(f"{name}.{axis}", row, value) for axis, row, value in own]
+            direction_of = zip("xyz", moves[index], supports.stiffness[index], strict=True)
+            springs += [(f"{name}.{axis}", row, value) for axis, row, value in direction_of]
     for name, motion, matrix in _matrices(system, time, tangent):
         values, vectors = np.linalg.eigh(matrix)
         principal = zip(values, vectors.T, strict=True)
@@ -166,139 +148,3 @@ def _springs(
         np.array([row for _, row, _ in springs]).reshape(len(springs), direction.shape[1]),
         np.array([value for _, _, value in springs], dtype=float),
     )
-
-
-# Distribution of the energy of a mode: strain energy by spring, kinetic energy by freedom.
-
-
-def strain_shares(
-    linear: LinearSystem, shape: FloatArray | ComplexArray, still: NDArray[np.bool_] | None = None
-) -> FloatArray:
-    """Return the share of each spring in the strain energy of each mode, (a, p); mean over a cycle.
-
-    `shape` (a, n) holds one mode per row; those that are `still` (a,), motions that nothing resists, get 0.
-    """
-    energy = linear.spring_stiffness * np.abs(shape @ linear.strain.T) ** 2
-    total = np.sum(energy, axis=1, keepdims=True)
-    none = total <= 0.0 if still is None else (total <= 0.0) | still[:, None]
-    return np.asarray(np.where(none, 0.0, energy / np.where(total > 0.0, total, 1.0)))
-
-
-def kinetic_shares(linear: LinearSystem, shape: FloatArray | ComplexArray) -> FloatArray:
-    """Return the share of each freedom in the kinetic energy of each mode, (a, n); mean over a cycle."""
-    energy = np.real(np.conj(shape) * (shape @ linear.mass))
-    return np.asarray(energy / np.sum(energy, axis=1, keepdims=True))
-
-
-def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the part that each of `spring` belongs to and its kind, one of `HELD_BY`.
-
-    The springs of a bearing's directions are one part, and so are the modes of a housing; a housing without
-    mass is one with its bearings. What is no mesh, bearing, housing, coupling or drive is of a shaft that
-    bends.
-    """
-    scene = system.scene
-    kinds = {part.name: "housing" for part in system.rotors.housings}
-    condensed = (part.name for part in scene.housings if part.name not in kinds)
-    kinds |= dict.fromkeys((*system.supports.name, *condensed), "bearing")
-    kinds |= {part.name: "coupling" for part in scene.couplings}
-    kinds |= {part.name: "drive" for part in scene.drives}
-    meshes = {mesh.name for mesh in scene.meshes}
-    parts = []
-    for index, name in enumerate(spring):
-        part = name
-        if index < len(scene.meshes) and name in meshes:
-            parts.append((name, "mesh"))
-            continue
-        if name not in kinds:
-            part = name.rpartition(".")[0]
-        parts.append((part or name, kinds.get(part, "shaft")))
-    return tuple(parts)
-
-
-def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the body of each freedom "body.kind" and how it moves along it, one of the `MOVES`."""
-    pairs = [name.rpartition(".")[::2] for name in freedom]
-    return tuple((shaft, MOVES[kind.rstrip("_0123456789")]) for shaft, kind in pairs)
-
-
-@dataclass(frozen=True)
-class Modes:
-    """Natural modes, by rising frequency; the motions that nothing resists come first, at 0 Hz exactly."""
-
-    frequency: FloatArray
-    """Undamped, Hz. Shape (n,)."""
-    damping_ratio: FloatArray
-    """Modal: shape^T C shape / (2 omega); 0 for the modes at 0 Hz. Shape (n,)."""
-    shape: FloatArray
-    """One mode per row, per freedom in m and rad, of unit modal mass: shape M shape^T = 1. Shape (n, n)."""
-    freedom: tuple[str, ...]
-    """Names of the columns, "shaft.kind"."""
-    scale: FloatArray
-    """Meters per unit of each freedom: ``shape * scale`` compares translations and rotations. Shape (n,)."""
-    spring: tuple[str, ...]
-    """Names of the springs: meshes, bearings with direction, elastic drives."""
-    strain_energy: FloatArray
-    """Share of each spring in the strain energy of each mode; 0 at 0 Hz. Shape (n, p)."""
-    kinetic_energy: FloatArray
-    """Share of each freedom in the kinetic energy of each mode. Shape (n, n)."""
-
-
-def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
-    """Return the natural modes of `system` about its static equilibrium under the loads at `time`.
-
-    Raises
-    ------
-    SolveError
-        If there is no static equilibrium.
-    """
-    linear = linearize(system, time) if isinstance(system, System) else system
-    square, shape = _solve(linear)
-    omega = np.sqrt(np.maximum(square, 0.0))
-    damping = np.einsum("ai,ij,aj->a", shape, linear.damping, shape)
-    still = omega == 0.0
-    ratio = np.where(still, 0.0, damping / np.where(still, 1.0, 2.0 * omega))
-    return Modes(
-        frequency=omega / (2.0 * math.pi),
-        damping_ratio=ratio,
-        shape=shape,
-        freedom=linear.freedom,
-        scale=linear.scale,
-        spring=linear.spring,
-        strain_energy=strain_shares(linear, shape, still),
-        kinetic_energy=shape * (shape @ linear.mass),
-    )
-
-
-def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
-    """Squared circular frequencies (n,) and shapes (n, n) of unit modal mass, rigid motions exactly."""
-    per_meter = 1.0 / linear.scale
-    mass, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, linear.stiffness))
-    rigid = linear.rigid * linear.scale
-    if rigid.shape[0] == 0:
-        square, vectors = eigh(stiffness, mass)
-        return square, np.asarray(vectors.T * per_meter)
-    still = np.linalg.solve(np.linalg.cholesky(rigid @ mass @ rigid.T), rigid)
-    rest = null_space(still @ mass)
-    square, vectors = eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
-    shapes = np.concatenate([still, (rest @ vectors).T])
-    return np.concatenate([np.zeros(still.shape[0]), square]), np.asarray(shapes * per_meter)
-
-
-def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveError:
-    """Return the refusal of a vibration that nothing bounds at one of the frequencies, rad/s.
-
-    It names the mode with the least distance from a frequency and damping, both in parts of its own.
-    """
-    modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
-    held = np.flatnonzero(modes.frequency)
-    words = "a harmonic of the speed excites an undamped mode"
-    if held.size:
-        own = modes.frequency[held]
-        off = np.abs(excited[:, None] / own - 1.0) + modes.damping_ratio[held]
-        at, mode = np.unravel_index(np.argmin(off), off.shape)
-        part = modes.freedom[int(np.argmax(modes.kinetic_energy[held[mode]]))]
-        words = f"{excited[at]:.6g} Hz excite the mode at {own[mode]:.6g} Hz, in which {part} moves most and "
-        words += f"whose damping ratio is {engineering(modes.damping_ratio[held[mode]], 1)}"
-    advice = "Give the meshes, shafts or supports damping, or leave that speed out"
-    return SolveError(f"the vibration is unbounded: {words}. {advice}")

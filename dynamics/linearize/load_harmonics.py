@@ -9,7 +9,8 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.forces.laws import Law, among
-from dynamics.linearize.operating_speeds import CommonPeriod, law_speeds
+from dynamics.linearize.common_period import CommonPeriod
+from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.loads.load_course import BySpeed, Orders
 from dynamics.loads.time_law import TimeLaw
 from dynamics.mechanism.phases import load_orders, repeating_phases

@@ -14,24 +14,15 @@ from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
-from dynamics.linearize.linear_system import (
-    LinearSystem,
-    Modes,
-    about_running,
-    freedom_parts,
-    linearize,
-    natural_modes,
-    require_freedoms,
-    spring_parts,
-)
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, require_freedoms
+from dynamics.linearize.mode_energy import freedom_parts, spring_parts
+from dynamics.linearize.natural_modes import Modes, natural_modes
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.mechanism.shaft_axes import shaft_axes
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
-
-# To which frequency the shafts of a modal analysis are resolved.
 
 MOST_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
@@ -155,8 +146,8 @@ class ModalAnalysis(ArrayFile):
         "free" for a motion that nothing resists.
         """
         motion = _named(_summed([kind for _, kind in freedom_parts(self.freedom)], kinetic_energy), "-")
-        held = _summed(self.spring_kind, strain_energy)
-        return f"{motion} on {_named(held, ' and ')}" if sum(held.values()) > 0.0 else f"{motion}, free"
+        energy = _summed(self.spring_kind, strain_energy)
+        return f"{motion} on {_named(energy, ' and ')}" if sum(energy.values()) > 0.0 else f"{motion}, free"
 
 
 def modal_analysis(

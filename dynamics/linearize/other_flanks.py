@@ -72,10 +72,12 @@ class OtherFlanks:
 
         The tables are of the positions and the number of levels of each other.
         """
-        own, system = self.excitation, self.at.system
-        beside = RestsBeside.of(system, self.at.linear.equilibrium.displacement, self.at.time)
-        moved = (self._resting(each, beside.rest(each)) for each in with_flanks(system, self.mesh, tables))
-        return [_difference(each.excitation, own) for each in moved]
+        kind, system = self.excitation, self.at.system
+        rests_of = RestsBeside.of(system, self.at.linear.equilibrium.displacement, self.at.time)
+        rests = (
+            self._resting(other, rests_of.rest(other)) for other in with_flanks(system, self.mesh, tables)
+        )
+        return [_difference(other.excitation, kind) for other in rests]
 
 
 def _difference(first: FlankExcitation, second: FlankExcitation) -> FlankExcitation:

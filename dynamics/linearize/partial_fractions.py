@@ -55,7 +55,7 @@ class PartialFractions:
         `omega` (S, H), rad/s, `right` (S or 1, H, n, f).
         """
         excited = (self.share @ right) / (1j * omega[..., None, None] - self.root[:, None])
-        moved = np.asarray(self.shape @ excited)
-        first, w = moved[..., 0], omega[..., None]
+        displacement = np.asarray(self.shape @ excited)
+        first, w = displacement[..., 0], omega[..., None]
         force = first @ self.stiffness.T + 1j * w * (first @ self.damping.T) - w * w * (first @ self.mass.T)
-        return moved, np.abs(force - right[..., 0])
+        return displacement, np.abs(force - right[..., 0])

@@ -5,30 +5,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
-from dynamics.arrays.sparse_rows import ModalFreedoms
 from dynamics.assembly.assemble import System
 from dynamics.forces.laws import Law
 from dynamics.kernels.local_state import LocalState
-from dynamics.linearize.campbell import terms_at
+from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles, resting
-from dynamics.linearize.linear_system import LinearSystem, about_running, linearize, unbounded
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.load_harmonics import load_harmonics
-from dynamics.linearize.operating_speeds import CommonPeriod, common_period, law_speeds
+from dynamics.linearize.modal_elimination import modal_elimination, solved, turning_terms
+from dynamics.linearize.natural_modes import unbounded
+from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.partial_fractions import PRECISE, PartialFractions
+from dynamics.linearize.whirl_modes import terms_at
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
-# Forced vibration with the modal freedoms eliminated: exact, and as small as the system without them.
-
-
-ROUNDING = 1e-12
-"""Of the entries of modal freedoms, that the rows of their elements may fail to explain."""
-
 Terms = tuple[FloatArray, FloatArray]
-Values = TypeVar("Values", FloatArray, ComplexArray)
 EXCITATIONS = ("static_error", "blocked_force")
 BLOCK = 1_000_000  # entries of the matrices solved at once
 NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
@@ -37,120 +31,6 @@ ROUNDED = 1e-3
 SWEPT = 0.34
 """Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
 1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
-
-
-@dataclass(frozen=True)
-class _ModalElimination:
-    """K, C and M by a bodies' freedoms and b modal ones, which s coordinates z = V u_b couple."""
-
-    bodies: FloatArray
-    """K, C, M of the first freedoms. Shape (3, a, a)."""
-    modal: FloatArray
-    """Diagonals of the modal ones alone. Shape (3, b)."""
-    shape: FloatArray
-    """V. Shape (s, b)."""
-    outward: FloatArray
-    inward: FloatArray
-    along: FloatArray
-    """`outward`, `inward`, `along`: Of K and C: forces on bodies by z, on z by the bodies, on z by z. (2, a,
-    s), (2, s, a), (2, s, s) arrays.
-    """
-
-    def solve(
-        self, omega: FloatArray | ComplexArray, right: ComplexArray, swept: Sequence[FloatArray] = ()
-    ) -> ComplexArray:
-        """Return the displacements (S, H, n, f) under the forces `right` (S, H, n, f) at `omega` (S, H).
-
-        `swept` are gyroscopic and frame terms of the bodies (S, a, a), or nothing.
-        """
-        first = self.bodies.shape[1]
-        inverse = 1.0 / _sum(omega, self.modal)
-        receptance = self._receptance(inverse)
-        into, along = _sum(omega, self.inward), _sum(omega, self.along)
-        size = first + len(self.shape)
-        matrix = np.empty((*omega.shape, size, size), dtype=complex)
-        matrix[..., :first, :first] = self._of_bodies(omega, swept)
-        matrix[..., :first, first:] = _sum(omega, self.outward)
-        matrix[..., first:, :first] = receptance @ into
-        matrix[..., first:, first:] = np.eye(len(self.shape)) + receptance @ along
-        answer = right[..., first:, :] * inverse[..., None]
-        pushed = np.concatenate([right[..., :first, :], self.shape @ answer], axis=-2)
-        found = solved(matrix, pushed)
-        moved, along_rows = found[..., :first, :], found[..., first:, :]
-        force = into @ moved + along @ along_rows
-        return np.concatenate([moved, answer - (self.shape.T @ force) * inverse[..., None]], axis=-2)
-
-    def _receptance(self, inverse: ComplexArray) -> ComplexArray:
-        """Return V diag(inverse) V^T (S, H, s, s) of `inverse` (S, H, b): one real product for all."""
-        rows = len(self.shape)
-        pairs = (self.shape[:, None] * self.shape).reshape(rows * rows, -1).T
-        real, imaginary = (np.ascontiguousarray(part) @ pairs for part in (inverse.real, inverse.imag))
-        return np.asarray((real + 1j * imaginary).reshape(*inverse.shape[:-1], rows, rows))
-
-    def product(
-        self, omega: FloatArray | ComplexArray, moved: ComplexArray, swept: Sequence[FloatArray] = ()
-    ) -> ComplexArray:
-        """Return the forces (S, H, n, f) that the displacements `moved` (S, H, n, f) take."""
-        first = self.bodies.shape[1]
-        out, into, along = (_sum(omega, part) for part in (self.outward, self.inward, self.along))
-        bodies, modes = moved[..., :first, :], moved[..., first:, :]
-        rows = self.shape @ modes
-        own = _sum(omega, self.modal)[..., None] * modes
-        pushed = own + self.shape.T @ (into @ bodies + along @ rows)
-        return np.concatenate([self._of_bodies(omega, swept) @ bodies + out @ rows, pushed], axis=-2)
-
-    def _of_bodies(self, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray:
-        """Return the bodies' own matrices, (S, H, a, a)."""
-        matrix = _sum(omega, self.bodies)
-        return matrix + _turning_terms(omega[..., None, None], swept) if swept else matrix
-
-
-def _turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
-    """Return what gyroscopic and frame terms (S, n, n) add to the matrix at `w` (S, H, 1, 1), rad/s."""
-    return np.asarray(1j * w * swept[0][:, None] + swept[1][:, None]) if swept else 0.0
-
-
-def _sum(omega: FloatArray | ComplexArray, parts: FloatArray) -> ComplexArray:
-    """Return K + i w C - w^2 M at `omega` (S, H) of `parts` K, C and, if there are three, M (p, ...)."""
-    by_part = np.stack([np.ones_like(omega), 1j * omega, -omega * omega], axis=-1)[..., : len(parts)]
-    total = by_part.reshape(-1, len(parts)) @ parts.reshape(len(parts), -1)
-    return np.asarray(total.reshape(*omega.shape, *parts.shape[1:]))
-
-
-def _modal_elimination(
-    modal: ModalFreedoms,
-    unit: FloatArray,
-    stiffness: FloatArray,
-    damping: FloatArray,
-    mass: FloatArray,
-) -> _ModalElimination | None:
-    """Return the elimination of a system's modal freedoms; None where it has none.
-
-    Matrices (n, n) are those per `unit` (n,) of the freedoms, of tangents in all elements. None too where
-    other than the rows of elements couple the modal freedoms, or where these rows depend on each other.
-    """
-    first = modal.first
-    shape = (modal.shape * unit[first:])[np.unique(modal.row, return_index=True)[1]]
-    if not shape.size or np.linalg.matrix_rank(shape) < len(shape):
-        return None
-    back, square = np.linalg.pinv(shape), unit[first:] ** 2
-    parts = []
-    for matrix, own in ((stiffness, modal.stiffness * square), (damping, modal.damping * square)):
-        out, into = matrix[:first, first:] @ back, back.T @ matrix[first:, :first]
-        coupled = matrix[first:, first:] - np.diag(own)
-        along = back.T @ coupled @ back
-        misses = (out @ shape - matrix[:first, first:], shape.T @ into - matrix[first:, :first])
-        missed = max(
-            np.max(np.abs(part), initial=0.0) for part in (*misses, shape.T @ along @ shape - coupled)
-        )
-        if missed > ROUNDING * np.max(np.abs(matrix)):
-            return None
-        parts.append((out, into, along, own))
-    out, into, along, own = (np.stack(pair) for pair in zip(*parts, strict=True))
-    bodies = np.stack([matrix[:first, :first] for matrix in (stiffness, damping, mass)])
-    return _ModalElimination(
-        bodies, np.concatenate([own, np.diag(mass)[None, first:]]), shape, out, into, along
-    )
 
 
 @dataclass(frozen=True)
@@ -228,10 +108,10 @@ def heard_harmonics(
 ) -> IntArray:
     """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    heard = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
+    excited_lines = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
-        heard = heard | _heard(flank_forces(at, harmonics, excitation)[1])
-    return harmonics[heard]
+        excited_lines = excited_lines | _heard(flank_forces(at, harmonics, excitation)[1])
+    return harmonics[excited_lines]
 
 
 def with_blocked(
@@ -246,8 +126,8 @@ def with_blocked(
 
 def _heard(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
-    heard = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
-    return np.asarray(~(heard <= NOTHING * np.max(heard, initial=0.0)))  # what is not a number excites
+    largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
+    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # what is not a number excites
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
@@ -347,8 +227,8 @@ def flank_forces(
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
                 # the first force is the same all along
-                held = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
-                force[row] = cycle.tangent[p, 0] * static[f] - held
+                preload = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
+                force[row] = cycle.tangent[p, 0] * static[f] - preload
             else:
                 force[row] = -harmonics_of(at, f, cycle.blocked[:, p], harmonics)
     return static, force
@@ -391,13 +271,15 @@ def _solve(
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
     pushed = _right_sides(force, rows, beside) * per_meter[:, None]
-    kept, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
+    saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
     # a freedom at a time in memory, as results have it
-    displacement = np.moveaxis(np.empty((pushed.shape[2], kept, *omega.shape), dtype=complex), (2, 3), (0, 1))
+    displacement = np.moveaxis(
+        np.empty((pushed.shape[2], saved, *omega.shape), dtype=complex), (2, 3), (0, 1)
+    )
     modal = at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
-    small = _modal_elimination(modal, per_meter, total, damping, mass) if first else None
+    small = modal_elimination(modal, per_meter, total, damping, mass) if first else None
     by_modes = (
         PartialFractions.of(total, mass, damping) if fractions and small is None and not terms else None
     )
@@ -421,9 +303,9 @@ def _solve(
                 miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
         left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
         farthest = np.maximum(farthest, np.max(np.abs(moved[..., 0]), axis=(0, 1), initial=0.0))
-        displacement[part] = moved[..., :kept] * per_meter[:, None]
+        displacement[part] = moved[..., :saved] * per_meter[:, None]
         if beside is not None:
-            along = np.max(np.abs(moved[..., kept] * per_meter @ watched.T), axis=0, initial=0.0)
+            along = np.max(np.abs(moved[..., saved] * per_meter @ watched.T), axis=0, initial=0.0)
             largest = np.maximum(largest, along.T)
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
@@ -456,14 +338,6 @@ def _right_sides(force: ComplexArray, rows: FloatArray | None, beside: ComplexAr
     return np.concatenate(sides, axis=-1)
 
 
-def solved(matrix: Values, right: Values) -> Values:
-    """Solve for all of a stack; what nothing bounds is not a number, and the caller refuses it."""
-    try:
-        return np.linalg.solve(matrix, right).astype(right.dtype, copy=False)
-    except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)
-
-
 def _dense(
     parts: ComplexArray, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray], right: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
@@ -474,7 +348,7 @@ def _dense(
     w, size = omega[:, :, None, None], parts.shape[1]
     by_part = np.concatenate([np.ones_like(w), -w * w, 1j * w], axis=-1)
     matrix = (by_part[..., 0, :] @ parts.reshape(3, -1)).reshape(*w.shape[:2], size, size)
-    matrix += _turning_terms(w, swept)
-    moved = solved(matrix, right)
-    miss = np.abs(np.einsum("shij,shj->shi", matrix, moved[..., 0]) - right[..., 0])
-    return moved, np.asarray(miss, dtype=float)
+    matrix += turning_terms(w, swept)
+    u = solved(matrix, right)
+    miss = np.abs(np.einsum("shij,shj->shi", matrix, u[..., 0]) - right[..., 0])
+    return u, np.asarray(miss, dtype=float)

@@ -55,14 +55,19 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
     size = np.zeros(harmonics.size)
     for index in range(bands.size):
-        own = band == index
-        size[own] = np.max(_share(force[:, own], np.max(force[:, own], axis=1, keepdims=True)), axis=0)
+        inside = band == index
+        size[inside] = np.max(
+            _share(force[:, inside], np.max(force[:, inside], axis=1, keepdims=True)), axis=0
+        )
     size[_always(at, harmonics, float(np.max(np.abs(speed))))] = np.inf
-    kept = _of_every_band(size, band, most)
+    chosen = _of_every_band(size, band, most)
     squares = np.square(force)
-    parts = [(squares[:, own & ~kept], squares[:, own]) for own in (band == k for k in range(bands.size))]
+    parts = [
+        (squares[:, inside & ~chosen], squares[:, inside])
+        for inside in (band == k for k in range(bands.size))
+    ]
     left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in each)))) for each in parts]
-    return Lines(harmonics[kept], harmonics[~kept & np.any(force, axis=0)], float(max(left)))
+    return Lines(harmonics[chosen], harmonics[~chosen & np.any(force, axis=0)], float(max(left)))
 
 
 def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None:
@@ -96,6 +101,6 @@ def _of_every_band(size: FloatArray, band: IntArray, most: int) -> BoolArray:
     most = max(most // np.unique(band).size, 1)
     order = np.lexsort((-size, band))
     first = np.searchsorted(band[order], band[order], side="left")
-    kept = np.zeros(size.size, dtype=bool)
-    kept[order] = (np.arange(size.size) - first < most) | np.isinf(size[order])
-    return kept
+    chosen = np.zeros(size.size, dtype=bool)
+    chosen[order] = (np.arange(size.size) - first < most) | np.isinf(size[order])
+    return chosen

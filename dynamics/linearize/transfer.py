@@ -31,6 +31,7 @@ from dynamics.forces.laws import Law
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.harmonic_response import bearing_forces, extremes
 from dynamics.linearize.load_harmonics import load_harmonics, load_multiples
+from dynamics.linearize.modal_elimination import solved
 from dynamics.linearize.operating_speeds import checked_speeds
 from dynamics.linearize.steady_vibration import (
     ROUNDED,
@@ -38,7 +39,6 @@ from dynamics.linearize.steady_vibration import (
     excited,
     flank_forces,
     gyroscopic_terms,
-    solved,
     with_receptances,
 )
 from dynamics.linearize.strongest_lines import require_memory, strongest_lines
@@ -152,9 +152,9 @@ class FlankTransfer(ArrayFile):
             There is no static equilibrium.
         """
         at = excited(system, self.time, self.orders)
-        own = at.system.arrays.direction[_rows(at)]
-        same = own.shape == self.gradient.shape and at.linear.freedom == self.freedom
-        if not same or np.max(np.abs(own - self.gradient), initial=0.0) > SAME * np.max(np.abs(own)):
+        rows = at.system.arrays.direction[_rows(at)]
+        same = rows.shape == self.gradient.shape and at.linear.freedom == self.freedom
+        if not same or np.max(np.abs(rows - self.gradient), initial=0.0) > SAME * np.max(np.abs(rows)):
             raise InputError("system", "another scene", "the scene of the transfer with other tables")
         return excitation_of(at, self.harmonics)
 
@@ -179,15 +179,15 @@ class FlankTransfer(ArrayFile):
         the friction along the sliding over the largest. Flanks without such a row err by nothing there.
         """
         static, arm, friction = errors
-        own, elements = slice(*self.first[mesh : mesh + 2]), system.arrays.elements
+        mesh_rows, elements = slice(*self.first[mesh : mesh + 2]), system.arrays.elements
         forces, load = np.zeros((3, *self.force.shape), dtype=complex), abs(flanks.mean_force[mesh])
-        forces[0, own] = flanks.tangent[own, own.start, None] * static
+        forces[0, mesh_rows] = flanks.tangent[mesh_rows, mesh_rows.start, None] * static
         if elements.law[mesh] == Law.SPATIAL_FLANK:
             laws, entry = elements.laws.spatial_flank, elements.entry[mesh]
-            tilting, _, sliding = (own.start + int(row) for row in laws.row[entry])
+            tilting, _, sliding = (mesh_rows.start + int(row) for row in laws.row[entry])
             if laws.per_face[entry] > 0.0:
                 forces[1, tilting] = laws.per_face[entry] * load * arm
-            if sliding > own.start:
+            if sliding > mesh_rows.start:
                 forces[2, sliding] = laws.friction[entry] * load * friction
         none = np.zeros_like(self.tangent)
         return [flanks._replace(force=force, tangent=none, viscous=none) for force in forces]
@@ -217,14 +217,14 @@ class FlankTransfer(ArrayFile):
         inputs, count = self.inputs(flanks), at.cycles[-1].rows.stop
         taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
         reach = np.linalg.inv(np.eye(len(self.force)) + taken[..., 1:])[..., :count]
-        moved = np.einsum("rshc,shcf->shrf", self.motion[:count, :, :, 1:], reach)
+        displacement = np.einsum("rshc,shcf->shrf", self.motion[:count, :, :, 1:], reach)
         made = np.einsum("rshc,shc->shr", self.motion[:count], inputs)
         made[..., self.first[: len(flanks.static)]] -= flanks.static.T
         rows = self.gradient[:count]
         varying = VaryingStiffness.of(at, self.harmonics, rows @ still_motion(at, rows))
         if not varying.parts:
             return inputs, 0.0
-        push, left = varying.push(moved, made)
+        push, left = varying.push(displacement, made)
         inputs[..., 1:] -= np.matmul(reach, push[:, 1:, :, None])[..., 0]
         residual = float(np.max(left, initial=0.0))
         if not residual <= ROUNDED:
@@ -235,11 +235,11 @@ class FlankTransfer(ArrayFile):
         """Return the forces (S, H, R, c) that changed tangents (R, R) take of motions (R, S, H, c)."""
         omega, taken = 2j * math.pi * self.frequency[..., None], np.zeros_like(moved)
         for start, end in pairwise(self.first.tolist()):
-            own = slice(start, end)
-            tangent, viscous = stiffer[own, own], damped[own, own]
+            flank_rows = slice(start, end)
+            tangent, viscous = stiffer[flank_rows, flank_rows], damped[flank_rows, flank_rows]
             if np.any(tangent) or np.any(viscous):
-                part = moved[own]
-                taken[own] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
+                part = moved[flank_rows]
+                taken[flank_rows] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
         return np.moveaxis(taken, 0, 2)
 
     def response(self, flanks: FlankExcitation) -> TransferredResponse:
@@ -351,7 +351,7 @@ def _parts(at: Excited) -> list[slice]:
 
 
 def _rows(at: Excited) -> IntArray:
-    return np.concatenate([np.arange(own.start, own.stop) for own in _parts(at)]).astype(np.int64)
+    return np.concatenate([np.arange(part.start, part.stop) for part in _parts(at)]).astype(np.int64)
 
 
 def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
@@ -400,7 +400,7 @@ def _computed(
         speed=speed,
         order=harmonics / at.period.counted,
         frequency=np.concatenate(omega) / (2.0 * math.pi),
-        first=np.cumsum([0, *(own.stop - own.start for own in parts)]),
+        first=np.cumsum([0, *(part.stop - part.start for part in parts)]),
         gradient=gradient,
         force=flanks.force,
         tangent=flanks.tangent,
@@ -436,10 +436,10 @@ def _content_key(at: Excited, speed: FloatArray, harmonics: IntArray, orders: in
     loads = load_harmonics(system, at.period, speed, harmonics, at.time)
     matrices = linear.mass, linear.damping, linear.stiffness, linear.scale, system.arrays.direction
     bearings = at.at_rest.tangent, at.at_rest.viscous, *system.bearing_map[:4]
-    own = speed, harmonics, loads, flanks.force, flanks.tangent, flanks.viscous
+    key = speed, harmonics, loads, flanks.force, flanks.tangent, flanks.viscous
     names = VERSION, orders, at.time, at.period, linear.freedom, system.supports.name
     digest = hashlib.sha256(repr(names).encode())
-    for array in (*matrices, *bearings, *own, *(part for term in terms for part in term)):
+    for array in (*matrices, *bearings, *key, *(part for term in terms for part in term)):
         values = np.ascontiguousarray(array)
         digest.update(f"{values.dtype.str} {values.shape}".encode())
         digest.update(values.tobytes())

@@ -11,14 +11,13 @@ from scipy.sparse.linalg import LinearOperator, gmres
 
 from dynamics.errors import SolveError
 from dynamics.linearize.flank_cycles import FlankCycle
-from dynamics.linearize.linear_system import unbounded
+from dynamics.linearize.modal_elimination import ROUNDING, solved
+from dynamics.linearize.natural_modes import unbounded
 from dynamics.linearize.steady_vibration import (
     ROUNDED,
-    ROUNDING,
     Excited,
     Steady,
     harmonics_of,
-    solved,
     speed_blocks,
     with_blocked,
 )
@@ -221,9 +220,9 @@ class DirectBalance:
         sources = made[:, self.harmonic, self.row]
         right = np.where(self.imaginary, sources.imag, sources.real)
         unknown = solved(matrix, right[..., None])
-        missed = np.linalg.norm((matrix @ unknown)[..., 0] - right, axis=1)
+        residuals = np.linalg.norm((matrix @ unknown)[..., 0] - right, axis=1)
         size = np.sqrt(np.sum(np.abs(made) ** 2, axis=(1, 2)))
-        return np.tensordot(unknown[..., 0], self.pressing, (1, 2)), missed / np.maximum(size, 1e-300)
+        return np.tensordot(unknown[..., 0], self.pressing, (1, 2)), residuals / np.maximum(size, 1e-300)
 
 
 def _felt(part: _Varying) -> IntArray:
@@ -233,13 +232,13 @@ def _felt(part: _Varying) -> IntArray:
 
 def _unknowns(part: _Varying) -> list[tuple[int, int, bool]]:
     """Return harmonic, row and which part of the coefficient each unknown of a flank is."""
-    own = part.own.tolist()
+    lines = part.own.tolist()
     rows = (part.rows.start + _felt(part)).tolist()
     return [
         (harmonic, row, imaginary)
         for row in rows
         for imaginary in (False, True)
-        for harmonic in own[int(imaginary) :]
+        for harmonic in lines[int(imaginary) :]
     ]
 
 
@@ -250,8 +249,8 @@ def _pressing(part: _Varying) -> ComplexArray:
     """
     lines = part.line
     spectrum = np.fft.rfft(part.tangent, axis=0) / len(part.tangent)
-    apart = lines[:, None] - lines
-    falling = np.where(apart[..., None, None] < 0, spectrum[-apart].conj(), spectrum[apart])
+    differences = lines[:, None] - lines
+    falling = np.where(differences[..., None, None] < 0, spectrum[-differences].conj(), spectrum[differences])
     rising = spectrum[lines[:, None] + lines]
     real, imaginary = falling + rising, 1j * (falling - rising)[:, 1:]
     real[:, 0] = falling[:, 0]  # the mean has no conjugate line
@@ -267,10 +266,10 @@ def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
     turns = abs(at.period.pitches[index]) // period
     if not turns or _alike(cycle):
         return []
-    own = np.flatnonzero(harmonics % turns == 0)
-    if not own.size:
+    coupled = np.flatnonzero(harmonics % turns == 0)
+    if not coupled.size:
         return []
-    line = harmonics[own] // turns
+    line = harmonics[coupled] // turns
     highest = 2 * int(line[-1])
     samples = next_fast_len(2 * highest + 2, real=True)
     p = cycle.tangent.shape[0]
@@ -279,7 +278,7 @@ def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
         values = cycle.tangents[:, i, j]
         spectrum[1 : highest + 1, i, j] = 0.5 * harmonics_of(at, index, values, turns * multiples)
     tangent = np.fft.irfft(spectrum, samples, axis=0) * samples
-    return [_Varying(cycle.rows, np.append(0, own + 1), np.append(0, line), tangent)]
+    return [_Varying(cycle.rows, np.append(0, coupled + 1), np.append(0, line), tangent)]
 
 
 def _alike(cycle: FlankCycle) -> bool:
@@ -320,9 +319,9 @@ def _solved(
     right = _real(made)
     size = float(np.linalg.norm(right))
     operator = LinearOperator((right.size, right.size), matvec=balance, dtype=float)
-    found, _ = gmres(operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES)
-    left = float(np.linalg.norm(right - balance(found)))
-    return pressed(_complex(found, harmonics, rows)), left / max(size, 1e-300)
+    solution, _ = gmres(operator, right, x0=right, rtol=CONVERGED, restart=RESTART, maxiter=CYCLES)
+    left = float(np.linalg.norm(right - balance(solution)))
+    return pressed(_complex(solution, harmonics, rows)), left / max(size, 1e-300)
 
 
 def _real(harmonics: ComplexArray) -> FloatArray:
@@ -340,9 +339,9 @@ def _complex(real: FloatArray, count: int, rows: int) -> ComplexArray:
 def still_motion(at: Excited, rows: FloatArray) -> FloatArray:
     """Displacements (n, f) per static force along rows (f, n); `SolveError` where a motion is free."""
     per_meter = 1.0 / at.linear.scale
-    held = per_meter[:, None] * at.linear.stiffness * per_meter
+    stiffness = per_meter[:, None] * at.linear.stiffness * per_meter
     try:
-        moved = np.linalg.solve(held, (rows * per_meter).T)
+        displacement = np.linalg.solve(stiffness, (rows * per_meter).T)
     except np.linalg.LinAlgError as error:
         raise SolveError("nothing holds the system at its static equilibrium") from error
-    return np.asarray(moved * per_meter[:, None])
+    return np.asarray(displacement * per_meter[:, None])

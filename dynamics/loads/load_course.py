@@ -136,13 +136,13 @@ class Orders:
             raise InputError("value", values.size, at_least(3, name="number of values,"))
         lines = np.fft.rfft(values) / values.size
         twice = np.where(np.arange(lines.size) * 2 == values.size, 1.0, 2.0) * lines
-        kept = np.flatnonzero(np.abs(twice) > FAINT * np.max(np.abs(twice)))
-        kept = kept[kept > 0]
+        orders = np.flatnonzero(np.abs(twice) > FAINT * np.max(np.abs(twice)))
+        orders = orders[orders > 0]
         return cls(
             shaft,
-            tuple(float(order) for order in kept),
-            tuple(np.abs(twice[kept]).tolist()),
-            tuple(np.angle(twice[kept]).tolist()),
+            tuple(float(order) for order in orders),
+            tuple(np.abs(twice[orders]).tolist()),
+            tuple(np.angle(twice[orders]).tolist()),
             float(lines[0].real),
         )
 

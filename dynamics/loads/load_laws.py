@@ -11,41 +11,11 @@ import numpy as np
 from dynamics.kernels.cubics import Cubics, value_and_slope
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
-from dynamics.loads.applied_force import SpeedTorque
 from dynamics.loads.load_course import BySpeed, Course, Orders
 from dynamics.loads.time_law import TimeLaw
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Torques that depend on speed.
-
 BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
-
-
-class SpeedTorqueLaws(NamedTuple):
-    """Curves."""
-
-    torque: Cubics
-    """N m by rad/s."""
-    radius: FloatArray
-    """At which torques count as forces and angles as displacements, m. Shape (l,)."""
-
-    @classmethod
-    def packed(cls, parts: Sequence[SpeedTorque], radius: float) -> SpeedTorqueLaws:
-        """Lay out the curves of `parts`."""
-        curves = [(part.curve.start, np.asarray(part.curve.coefficient)) for part in parts]
-        return cls(Cubics.packed(curves), np.full(len(parts), radius))
-
-
-@routine
-def speed_torque(laws: SpeedTorqueLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write force and derivative at the speed that the rate of `row` and the kinematic motion make."""
-    radius = laws.radius[entry]
-    speed = (local.rate[row] + local.drift[row]) / radius
-    torque, slope = value_and_slope(laws.torque, entry, speed)
-    local.force[row], local.viscous[row, 0] = torque / radius, slope / (radius * radius)
-
-
-# Applied forces: a factor by time, speed or angle, turned with a shaft.
 
 
 class ForceCourseLaws(NamedTuple):
@@ -159,63 +129,3 @@ def applied_force(laws: ForceCourseLaws, entry: int, local: LocalState, row: int
         if kind == BY_SPEED:
             lever = laws.sense[entry] * laws.lever[entry]
             local.viscous[row + k, rows] = -size * slope * share / lever
-
-
-# The inertia and the weight of a mass off the axis.
-
-
-class UnbalanceLaws(NamedTuple):
-    """l unbalances in y = (x, y, lever times the rotation) of the shaft's section.
-
-    With the angle a of the heavy spot from +x, kinetic and potential energy have the terms
-
-        T = U a' (-x' sin a + y' cos a),    V = -U (g_x cos a + g_y sin a),
-
-    from which by Lagrange, with all rotation of the shaft in a, follow the forces
-
-        F_x = U (a'^2 cos a + a'' sin a),   F_y = U (a'^2 sin a - a'' cos a),
-        M = U (x'' sin a - y'' cos a + g_y cos a - g_x sin a).
-    """
-
-    amount: FloatArray
-    angle: FloatArray
-    lever: FloatArray
-    """`amount`, `angle`, `lever`: U, kg m; a at the phase 0, rad; row over rotation, m. Shape (l,) each."""
-    phase: IntArray
-    """The phase of the shaft's rotation among the positions. Shape (l,)."""
-    gravity: FloatArray
-    """g, m/s^2. Shape (2,)."""
-    steady: BoolArray
-    """Whether only the mean over a turn acts, which is none. Shape (1,)."""
-
-
-@routine
-def unbalance(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write forces and their derivatives in rates and accelerations; the forces resist, as all do.
-
-    How they change with the angle is left to the phase.
-    """
-    rate, acceleration, lever = local.rate, local.acceleration, laws.lever[entry]
-    amount = 0.0 if laws.steady[0] else laws.amount[entry]
-    angle = laws.angle[entry] + 2.0 * math.pi * local.position[laws.phase[entry]]
-    c, s = amount * math.cos(angle), amount * math.sin(angle)
-    spin = (rate[row + 2] + local.drift[row + 2]) / lever
-    faster = acceleration[row + 2] / lever
-    weight = laws.gravity[1] * c - laws.gravity[0] * s
-    local.force[row] = -spin * spin * c - faster * s
-    local.force[row + 1] = -spin * spin * s + faster * c
-    local.force[row + 2] = -(acceleration[row] * s - acceleration[row + 1] * c + weight) / lever
-    local.viscous[row, 2], local.viscous[row + 1, 2] = -2.0 * spin * c / lever, -2.0 * spin * s / lever
-    local.inertial[row, 2], local.inertial[row + 1, 2] = -s / lever, c / lever
-    local.inertial[row + 2, 0], local.inertial[row + 2, 1] = -s / lever, c / lever
-
-
-@routine
-def unbalance_energy(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> float:
-    """Return T + V, J: T is linear in the motion across the axis."""
-    amount = 0.0 if laws.steady[0] else laws.amount[entry]
-    angle = laws.angle[entry] + 2.0 * math.pi * local.position[laws.phase[entry]]
-    c, s = amount * math.cos(angle), amount * math.sin(angle)
-    spin = (local.rate[row + 2] + local.drift[row + 2]) / laws.lever[entry]
-    kinetic = spin * (c * local.rate[row + 1] - s * local.rate[row])
-    return float(kinetic - laws.gravity[0] * c - laws.gravity[1] * s)

@@ -80,7 +80,7 @@ def _trains(scene: Scene) -> Sequence[list[GearBody]]:
     trains: list[set[str]] = []
     for mesh in scene.meshes:
         joined = {mesh.driver, mesh.driven}
-        apart = [train for train in trains if not train & joined]
+        separate = [train for train in trains if not train & joined]
         joined.update(*(train for train in trains if train & joined))
-        trains = [*apart, joined]
+        trains = [*separate, joined]
     return [[gear for gear in scene.gears if gear.name in train] for train in trains]

@@ -9,11 +9,8 @@ import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.bearing_law import BearingDuty
-from dynamics.bearings.linear_bearing import LinearBearingLaws
-from dynamics.forces.elements import Element
-from dynamics.forces.laws import Law
-from dynamics.mechanism.bodies import Bodies, Rotor
-from dynamics.mechanism.supports import gather_supports, seat_axes, seat_motion
+from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.supports import seat_axes
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -81,8 +78,8 @@ def bearing_locations(
     locations = []
     for law in scene.bearing_laws:
         name, duty = law.bushing, duties[law.bushing]
-        own = law.rows(duty)
-        locations.append(BearingElement(name, support_index[name], own @ axes[name], own, law.typical(duty)))
+        way = law.rows(duty)
+        locations.append(BearingElement(name, support_index[name], way @ axes[name], way, law.typical(duty)))
     return tuple(locations)
 
 
@@ -94,42 +91,3 @@ def tilt_lever(scene: Scene) -> float:
 def supports_by_name(rotors: Sequence[Rotor]) -> dict[str, tuple[int, Bushing | PlanetBearing]]:
     """Return the rotor and the bearing of every name."""
     return {part.name: (index, part) for index, rotor in enumerate(rotors) for part in rotor.supports}
-
-
-# Linear bearings in housings that move: where they act, and their force elements.
-
-
-def housed_bearings(scene: Scene, rotors: Bodies) -> tuple[BearingElement, ...]:
-    """Return the bearings with stiffness or damping in housings that move, tilts by a lever."""
-    supports = supports_by_name(rotors)
-    if not rotors.housings:
-        return ()
-    names, lever = gather_supports(rotors, frozenset()).name, tilt_lever(scene)
-    unit, bearings = np.diag([1.0, 1.0, 1.0, lever, lever]), []
-    for name in (name for housing in rotors.housings for name in housing.bearings):
-        part = supports[name][1]
-        acting = np.any((part.seat_stiffness != 0.0) | (part.seat_damping != 0.0), axis=0)
-        way = unit[acting]
-        if len(way):
-            typical = np.diag(_per_meter(way, part.seat_stiffness)).copy()
-            bearings.append(BearingElement(name, names.index(name), way, way, typical))
-    return tuple(bearings)
-
-
-def housed_bearing_elements(
-    rotors: Bodies, bearings: Sequence[BearingElement]
-) -> tuple[tuple[Element, ...], LinearBearingLaws]:
-    """Return the elements of `bearings`, and their laws."""
-    supports, elements, laws = supports_by_name(rotors), [], []
-    for entry, at in enumerate(bearings):
-        index, part = supports[at.name]
-        gradient, none = at.way @ seat_motion(rotors, index, part), np.zeros(len(at.way))
-        elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.typical))
-        laws.append((_per_meter(at.way, part.seat_stiffness), _per_meter(at.way, part.seat_damping)))
-    return tuple(elements), LinearBearingLaws.packed(laws)
-
-
-def _per_meter(way: FloatArray, matrix: FloatArray) -> FloatArray:
-    """Return a bearing's matrix (5, 5) in the rows `way` (p, 5), (p, p)."""
-    back = way / np.sum(way, axis=1, keepdims=True) ** 2
-    return np.asarray(back @ matrix @ back.T)

@@ -9,7 +9,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
@@ -98,11 +99,14 @@ def elastic_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
     stiffness, damping = np.zeros(count), np.zeros((count, count))
     for index, rotor in enumerate(rotors):
         if rotor.elastic is not None:
-            own = elastic_columns(rotors, index)
-            stiffness[own], damping[own, own] = rotor.elastic.stiffness, np.diag(rotor.elastic.damping)
+            at = elastic_columns(rotors, index)
+            stiffness[at], damping[at, at] = (
+                rotor.elastic.stiffness,
+                np.diag(rotor.elastic.damping),
+            )
     for index, housing in enumerate(rotors.housings):
-        own = housing_columns(rotors, index)
-        stiffness[own], damping[own, own] = housing.stiffness, housing.damping
+        at = housing_columns(rotors, index)
+        stiffness[at], damping[at, at] = housing.stiffness, housing.damping
     return stiffness, damping
 
 
@@ -120,8 +124,8 @@ def mass_terms(rotors: Bodies) -> tuple[FloatArray, FloatArray]:
     turned = np.zeros((diagonal.size, len(rotors)))
     for index, rotor in enumerate(rotors):
         if rotor.elastic is not None:
-            own = elastic_columns(rotors, index)
-            diagonal[own], turned[own, index] = rotor.elastic.mass, rotor.elastic.turned
+            columns = elastic_columns(rotors, index)
+            diagonal[columns], turned[columns, index] = rotor.elastic.mass, rotor.elastic.turned
     diagonal[rotors.first_of_housings :] = 1.0
     return diagonal, turned
 

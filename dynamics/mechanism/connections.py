@@ -8,130 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.bearings import PlanetBearing
-from dynamics.bearings.matrix import Matrix
 from dynamics.bearings.seat import SEAT
-from dynamics.joints import Coupling, Housing
+from dynamics.joints import Housing
 from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import column_count, elastic_terms, section_rows
+from dynamics.mechanism.columns import column_count, elastic_terms
+from dynamics.mechanism.coupling_rows import QUARTER, CouplingRows, gather_couplings
 from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.supports import Supports, gather_supports, seat_axes, seat_error, seat_motion
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
-
-# Couplings between shafts as six strains each, with their matrices.
-
-
-ROTATION = 5
-ACROSS = (0, 1, 3, 4)
-"""Strains that a rotating frame mixes: x, y, tilt_x, tilt_y."""
-
-QUARTER = np.zeros((SEAT, SEAT))
-"""z x of a seat's displacement and of its tilt."""
-
-
-@dataclass(frozen=True)
-class CouplingRows:
-    """c couplings."""
-
-    name: tuple[str, ...]
-    motion: FloatArray
-    """Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad. Shape
-    (c, 6, N).
-    """
-    stiffness: FloatArray
-    damping: FloatArray
-    """`stiffness`, `damping`: Force and moment per strain and its rate, N, m, rad, s; across frames only
-    those along the axis and about it. Shape (c, 6, 6) each.
-    """
-
-    def matrix(self, coefficient: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
-        """Return left^T coefficient right for strains (c, 6, a) and (c, 6, b)."""
-        return np.asarray(np.einsum("cki,ckl,clj->ij", left, coefficient, right))
-
-
-def _gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
-    motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
-    for index, coupling in enumerate(scene.couplings):
-        first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
-        position = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
-        for shaft, sign in ((first, -1.0), (second, 1.0)):
-            motion[index] += sign * section_rows(rotors, shaft, position[2])
-    stiffness = [
-        _constant(scene, c, full_matrix(c.stiffness, c.torsional_stiffness)) for c in scene.couplings
-    ]
-    damping = [_constant(scene, c, full_matrix(c.damping, c.torsional_damping)) for c in scene.couplings]
-    return CouplingRows(
-        tuple(coupling.name for coupling in scene.couplings),
-        motion,
-        np.array(stiffness).reshape(-1, 6, 6),
-        np.array(damping).reshape(-1, 6, 6),
-    )
-
-
-def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
-    """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
-    if not scene.crosses_frames(coupling):
-        return matrix
-    kept = matrix.copy()
-    kept[list(ACROSS)], kept[:, list(ACROSS)] = 0.0, 0.0
-    return kept
-
-
-def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:
-    """Return the whole 6 by 6 matrix."""
-    full = np.zeros((6, 6)) if matrix is None else np.array(matrix, dtype=float)
-    full[ROTATION, ROTATION] += torsional
-    return full
-
-
-# Couplings between shafts described in different frames.
-
-
-@dataclass(frozen=True)
-class _FrameCoupling:
-    """One coupling across frames: its index in the scene and its rotors, that in the fixed frame first.
-
-    It acts on both at the `height` along z, m, in 2 `directions`, across the axis alone, or 4: tilts too.
-    """
-
-    coupling: int
-    first: int
-    second: int
-    height: float
-    directions: int
-
-
-def frame_couplings(scene: Scene) -> tuple[_FrameCoupling, ...]:
-    """Return all couplings with matrices between shafts of different frames."""
-    couplings = []
-    for index, coupling in enumerate(scene.couplings):
-        if not scene.crosses_frames(coupling):
-            continue
-        ends = [scene.shaft_index(name) for name in (coupling.first, coupling.second)]
-        z = scene.shafts[ends[0]].origin[2] + coupling.position
-        if scene.shafts[ends[1]].frame is None:
-            ends.reverse()
-        matrices = [full_matrix(m, 0.0) for m in (coupling.stiffness, coupling.damping)]
-        tilts = any(np.any(matrix[3:5, :5] != 0.0) for matrix in matrices)
-        couplings.append(_FrameCoupling(index, ends[0], ends[1], z, 4 if tilts else 2))
-    return tuple(couplings)
-
-
-def frame_joint(
-    scene: Scene, rotors: Bodies, part: _FrameCoupling, angle: float
-) -> tuple[FloatArray, FloatArray]:
-    """Return strain (5, N) and stiffness (5, 5) with the second frame turned by `angle` in rad."""
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.eye(SEAT)
-    turn[:2, :2] = turn[3:, 3:] = [[c, -s], [s, c]]
-    first, second = (section_rows(rotors, end, part.height)[:SEAT] for end in (part.first, part.second))
-    matrix = full_matrix(scene.couplings[part.coupling].stiffness, 0.0)[:SEAT, :SEAT].copy()
-    matrix[2], matrix[:, 2] = 0.0, 0.0
-    return first - turn @ second, matrix
-
-
-# The linear springs and dampers of a scene, laid out on all rotors: supports, seats, couplings.
-
 
 QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.0
 
@@ -180,7 +65,7 @@ def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
 
 def condensed_housings(scene: Scene, rotors: Bodies) -> list[Housing]:
     """Return the housings that are no freedoms."""
-    return [part for part in scene.housings if part.name not in {own.name for own in rotors.housings}]
+    return [part for part in scene.housings if part.name not in {housing.name for housing in rotors.housings}]
 
 
 def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
@@ -237,10 +122,10 @@ def condense_housing(
     loss, follow = housing.matrices()[1], seat_compliance(housing, stiffness) @ stiffness
     left = np.eye(stiffness.shape[0]) - follow
     series = stiffness @ left
-    moved = follow[list(housing.columns)]
+    amplitudes = follow[list(housing.columns)]
     return (
         0.5 * (series + series.T),
-        left.T @ damping @ left + moved.T @ loss @ moved,
+        left.T @ damping @ left + amplitudes.T @ loss @ amplitudes,
         left.T @ preload,
     )
 
@@ -276,18 +161,18 @@ class Connections:
         Bearings in housings that move are force elements instead; their preload is in the constant force.
         """
         supports, seats, couplings = self.supports, self.seats, self.couplings
-        moves, held = freedoms.keep(supports.motion), ~supports.carried
-        stiffness = supports.matrix(supports.stiffness * held[:, None], moves, moves)
-        damping = supports.matrix(supports.damping * held[:, None], moves, moves)
+        moves, grounded = freedoms.keep(supports.motion), ~supports.carried
+        stiffness = supports.matrix(supports.stiffness * grounded[:, None], moves, moves)
+        damping = supports.matrix(supports.damping * grounded[:, None], moves, moves)
         if couplings.name:
             strains = freedoms.keep(couplings.motion)
             stiffness += couplings.matrix(couplings.stiffness, strains, strains)
             damping += couplings.matrix(couplings.damping, strains, strains)
         constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
         if seats.name:
-            strains, held = freedoms.keep(seats.motion), np.repeat(held[seats.support], SEAT)
-            stiffness += strains.T @ (seats.stiffness * held) @ strains
-            damping += strains.T @ (seats.damping * held) @ strains
+            strains, grounded = freedoms.keep(seats.motion), np.repeat(grounded[seats.support], SEAT)
+            stiffness += strains.T @ (seats.stiffness * grounded) @ strains
+            damping += strains.T @ (seats.damping * grounded) @ strains
             constant += seats.preload @ strains
         return stiffness, damping, constant
 
@@ -297,11 +182,11 @@ class Connections:
         With moments (`tilted`) both, (b, 6, n). Bearings in housings that move are force elements: 0 here.
         """
         supports, seats = self.supports, self.seats
-        held = (~supports.carried)[:, None]
-        rows = np.repeat(held[seats.support, 0], SEAT)
+        grounded = (~supports.carried)[:, None]
+        rows = np.repeat(grounded[seats.support, 0], SEAT)
         return (
-            self._pushed(freedoms, supports.stiffness * held, seats.stiffness * rows, tilted),
-            self._pushed(freedoms, supports.damping * held, seats.damping * rows, tilted),
+            self._pushed(freedoms, supports.stiffness * grounded, seats.stiffness * rows, tilted),
+            self._pushed(freedoms, supports.damping * grounded, seats.damping * rows, tilted),
         )
 
     def _pushed(
@@ -320,7 +205,7 @@ class Connections:
 def gather_connections(scene: Scene, rotors: Bodies) -> Connections:
     """Lay out what joins the rotors of `scene`."""
     supports = gather_supports(rotors, seated(scene, rotors))
-    couplings = _gather_couplings(scene, rotors)
+    couplings = gather_couplings(scene, rotors)
     return Connections(supports, _gather_seats(scene, rotors, supports.name), couplings)
 
 

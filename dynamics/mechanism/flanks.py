@@ -62,7 +62,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
         else mesh.damping
         for f, mesh in enumerate(scene.meshes)
     ]
-    alike = all(own is table for own, table in zip(used, static, strict=True))
+    alike = all(table_used is table for table_used, table in zip(used, static, strict=True))
     law = FlankLaws(packed if alike else pack_tables(used), np.array(damping), DAMPING_REACH * typical)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 

@@ -7,46 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies, Rotor
-from dynamics.mechanism.columns import column_count, elastic_columns, housing_columns, rigid_motion
+from dynamics.mechanism.bodies import Bodies
+from dynamics.mechanism.carried_planets import FREEDOMS, ROTATION, carried_motion
+from dynamics.mechanism.columns import elastic_columns, housing_columns
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Planets on their carrier: rigid in the kinematic motion and where nothing lets them move.
-
-
-PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in these, not in its rotation
-FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
-ROTATION = FREEDOMS.index("rotation")
 COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
 """Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
-
-
-def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
-    """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
-
-    What is not free goes with the carrier on a planet and with nothing else.
-    """
-    motion = np.eye(column_count(rotors))
-    for index, rotor in enumerate(rotors):
-        if rotor.carrier is None:
-            continue
-        arm = rotor.center - rotors[rotor.carrier].center
-        with_carrier = rigid_motion(arm)[:5]
-        for kind in range(PLANET_KINDS):
-            if 6 * index + kind not in free:
-                motion[6 * index + kind, 6 * rotor.carrier : 6 * rotor.carrier + 6] = with_carrier[kind]
-    return motion
-
-
-def rotational_inertia(rotors: Sequence[Rotor]) -> FloatArray:
-    """Return (r,): polar inertia of each rotor; on a carrier also its planets' masses about its axis."""
-    inertia = np.array([rotor.inertia.polar for rotor in rotors], dtype=float)
-    for rotor in rotors:
-        if rotor.carrier is not None:
-            arm = rotor.center - rotors[rotor.carrier].center
-            inertia[rotor.carrier] += rotor.inertia.mass * float(arm[0] ** 2 + arm[1] ** 2)
-    return inertia
 
 
 @dataclass(frozen=True)
@@ -85,12 +53,12 @@ def find_freedoms(rotors: Bodies, kinematics: Kinematics, added: Sequence[Collec
         free = {*added[index], *rotor.rigid_kinds}
         if index not in kinematics.imposed:
             free.add("rotation")
-        own = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
+        candidates = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
         if rotor.elastic is not None:
             first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
-            own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
-            own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
-        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
+            candidates += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
+            candidates.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
+        freedoms += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in candidates]
     for index, housing in enumerate(rotors.housings):
         first = housing_columns(rotors, index).start
         freedoms += [(f"{housing.name}.{kind}", first + k, False) for k, kind in enumerate(housing.kinds)]

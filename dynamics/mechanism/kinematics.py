@@ -11,91 +11,12 @@ import numpy as np
 from dynamics.errors import InputError
 from dynamics.identity_cache import cached_by
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.base_pitches import with_common_base_pitches
-from dynamics.mechanism.train_phases import train_phases
+from dynamics.mechanism.train_speeds import TrainSpeeds
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-# The speeds that a train of gears leaves open: a null space over fractions.
-
-
-Row = dict[int, Fraction]
 STANDSTILL = 1e-12  # of the fastest law: slower is at rest
 STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
-
-
-class _TrainSpeeds:
-    """All sets of shaft speeds that the meshes joined so far allow, as an exact basis.
-
-    `shafts`: number of shafts, all free at first.
-    """
-
-    def __init__(self, shafts: int) -> None:
-        self._shafts = shafts
-        self._open = [[Fraction(int(i == j)) for j in range(shafts)] for i in range(shafts)]
-        self._set: list[list[Fraction]] = []
-
-    def join(self, a: int, b: int, carrier: int | None, ratio: Fraction) -> None:
-        """Demand w_b - w_c = ratio (w_a - w_c)."""
-        row: Row = {}
-        for shaft, factor in ((b, Fraction(1)), (a, -ratio), (carrier, ratio - 1)):
-            if shaft is not None:
-                row[shaft] = row.get(shaft, Fraction(0)) + factor
-        values = [self._along(basis, row) for basis in self._open]
-        pivot = next((i for i, value in enumerate(values) if value != 0), None)
-        if pivot is None:
-            return
-        chosen, size = self._open.pop(pivot), values.pop(pivot)
-        self._open = [
-            _less(basis, value / size, chosen) for basis, value in zip(self._open, values, strict=True)
-        ]
-
-    def at_rest(self, shaft: int, carrier: int | None) -> bool:
-        """Return whether the shaft can no longer turn against the carrier."""
-        row: Row = {shaft: Fraction(1)}
-        if carrier is not None:
-            row[carrier] = row.get(carrier, Fraction(0)) - 1
-        return all(self._along(basis, row) == 0 for basis in self._open)
-
-    def ratio(self, a: int, b: int, carrier: int | None) -> Fraction | None:
-        """Return (w_b - w_c) / (w_a - w_c) where the meshes joined so far fix it, else None."""
-        pairs = []
-        for basis in self._open:
-            c = Fraction(0) if carrier is None else basis[carrier]
-            pairs.append((basis[a] - c, basis[b] - c))
-        rotating = next((pair for pair in pairs if pair[0] != 0), None)
-        if rotating is None:
-            return None
-        ratio = rotating[1] / rotating[0]
-        return ratio if all(second == ratio * first for first, second in pairs) else None
-
-    def set_by_law(self, shaft: int) -> bool:
-        """Let the next law set the speed of `shaft`; return False if other laws set it already."""
-        pivot = next((i for i, basis in enumerate(self._open) if basis[shaft] != 0), None)
-        if pivot is None:
-            return False
-        chosen = self._open.pop(pivot)
-        unit = [value / chosen[shaft] for value in chosen]
-        self._open = [_less(basis, basis[shaft], unit) for basis in self._open]
-        self._set = [_less(basis, basis[shaft], unit) for basis in self._set]
-        self._set.append(unit)
-        return True
-
-    def open_shaft(self) -> int | None:
-        """Return the first shaft whose speed no law sets, or None."""
-        return next((s for s in range(self._shafts) if any(basis[s] != 0 for basis in self._open)), None)
-
-    def ratios(self) -> tuple[tuple[Fraction, ...], ...]:
-        """Return the speed of each shaft per unit of each law, (shafts, laws)."""
-        return tuple(tuple(basis[s] for basis in self._set) for s in range(self._shafts))
-
-    @staticmethod
-    def _along(basis: list[Fraction], row: Row) -> Fraction:
-        return sum((factor * basis[shaft] for shaft, factor in row.items()), Fraction(0))
-
-
-def _less(vector: list[Fraction], factor: Fraction, other: list[Fraction]) -> list[Fraction]:
-    return [x - factor * y for x, y in zip(vector, other, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -161,7 +82,7 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     drives and free rotations set. Raises `InputError`: a mesh requires another ratio than the rest of the
     train, two drives set the same train, or nothing sets a shaft's speed.
     """
-    speeds = _TrainSpeeds(len(scene.shafts))
+    speeds = TrainSpeeds(len(scene.shafts))
     for index in range(len(scene.meshes)):
         _add_mesh(scene, speeds, index)
     for index, coupling in enumerate(scene.couplings):
@@ -194,7 +115,7 @@ def mesh_shafts(scene: Scene, index: int) -> tuple[int, int, int | None]:
     return a, b, scene.frame_index(a)
 
 
-def _add_mesh(scene: Scene, speeds: _TrainSpeeds, index: int) -> None:
+def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
     a, b, carrier = mesh_shafts(scene, index)
@@ -268,28 +189,3 @@ def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
     speed = np.array([float(value) for value in row]) @ course
     fastest = float(speed[np.argmax(np.abs(speed))])
     return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)
-
-
-# Checks of a scene without its tables: it moves, its teeth fit and loads press its flanks.
-
-
-def check_motion(scene: Scene) -> Kinematics:
-    """Return the kinematic motion of a scene that can move.
-
-    Nothing here reads the tables of the meshes, so that it may be called before they exist. Raises
-    `InputError`: gears cannot mesh, a train is locked or not driven, a load acts on a shaft at rest, or one
-    pulls flanks apart that have no coast flank behind them.
-    """
-    scene, _ = with_common_base_pitches(scene)
-    kinematics = solve_kinematics(scene)
-    train_phases(scene, kinematics.mesh_sense)
-    check_loads(scene, kinematics)
-    return kinematics
-
-
-def check_loads(scene: Scene, kinematics: Kinematics) -> None:
-    """Refuse a load on a shaft at rest in the kinematic motion; raises `InputError`."""
-    for index, load in enumerate(scene.loads):
-        if kinematics.sense[scene.shaft_index(load.shaft)] == 0:
-            bound, suggestion = "a shaft that turns", "A held shaft needs no load."
-            raise InputError(f"loads[{index}].shaft", load.shaft, bound, suggestion)

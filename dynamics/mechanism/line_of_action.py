@@ -10,8 +10,6 @@ import numpy as np
 from bounds import Quantity, Text, above
 from dynamics.errors import InputError
 from dynamics.identity_cache import cached_by
-from dynamics.mechanism.bodies import Bodies
-from dynamics.mechanism.columns import Wrench, gear_row
 from dynamics.scene.scene import Scene
 from dynamics.shafts import GearBody
 from dynamics.types import FloatArray
@@ -38,10 +36,10 @@ class LineOfAction:
         Displacements and small rotations of a body at `center` move its point at the pitch point by
         u + r x point arm, and this is its projection on `force`.
         """
-        return np.concatenate([self.force, _cross(self.point - center, self.force)])
+        return np.concatenate([self.force, cross(self.point - center, self.force)])
 
 
-def _cross(first: FloatArray, second: FloatArray) -> FloatArray:
+def cross(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return `first` x `second`, (3,) each, to the bits of NumPy's in a sixth of its time."""
     (a, b, c), (x, y, z) = first, second
     return np.array([b * z - c * y, c * x - a * z, a * y - b * x])
@@ -72,8 +70,8 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     field = f"meshes[{index}].driven"
     _check_fit(field, driver, driven)
     first, second = _center(scene, driver), _center(scene, driven)
-    apart = (second - first) * np.array([1.0, 1.0, 0.0])
-    distance = float(np.hypot(apart[0], apart[1]))
+    offset = (second - first) * np.array([1.0, 1.0, 0.0])
+    distance = float(np.hypot(offset[0], offset[1]))
     bases = _acting_base_radii(driver, driven)
     if distance <= bases:
         combined = "difference" if driver.internal or driven.internal else "sum"
@@ -81,14 +79,14 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
         raise InputError(field, Quantity(distance, "m"), bound)
     angle = math.acos(bases / distance)
     e = (
-        apart / distance * (-1.0 if driven.internal else 1.0)
+        offset / distance * (-1.0 if driven.internal else 1.0)
     )  # a pinion meets its ring away from the ring's center
     across = np.array([-e[1], e[0], 0.0])
     inwards = -1.0 if driver.internal else 1.0
     force = inwards * math.sin(angle) * e + sense * math.cos(angle) * across
     force[2] = -sense * math.tan(driver.base_helix_angle)
     point = first + e * driver.base_radius / math.cos(angle)
-    low, high = _common_face(scene, index)
+    low, high = common_face(scene, index)
     if high <= low:
         position = Quantity(driven.position, "m")
         raise InputError(field, position, "at an axial position where the faces overlap")
@@ -125,7 +123,7 @@ def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
         raise InputError(field, Quantity(driven.base_helix_angle, "rad"), bound)
 
 
-def _common_face(scene: Scene, index: int) -> tuple[float, float]:
+def common_face(scene: Scene, index: int) -> tuple[float, float]:
     """Return the ends along z of the length over which both gears' faces overlap, m."""
     ends = []
     for name in (scene.meshes[index].driver, scene.meshes[index].driven):
@@ -133,76 +131,3 @@ def _common_face(scene: Scene, index: int) -> tuple[float, float]:
         middle = scene.shaft(gear.shaft).origin[2] + gear.position
         ends.append((middle - gear.face_width / 2.0, middle + gear.face_width / 2.0))
     return max(end[0] for end in ends), min(end[1] for end in ends)
-
-
-# How deflection, misalignment and center distance of a flank follow from its bodies' freedoms.
-
-
-def approach(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (N,)."""
-    mesh = scene.meshes[index]
-    sides: list[tuple[str, Wrench]] = [
-        (mesh.driver, line.gradient),
-        (mesh.driven, lambda center: -line.gradient(center)),
-    ]
-    return gear_row(scene, rotors, sides)
-
-
-def table_sense(scene: Scene, index: int, sense: int) -> int:
-    """Return the sense about +z in which the table's driving gear pushes, +1 or -1.
-
-    A ring gear that drives is pushed back by the table's driving gear, the pinion.
-    """
-    return -sense if scene.gear(scene.meshes[index].driver).internal else sense
-
-
-def common_face_width(scene: Scene, index: int) -> float:
-    """Axial length over which both gears' faces overlap, m."""
-    low, high = _common_face(scene, index)
-    return high - low
-
-
-def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int) -> float:
-    """Face position of the middle of the common face from that of the table's driving gear, m."""
-    mesh = scene.meshes[index]
-    gear = scene.gear(mesh.driver)
-    if gear.internal:
-        gear = scene.gear(mesh.driven)
-    middle = scene.shaft(gear.shaft).origin[2] + gear.position
-    return -table_sense(scene, index, sense) * float(line.point[2] - middle)
-
-
-def misalignment_per_tilt(scene: Scene, index: int, line: LineOfAction, sense: int) -> FloatArray:
-    """Return the derivative of the misalignment in the small rotation of the driver's section, (3,), m/rad.
-
-    The table's face position runs against the scene's z for a driving gear that turns in +z, so the gap grows
-    with it by s b (z x n) per rotation over the face width b, n the transverse line of action.
-    """
-    transverse = line.force * np.array([1.0, 1.0, 0.0])
-    turn = _cross(UNIT_Z, transverse) * table_sense(scene, index, sense)
-    return np.asarray(turn * common_face_width(scene, index))
-
-
-def misalignment_gradient(
-    scene: Scene, rotors: Bodies, index: int, line: LineOfAction, sense: int
-) -> FloatArray:
-    """Return the derivative of the misalignment in all rotors' freedoms, (N,).
-
-    m = (tilt_1 - tilt_2) @ `misalignment_per_tilt`.
-    """
-    mesh = scene.meshes[index]
-    moment = np.concatenate([np.zeros(3), misalignment_per_tilt(scene, index, line, sense)])
-    return gear_row(scene, rotors, [(mesh.driver, lambda _: moment), (mesh.driven, lambda _: -moment)])
-
-
-def distance_gradient(scene: Scene, rotors: Bodies, index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the center distance at mid-face in all rotors' freedoms, (N,)."""
-    mesh = scene.meshes[index]
-    first, second = (scene.shaft(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven))
-    apart = np.subtract(second.origin, first.origin)
-    apart = apart * np.array([1.0, 1.0, 0.0]) / np.hypot(apart[0], apart[1])
-
-    def pulled(center: FloatArray) -> FloatArray:
-        return np.concatenate([apart, _cross((line.point[2] - center[2]) * UNIT_Z, apart)])
-
-    return gear_row(scene, rotors, [(mesh.driver, lambda c: -pulled(c)), (mesh.driven, pulled)])

@@ -11,7 +11,7 @@ from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import Kinematics, proportional_speeds
 from dynamics.meshes.gear_mesh import GearMesh
 from dynamics.scene.scene import Scene, on_axis
-from dynamics.shafts.bodies import GearBody
+from dynamics.shafts.rigid_bodies import GearBody
 from dynamics.types import FloatArray
 
 MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"
@@ -124,8 +124,8 @@ def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, 
     driven = (abs(float(turns[shaft])) for shaft in kinematics.law_shaft)
     unit = next((rate for rate in (*meshes.values(), *driven) if rate > least), 1.0)
     return {
-        kind: {name: rate / unit for name, rate in own.items() if rate > least}
-        for kind, own in (("mesh", meshes), ("shaft", turning))
+        kind: {name: rate / unit for name, rate in orders.items() if rate > least}
+        for kind, orders in (("mesh", meshes), ("shaft", turning))
     }
 
 
@@ -150,9 +150,9 @@ def _of_planets(scene: Scene, turns: FloatArray, rates: FloatArray, harmonics: i
         below = [(harmonic * teeth) % number or number for harmonic in range(1, harmonics + 1)]
         sides = {"lower": [-n for n in below], "upper": [number - n or number for n in below]}
         for side, passes in sides.items():
-            beside = tuple(n * abs(turn) for n in passes)
+            passes_per_turn = tuple(n * abs(turn) for n in passes)
             if abs(turn) > SAME:
-                yield Excitation(SIDEBAND, mesh.name, side, float(rate), harmonics, beside)
+                yield Excitation(SIDEBAND, mesh.name, side, float(rate), harmonics, passes_per_turn)
 
 
 def _central_gear(scene: Scene, mesh: GearMesh) -> GearBody | None:
@@ -190,9 +190,9 @@ def passing(every: Iterable[Excitation], order: float) -> list[Passing]:
     order : float
         Per revolution of the shaft that the rates are of, > 0.
     """
-    beside = [
-        Passing(each, harmonic, each.order(harmonic), each.order(harmonic) / order - 1.0)
-        for each in every
-        for harmonic in range(1, each.harmonics + 1)
+    passings = [
+        Passing(part, harmonic, part.order(harmonic), part.order(harmonic) / order - 1.0)
+        for part in every
+        for harmonic in range(1, part.harmonics + 1)
     ]
-    return sorted(beside, key=lambda one: round(abs(one.distance) / SAME))
+    return sorted(passings, key=lambda one: round(abs(one.distance) / SAME))

@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.loads.applied_force import AppliedForce, Unbalance
 from dynamics.loads.load_course import Orders
-from dynamics.mechanism.connections import frame_couplings
+from dynamics.mechanism.frame_couplings import frame_couplings
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.scene.scene import Scene
@@ -43,11 +43,11 @@ def frame_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> Lo
     """Return how a force turns against the frame in which its shaft is described; None: it does not."""
     if not any((*force.force[:2], *force.moment[:2])):
         return None  # along the axis alone
-    own = scene.frame_index(scene.shaft_index(force.shaft))
+    frame = scene.frame_index(scene.shaft_index(force.shaft))
     shaft = None if force.turns_with is None else scene.shaft_index(force.turns_with)
-    if own is None and shaft is None:
+    if frame is None and shaft is None:
         return None
-    turned, back = _turns(kinematics, shaft), _turns(kinematics, own)
+    turned, back = _turns(kinematics, shaft), _turns(kinematics, frame)
     rate = tuple(a - b for a, b in zip(turned, back, strict=True))
     return LoadPhase(rate, 1, shaft, _position(force, force.turns_with))
 
@@ -85,9 +85,6 @@ def _rates(phase: LoadPhase) -> FloatArray:
     return np.abs([float(rate) for rate in phase.rate])
 
 
-# How frames that couplings cross turn against each other.
-
-
 def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, ...], ...]:
     """Return the revolutions of the second frame against the first per revolution of each law, for each."""
     turns = []
@@ -96,9 +93,6 @@ def frame_turns(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Fraction, .
         first, second = (_turns(kinematics, frame) for frame in frames)
         turns.append(tuple(b - a for a, b in zip(first, second, strict=True)))
     return tuple(turns)
-
-
-# How the cages of bearings turn in the kinematic motion.
 
 
 def cage_turns(
@@ -115,13 +109,10 @@ def cage_turns(
             inner = Fraction(bearing.row.cage_ratio).limit_denominator(LARGEST_DENOMINATOR)
             shaft = scene.shaft_index(bearing.shaft)
             # the outer ring is at rest, so in a frame it turns against that
-            held = _turns(kinematics, scene.frame_index(shaft))
-            pairs = zip(kinematics.ratio[shaft], held, strict=True)
-            cages.append(tuple(inner * own - around for own, around in pairs))
+            pin_turn = _turns(kinematics, scene.frame_index(shaft))
+            pairs = zip(kinematics.ratio[shaft], pin_turn, strict=True)
+            cages.append(tuple(inner * turn - around for turn, around in pairs))
     return tuple(cages)
-
-
-# All phases of a scene, in their order.
 
 
 def repeating_phases(scene: Scene, kinematics: Kinematics) -> tuple[LoadPhase, ...]:

@@ -157,13 +157,13 @@ def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]
     A gear of z teeth that must be o teeth ahead lets the shaft stand at (o + k)/z turns, k = 0 to z - 1.
     """
     names = list(offsets)
-    for own, name in zip(names[:1] * len(names), names[1:], strict=False):
-        for index, (ahead, wanted) in enumerate(zip(offsets[own], offsets[name], strict=True)):
-            angles = ((ahead + k) * Fraction(teeth[name], teeth[own]) - wanted for k in range(teeth[own]))
+    for gear, name in zip(names[:1] * len(names), names[1:], strict=False):
+        for index, (ahead, wanted) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
+            angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - wanted for k in range(teeth[gear]))
             off = min((float(angle - round(angle)) for angle in angles), key=abs)
             if abs(off) > TOOTH_FIT:
                 value = f'planet {index + 1}, off by {off:.6g} teeth of "{name}"'
-                bound = f'where "{own}" and "{name}" of a stepped planet fit at once, fixed as on the first'
+                bound = f'where "{gear}" and "{name}" of a stepped planet fit at once, fixed as on the first'
                 suggestion = "Change tooth numbers, the number of planets or their angles."
                 raise InputError("number", value, bound, suggestion)
 

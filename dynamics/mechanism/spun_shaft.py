@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, elastic_columns
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
 LEAST_SHIFT = 1e-4
@@ -51,22 +52,22 @@ def spun_pairs(rotors: Bodies, index: int, speed: float) -> list[tuple[FloatArra
     scale = np.sqrt(np.concatenate([[rotor.inertia.transverse], rotor.elastic.bending.mass]))
     share, vectors = np.linalg.eigh(inertia / np.outer(scale, scale))
     lowest = _lowest(rotor)
-    found: list[tuple[FloatArray, float]] = []
+    pairs: list[tuple[FloatArray, float]] = []
     for value, vector in zip(share[::-1], vectors.T[::-1], strict=True):
-        if found and value * speed <= 2.0 * LEAST_SHIFT * lowest:
+        if pairs and value * speed <= 2.0 * LEAST_SHIFT * lowest:
             break
         weight = scale * vector / scale[0]
-        found.append((np.tensordot(weight, rows, axes=1), float(value * scale[0] ** 2)))
-    return found
+        pairs.append((np.tensordot(weight, rows, axes=1), float(value * scale[0] ** 2)))
+    return pairs
 
 
 def _lowest(rotor: Rotor) -> float:
     """Return the lowest circular frequency a shaft may have across its axis, rad/s."""
-    inertia, found = rotor.inertia, []
+    inertia, frequencies = rotor.inertia, []
     if rotor.elastic is not None and rotor.elastic.bends:
-        found.append(2.0 * math.pi * float(rotor.elastic.bending.frequency[0]))
+        frequencies.append(2.0 * math.pi * float(rotor.elastic.bending.frequency[0]))
     if rotor.radial_stiffness > 0.0:
-        found.append(math.sqrt(rotor.radial_stiffness / inertia.mass))
+        frequencies.append(math.sqrt(rotor.radial_stiffness / inertia.mass))
     if rotor.tilt_stiffness > 0.0:
-        found.append(math.sqrt(rotor.tilt_stiffness / inertia.transverse))
-    return min(found, default=0.0)
+        frequencies.append(math.sqrt(rotor.tilt_stiffness / inertia.transverse))
+    return min(frequencies, default=0.0)

@@ -9,8 +9,9 @@ import numpy as np
 
 from dynamics.bearings import Bushing, PlanetBearing
 from dynamics.bearings.seat import SEAT
-from dynamics.mechanism.bodies import Bodies, Rotor
+from dynamics.mechanism.bodies import Bodies
 from dynamics.mechanism.columns import column_count, housing_columns, section, section_rows
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import BoolArray, FloatArray
 
 
@@ -45,8 +46,8 @@ def seat_axes(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBear
     """
     if not isinstance(support, PlanetBearing):
         return np.eye(SEAT)
-    apart = rotors[index].center - rotors[_carrier_of(rotors[index], support)].center
-    c, s = apart[:2] / np.hypot(apart[0], apart[1])
+    offset = rotors[index].center - rotors[_carrier_of(rotors[index], support)].center
+    c, s = offset[:2] / np.hypot(offset[0], offset[1])
     turn = np.eye(SEAT)
     turn[:2, :2] = turn[3:, 3:] = [[c, s], [-s, c]]
     return turn
@@ -56,8 +57,8 @@ def seat_error(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBea
     """Return the strains at which a support exerts no force, (5,): of a pin off its nominal position, m."""
     if not isinstance(support, PlanetBearing):
         return np.zeros(SEAT)
-    own = np.array([support.radial_error, support.tangential_error, 0.0, 0.0, 0.0])
-    return np.asarray(seat_axes(rotors, index, support).T @ own)
+    errors = np.array([support.radial_error, support.tangential_error, 0.0, 0.0, 0.0])
+    return np.asarray(seat_axes(rotors, index, support).T @ errors)
 
 
 def _carrier_of(rotor: Rotor, bearing: PlanetBearing) -> int:

@@ -183,9 +183,6 @@ def _assumed(train: _Train, number: int) -> AssumedAngle:
     return AssumedAngle(second.shaft, (first.name, second.name), moves)
 
 
-# What is stated, and what the teeth require.
-
-
 def _state(train: _Train, index: int, position: float) -> None:
     """Place a mesh at a stated position, or refuse it."""
     driver, _ = train.pairs[index]
@@ -249,9 +246,6 @@ def _misfit(field: str, name: str, off: float, others: str) -> InputError:
     return InputError(field, name, bound, advice)
 
 
-# What is assumed, and the angles that shafts state.
-
-
 def _assume(train: _Train) -> None:
     """Place all gears that assumed thicknesses, and stated or assumed angles of shafts, reach."""
     while _assume_thickness(train) or _follow_shaft(train):
@@ -291,8 +285,8 @@ def _neighbors(train: _Train) -> Iterator[tuple[int, int, float | None]]:
 
     None: it is not stated. Stated angles come first, then gears of one shaft, then those of coupled shafts.
     """
-    stated = list(_stated_angles(train))
-    for first, second, angle in stated:
+    angles = list(_stated_angles(train))
+    for first, second, angle in angles:
         yield first, second, angle
         yield second, first, -angle * train.scene.gears[first].teeth / train.scene.gears[second].teeth
     groups = _coupled(train.scene)
@@ -344,9 +338,9 @@ def _angle_contradiction(scene: Scene, gear: int, turns: float) -> InputError:
     """Return the error for the angle of a gear that is less than the train has it by some turns."""
     name = scene.gears[gear].shaft
     place = [part.name for part in scene.gears if part.shaft == name].index(scene.gears[gear].name)
-    stated = (scene.shaft(name).tooth_angles or ())[place]
-    geometry = Quantity(stated + 2.0 * math.pi * turns, "rad", digits=9)
+    angle = (scene.shaft(name).tooth_angles or ())[place]
+    geometry = Quantity(angle + 2.0 * math.pi * turns, "rad", digits=9)
     field = f"shafts[{scene.shaft_index(name)}].tooth_angles[{place}]"
     advice = "Leave tooth_angles out: the train leaves the shaft no other angle."
     bound = Text.of(geometry, ", where the teeth of its train touch, or whole pitches more")
-    return InputError(field, Quantity(stated, "rad", digits=9), bound, advice)
+    return InputError(field, Quantity(angle, "rad", digits=9), bound, advice)

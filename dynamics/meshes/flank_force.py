@@ -7,7 +7,8 @@ from typing import NamedTuple
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.meshes.packed_tables import PackedTables
-from dynamics.meshes.table_lookup import table_energy, table_force
+from dynamics.meshes.table_energy import table_energy
+from dynamics.meshes.table_lookup import table_force
 from dynamics.types import FloatArray
 
 

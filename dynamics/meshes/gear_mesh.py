@@ -8,14 +8,6 @@ from bounds import Declared, Kind, between, declared, described, one_of, up_to
 from dynamics.checks import declared_fields, finite, not_negative
 from dynamics.meshes.mesh_table import MeshTable, check_table
 
-# The coast flank: the other side of the teeth, which touches when backlash is used up.
-#
-# Turned by pi about the line of centers, a pair that is pushed on its coast flanks looks like the same pair
-# driven in the other sense: hands stay, and the force law is the driving flank's as long as teeth are alike
-# on both sides. What changes is the position: the driver's coast flank passes the pitch point when the driver
-# has turned on by its tooth's thickness from where the drive flank passed. With x the position of the driving
-# flank and c that thickness over the pitch, both on the operating pitch circle, the coast flank is at c - x.
-
 DEFAULT_DAMPING_RATIO = 0.05
 TECHNIQUES = ("constant_torque", "variable_torque")
 _TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
@@ -54,9 +46,6 @@ class CoastFlank:
         finite("thickness", self.thickness)
         if self.table is not None:
             check_table(self.table, "table")
-
-
-# The mesh.
 
 
 @described

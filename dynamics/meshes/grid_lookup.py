@@ -217,5 +217,5 @@ def _along(w: float, span: float, tangent: float, ends: Weights, slopes: Weights
     span_slope = slopes[1] - slopes[0]
     rise = span_slope * ends[2] + span * slopes[2]
     fall = span_slope * ends[3] + span * slopes[3]
-    held = w * (rise + w * (-2.0 * rise - fall + w * (rise + fall)))
-    return held - tangent * (slopes[0] + w * span_slope)
+    bend = w * (rise + w * (-2.0 * rise - fall + w * (rise + fall)))
+    return bend - tangent * (slopes[0] + w * span_slope)

@@ -43,9 +43,9 @@ class GridTables(NamedTuple):
 
     @classmethod
     def _laid_out(cls, tables: Sequence[MeshTable]) -> GridTables:
-        kept = {id(table): table for table in tables}  # flanks of one table share its numbers
-        numbers = {key: _numbers(table) for key, table in kept.items()}
-        begins = dict(zip(kept, np.cumsum([0, *(number.size for number in numbers.values())]), strict=False))
+        by_id = {id(table): table for table in tables}  # flanks of one table share its numbers
+        numbers = {key: _numbers(table) for key, table in by_id.items()}
+        begins = dict(zip(by_id, np.cumsum([0, *(number.size for number in numbers.values())]), strict=False))
         axes = [
             np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")
         ]
@@ -65,21 +65,21 @@ class GridTables(NamedTuple):
 
     def with_table(self, flank: int, table: MeshTable) -> GridTables:
         """Return the tables with another one of a flank, behind all others."""
-        own = GridTables._laid_out([table])
+        laid_out = GridTables._laid_out([table])
         shape, channels, axis_first, first = (
-            each.copy() for each in (self.shape, self.channels, self.axis_first, self.first)
+            array.copy() for array in (self.shape, self.channels, self.axis_first, self.first)
         )
-        shape[flank], channels[flank] = own.shape[0], own.channels[0]
-        axis_first[flank] = own.axis_first[0] + self.axis.size
+        shape[flank], channels[flank] = laid_out.shape[0], laid_out.channels[0]
+        axis_first[flank] = laid_out.axis_first[0] + self.axis.size
         first[flank] = self.number.size
         return GridTables(
             self.base.with_table(flank, table),
             shape,
             channels,
             axis_first,
-            np.concatenate([self.axis, own.axis]),
+            np.concatenate([self.axis, laid_out.axis]),
             first,
-            np.concatenate([self.number, own.number]),
+            np.concatenate([self.number, laid_out.number]),
         )
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
@@ -98,10 +98,10 @@ class GridTables(NamedTuple):
             orders = 2 * min(m, 2) * min(a, 2)
             size = m * a * knots * levels * channels * orders
             number = self.number[self.first[flank] : self.first[flank] + size]
-            kept = kept_knots(knots, every)[:-1]
-            number = number.reshape(m * a, knots, levels * channels * orders)[:, kept]
+            knots_kept = kept_knots(knots, every)[:-1]
+            number = number.reshape(m * a, knots, levels * channels * orders)[:, knots_kept]
             same = self.first == begin
-            first[same], shape[same, 2] = sum(part.size for part in numbers), kept.size
+            first[same], shape[same, 2] = sum(part.size for part in numbers), knots_kept.size
             numbers.append(number.ravel())
         return self._replace(
             base=self.base.decimated(every),

@@ -37,7 +37,7 @@ def nominal_table(table: MeshTable) -> MeshTable:
         *axes, _, levels = values.shape
         return np.asarray(values.reshape(*axes, table.period, -1, levels).mean(axis=-3))
 
-    held = [name for name in (*LEVERS, *DERIVATIVES) if getattr(table, name, None) is not None]
+    present = [name for name in (*LEVERS, *DERIVATIVES) if getattr(table, name, None) is not None]
     return NominalTable(
         position=pitches[0],
         level=table.level,
@@ -45,7 +45,7 @@ def nominal_table(table: MeshTable) -> MeshTable:
         center_distance_change=table.center_distance_change,
         period=1,
         as_made=table,
-        **{name: mean(name) for name in (*FIELDS, *held)},
+        **{name: mean(name) for name in (*FIELDS, *present)},
     )
 
 

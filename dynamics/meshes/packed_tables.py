@@ -9,47 +9,12 @@ import numpy as np
 
 from dynamics.identity_cache import identity_cached
 from dynamics.kernels.by_address import by_address, with_numbers
-from dynamics.kernels.compiled import compiled
+from dynamics.meshes.level_energies import ORDER, energy_below
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
-# Energy that a packed table stores below each of its levels, as a polynomial in the position.
-
-
-ORDER = 9
-"""Degree in the position: a width, cubic, squared, times a stiffness, cubic."""
-
 BUCKETS_PER_KNOT = 4
 LEAST = 4  # knots of a table that can be decimated
-
-
-def _energy_below(row: FloatArray, level: FloatArray) -> FloatArray:
-    """Return ascending coefficients (P L, ORDER + 1), J, of a table of P `row`s at the levels (L,).
-
-    With levels F_k at deflections d_k(u) and stiffness K_k(u), an interval of width h = d_k+1 - d_k holds
-    h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12; row k has the sum over the intervals below level k.
-    """
-    energy = np.zeros((row.shape[0], ORDER + 1))
-    _add_intervals(row, level, energy)
-    return energy
-
-
-@compiled
-def _add_intervals(row: FloatArray, level: FloatArray, energy: FloatArray) -> None:
-    """Fill the coefficients of one table; its rows run through the levels position by position."""
-    levels = level.size
-    for start in range(0, row.shape[0], levels):
-        for k in range(levels - 1):
-            low, high, mean = start + k, start + k + 1, 0.5 * (level[k] + level[k + 1])
-            for power in range(energy.shape[1]):
-                energy[high, power] = energy[low, power]
-            for a in range(4):
-                width = row[high, a] - row[low, a]
-                energy[high, a] += mean * width
-                for b in range(4):
-                    square = width * (row[high, b] - row[low, b]) / 12.0
-                    for c in range(4):
-                        energy[high, a + b + c] += square * (row[low, 4 + c] - row[high, 4 + c])
 
 
 @with_numbers("offset")
@@ -79,7 +44,7 @@ class PackedTables(NamedTuple):
     level: FloatArray
     """Forces, N. Flat."""
     energy: FloatArray
-    """See `_energy_below`. Shape (sum of P L, 10)."""
+    """See `energy_below`. Shape (sum of P L, 10)."""
 
     def decimated(self, every: int = 2) -> PackedTables:
         """Return the tables on each `every`-th knot of position, with the values and slopes they have there.
@@ -100,18 +65,18 @@ class PackedTables(NamedTuple):
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
         """Write another table of the same positions and number of levels into the arrays of a flank's."""
-        own = _part(self, flank)
-        own.level[:] = table.level
-        own.row[:] = _rows(table, np.diff(own.knot))
-        own.energy[:] = _energy_below(own.row, own.level)
+        part = _part(self, flank)
+        part.level[:] = table.level
+        part.row[:] = _rows(table, np.diff(part.knot))
+        part.energy[:] = energy_below(part.row, part.level)
 
 
 def kept_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""
-    kept = np.arange(0, knots, every)
-    if kept.size < LEAST:
-        kept = np.arange(knots)
-    return np.append(kept, knots)
+    indices = np.arange(0, knots, every)
+    if indices.size < LEAST:
+        indices = np.arange(knots)
+    return np.append(indices, knots)
 
 
 class _Table(NamedTuple):
@@ -141,18 +106,18 @@ def _part(tables: PackedTables, flank: int) -> _Table:
 def _decimated(table: _Table, every: int) -> _Table:
     """Return a table on each `every`-th knot."""
     knot, level = table.knot, table.level
-    kept = kept_knots(knot.size - 1, every)
-    if kept.size == knot.size:
+    indices = kept_knots(knot.size - 1, every)
+    if indices.size == knot.size:
         return table
     cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)
-    start, stop, width = kept[:-1], kept[1:] - 1, np.diff(knot)[:, None, None]
-    first, last, span = cubic[start], cubic[stop], np.diff(knot[kept])[:, None, None]
+    start, stop, width = indices[:-1], indices[1:] - 1, np.diff(knot)[:, None, None]
+    first, last, span = cubic[start], cubic[stop], np.diff(knot[indices])[:, None, None]
     value, rise = first[..., 0], first[..., 1] / width[start] * span
     fall = (last @ np.array([0.0, 1.0, 2.0, 3.0])) / width[stop] * span
     step = last.sum(axis=-1) - value
     rows = np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)
     rows = np.ascontiguousarray(rows.reshape(-1, 8))
-    return _Table(knot[kept], _bucket_starts(knot[kept]), rows, level, _energy_below(rows, level))
+    return _Table(knot[indices], _bucket_starts(knot[indices]), rows, level, energy_below(rows, level))
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
@@ -162,8 +127,8 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
 
 @identity_cached
 def _packed(tables: tuple[MeshTable, ...]) -> PackedTables:
-    kept = {id(table): table for table in tables}  # flanks of one table share its part
-    parts = {key: _laid_out(table) for key, table in kept.items()}
+    distinct = {id(table): table for table in tables}  # flanks of one table share its part
+    parts = {key: _laid_out(table) for key, table in distinct.items()}
     index = {key: k for k, key in enumerate(parts)}
     shift = np.array([float(table.position[0]) for table in tables])
     period = np.array([float(table.period) for table in tables])
@@ -200,7 +165,7 @@ def _laid_out(table: MeshTable) -> _Table:
     knot = np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
     knot -= knot[0]
     rows, level = _rows(table, np.diff(knot)), np.array(table.level, dtype=float)
-    return _Table(knot, _bucket_starts(knot), rows, level, _energy_below(rows, level))
+    return _Table(knot, _bucket_starts(knot), rows, level, energy_below(rows, level))
 
 
 def _rows(table: MeshTable, width: FloatArray) -> FloatArray:

@@ -17,13 +17,10 @@ import numpy as np
 from dynamics.kernels.compiled import inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
+from dynamics.meshes.grid_energy import grid_energy
 from dynamics.meshes.grid_lookup import (
-    DEFLECTION,
-    STIFFNESS,
     Cell,
     GridForce,
-    Sample,
-    Weights,
     find_cell,
     grid_force,
     hermite,
@@ -32,157 +29,10 @@ from dynamics.meshes.grid_lookup import (
 )
 from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable
+from dynamics.meshes.sliding_friction import Lever, Sliding, scaled, sliding_force
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Compiled Coulomb friction of sliding flanks: against the sliding velocity, never driving.
-
-
-CREEP_SPEED = 1e-3
-"""m/s: friction has its full size from this sliding speed on, and a smooth one through zero below it. Flanks
-that stick in truth creep at up to it; a pair of 4 mm module at 10 rpm slides ten times as fast at the
-ends of contact."""
-
 LOAD_ARM, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
-
-
-class _Lever(NamedTuple):
-    """A quantity of the table with its derivatives in d, m and a."""
-
-    value: float
-    d: float
-    m: float
-    a: float
-
-
-class _Sliding(NamedTuple):
-    """Friction over the normal force along sliding at the pitch point and about the axis, mu = 1."""
-
-    along: _Lever
-    """1; its derivatives 1/m."""
-    about: _Lever
-    """m; its derivatives 1."""
-    along_rate: float
-    mixed_rate: float
-    about_rate: float
-    """`along_rate`, `mixed_rate`, `about_rate`: Derivatives of `along` in v, s/m; of `along` in w and of
-    `about` in v, s; of `about` in w, m s.
-    """
-
-
-@inner
-def _direction(speed: float) -> tuple[float, float]:
-    """Return the direction of sliding at `speed` (m/s), from -1 to 1, and its derivative."""
-    s = speed / CREEP_SPEED
-    if s >= 1.0:
-        return 1.0, 0.0
-    if s <= -1.0:
-        return -1.0, 0.0
-    return 0.5 * s * (3.0 - s * s), 1.5 * (1.0 - s * s) / CREEP_SPEED
-
-
-@inner
-def _friction(share: _Lever, lever: _Lever, slip: float, spin: float, running: bool) -> _Sliding:
-    """Return the friction at sigma = `share`, kappa = `lever`, v = `slip` and w = `spin`.
-
-    `running`: with the directions of gears that run in the sense of the scene, whatever slip and spin are.
-    """
-    kappa, sigma = lever.value, min(max(share.value, -1.0), 1.0)
-    ahead, behind = 0.5 * (1.0 + sigma), 0.5 * (1.0 - sigma)
-    if running:
-        up, up_rate, down, down_rate = 1.0, 0.0, -1.0, 0.0
-    else:
-        up, up_rate = _direction(slip + kappa * spin)
-        down, down_rate = _direction(slip - kappa * spin)
-    rate, turned = ahead * up_rate + behind * down_rate, ahead * up_rate - behind * down_rate
-    along, about = ahead * up + behind * down, ahead * up - behind * down
-    by_share, by_lever = 0.5 * (up - down), spin * turned
-    about_share, about_lever = 0.5 * kappa * (up + down), about + kappa * spin * rate
-    return _Sliding(
-        _Lever(
-            along,
-            by_share * share.d + by_lever * lever.d,
-            by_share * share.m + by_lever * lever.m,
-            by_share * share.a + by_lever * lever.a,
-        ),
-        _Lever(
-            kappa * about,
-            about_share * share.d + about_lever * lever.d,
-            about_share * share.m + about_lever * lever.m,
-            about_share * share.a + about_lever * lever.a,
-        ),
-        rate,
-        kappa * turned,
-        kappa * kappa * rate,
-    )
-
-
-@inner
-def _scaled(lever: _Lever, factor: float) -> _Lever:
-    """Return `factor` times `lever`."""
-    return _Lever(factor * lever.value, factor * lever.d, factor * lever.m, factor * lever.a)
-
-
-# Compiled potential energy of a table over all axes, with its derivatives in position and along the axes.
-
-
-@inner
-def grid_energy(grid: GridTables, flank: int, cell: Cell, deflection: float) -> Sample:
-    """Return V = integral of the force over the deflection from lift-off, J.
-
-    Its derivatives are those at constant deflection. With levels F_k at deflections d_k and stiffness K_k, a
-    whole interval of width h holds h (F_k + F_k+1)/2 + h^2 (K_k - K_k+1)/12.
-    """
-    level, last = grid.base.offset[flank, 4], grid.base.offset[flank, 5] - 2
-    value, in_x, in_m, in_a = 0.0, 0.0, 0.0, 0.0
-    low = sample(grid.number, cell, 0, DEFLECTION)
-    stiff = sample(grid.number, cell, 0, STIFFNESS)
-    k = 0
-    while k <= last and deflection > low.value:
-        high = sample(grid.number, cell, k + 1, DEFLECTION)
-        end = sample(grid.number, cell, k + 1, STIFFNESS)
-        start, top = grid.base.level[level + k], grid.base.level[level + k + 1]
-        w = min((deflection - low.value) / (high.value - low.value), 1.0)
-        ends = (low.value, high.value, stiff.value, end.value)
-        value += _area(w, start, top, ends)
-        in_x += _area_slope(w, start, top, ends, (low.x, high.x, stiff.x, end.x))
-        in_m += _area_slope(w, start, top, ends, (low.m, high.m, stiff.m, end.m))
-        in_a += _area_slope(w, start, top, ends, (low.a, high.a, stiff.a, end.a))
-        low, stiff = high, end
-        k += 1
-    beyond = deflection - low.value
-    if k == last + 1 and beyond > 0.0:
-        force, half = grid.base.level[level + k] + stiff.value * beyond, 0.5 * beyond * beyond
-        value += beyond * (grid.base.level[level + k] + 0.5 * stiff.value * beyond)
-        in_x += half * stiff.x - force * low.x
-        in_m += half * stiff.m - force * low.m
-        in_a += half * stiff.a - force * low.a
-    return Sample(value, in_x, in_m, in_a)
-
-
-@inner
-def _area(w: float, start: float, top: float, ends: Weights) -> float:
-    """Energy of a level interval up to the fraction `w`; `ends`: deflections, then stiffnesses."""
-    span = ends[1] - ends[0]
-    rise, fall, step = span * ends[2], span * ends[3], top - start
-    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
-    return float(span * w * (start + w * (rise / 2.0 + w * (c2 / 3.0 + w * c3 / 4.0))))
-
-
-@inner
-def _area_slope(w: float, start: float, top: float, ends: Weights, slopes: Weights) -> float:
-    """Differentiate `_area` as the ends move by `slopes`: at constant deflection, or with w = 1 kept."""
-    span, span_slope = ends[1] - ends[0], slopes[1] - slopes[0]
-    rise, fall, step = span * ends[2], span * ends[3], top - start
-    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
-    rise_slope = span_slope * ends[2] + span * slopes[2]
-    fall_slope = span_slope * ends[3] + span * slopes[3]
-    area = w * (start + w * (rise / 2.0 + w * (c2 / 3.0 + w * c3 / 4.0)))
-    change = rise_slope / 2.0 + w * (
-        -(2.0 * rise_slope + fall_slope) / 3.0 + w * (rise_slope + fall_slope) / 4.0
-    )
-    w_slope = 0.0 if w == 1.0 else -(slopes[0] + w * span_slope) / span
-    force = start + w * (rise + w * (c2 + w * c3))
-    return float(span_slope * area + span * (force * w_slope + w * w * change))
 
 
 class SpatialFlankLaws(NamedTuple):
@@ -242,7 +92,7 @@ class SpatialFlankLaws(NamedTuple):
 
 
 @inner
-def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, channel: int) -> _Lever:
+def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, channel: int) -> Lever:
     """Return a per-level quantity at the force found: cubic in the force between two levels."""
     level = laws.grid.base.offset[entry, 4] + force.interval
     start = laws.grid.base.level[level]
@@ -257,17 +107,17 @@ def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, cha
     slope = by[0] * low.value + by[1] * low_slope.value + by[2] * high.value + by[3] * high_slope.value
     in_m = at[0] * low.m + at[1] * low_slope.m + at[2] * high.m + at[3] * high_slope.m
     in_a = at[0] * low.a + at[1] * low_slope.a + at[2] * high.a + at[3] * high_slope.a
-    return _Lever(value, slope * force.d, in_m + slope * force.m, in_a + slope * force.a)
+    return Lever(value, slope * force.d, in_m + slope * force.m, in_a + slope * force.a)
 
 
 @inner
-def _load_arm(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> _Lever:
+def _load_arm(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> Lever:
     """Return lambda, the load arm over the face width from the middle of the common face."""
     if laws.per_face[entry] == 0.0:
-        return _Lever(0.0, 0.0, 0.0, 0.0)
+        return Lever(0.0, 0.0, 0.0, 0.0)
     lever, per_face = _lever(laws, entry, cell, force, LOAD_ARM), laws.per_face[entry]
-    moved = lever.value - laws.mid_face[entry]
-    return _Lever(moved * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
+    offset = lever.value - laws.mid_face[entry]
+    return Lever(offset * per_face, lever.d * per_face, lever.m * per_face, lever.a * per_face)
 
 
 @inner
@@ -320,7 +170,7 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
     if to_a > 0:
         tangent[row, to_a] = contact.a * gain - tilting * arm.a
     if to_m > 0:
-        back = _Lever(-arm.value, -arm.d, -arm.m, -arm.a)
+        back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
         _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
     if to_s > 0:
         slip, spin = (
@@ -339,15 +189,15 @@ def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: in
 @inner
 def _sliding(
     laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, slip: float, roll: float
-) -> _Sliding:
+) -> Sliding:
     """Return the forces along the rows of sliding and rolling, whose rates are `slip` and `roll`, m/s."""
     share = _lever(laws, entry, cell, force, SLIDING_SHARE)
     lever = _lever(laws, entry, cell, force, SLIDING_LEVER)
     mu, per_radius = laws.friction[entry], 1.0 / laws.radius[entry]
-    slid = _friction(share, lever, slip, roll * per_radius, laws.running[entry])
-    return _Sliding(
-        _scaled(slid.along, mu),
-        _scaled(slid.about, mu * per_radius),
+    slid = sliding_force(share, lever, slip, roll * per_radius, laws.running[entry])
+    return Sliding(
+        scaled(slid.along, mu),
+        scaled(slid.about, mu * per_radius),
         mu * slid.along_rate,
         mu * per_radius * slid.mixed_rate,
         mu * per_radius * per_radius * slid.about_rate,
@@ -360,21 +210,21 @@ def _in_proportion(
     tangent: FloatArray,
     viscous: FloatArray,
     row: int,
-    here: int,
+    target: int,
     rows: int,
-    factor: _Lever,
+    factor: Lever,
     to_m: int,
     to_a: int,
 ) -> None:
-    force[here] = factor.value * force[row]
+    force[target] = factor.value * force[row]
     for k in range(rows):
-        tangent[here, k] = factor.value * tangent[row, k]
-        viscous[here, k] = factor.value * viscous[row, k]
-    tangent[here, 0] += factor.d * force[row]
+        tangent[target, k] = factor.value * tangent[row, k]
+        viscous[target, k] = factor.value * viscous[row, k]
+    tangent[target, 0] += factor.d * force[row]
     if to_m > 0:
-        tangent[here, to_m] += factor.m * force[row]
+        tangent[target, to_m] += factor.m * force[row]
     if to_a > 0:
-        tangent[here, to_a] += factor.a * force[row]
+        tangent[target, to_a] += factor.a * force[row]
 
 
 @routine

@@ -13,9 +13,6 @@ from dynamics.meshes.standard_sliding import StandardTeeth, sliding_positions, s
 from dynamics.meshes.technique import PlainTable
 from dynamics.types import FloatArray
 
-# A mesh-force table of constant stiffness.
-
-
 PER_HARMONIC = 64
 """Knots per period of the highest harmonic: cubic pieces are then within 2.5e-7 of its amplitude."""
 LEVEL = 1e3

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from dynamics.kernels.compiled import compiled, inner
-from dynamics.meshes.packed_tables import ORDER, PackedTables
+from dynamics.meshes.packed_tables import PackedTables
 from dynamics.types import FloatArray
 
 
 @inner
-def _cubic(row: FloatArray, index: int, column: int, u: float) -> float:
+def cubic_value(row: FloatArray, index: int, column: int, u: float) -> float:
     """Evaluate the cubic in ``row[index, column : column + 4]`` at u."""
     higher = row[index, column + 1] + u * (row[index, column + 2] + u * row[index, column + 3])
     return float(row[index, column] + u * higher)
@@ -42,7 +42,7 @@ def position_interval(table: PackedTables, flank: int, position: float) -> tuple
 
 
 @inner
-def _level_interval(
+def level_interval(
     table: PackedTables, flank: int, row: int, u: float, deflection: float, hint: int
 ) -> tuple[int, float, float]:
     """Return the level k whose interval holds `deflection`, and the deflections at k and k + 1.
@@ -52,13 +52,13 @@ def _level_interval(
     """
     last = table.offset[flank, 5] - 2
     k = min(max(hint, 0), last)
-    low, high = _cubic(table.row, row + k, 0, u), _cubic(table.row, row + k + 1, 0, u)
+    low, high = cubic_value(table.row, row + k, 0, u), cubic_value(table.row, row + k + 1, 0, u)
     while deflection < low and k > 0:
         k -= 1
-        low, high = _cubic(table.row, row + k, 0, u), low
+        low, high = cubic_value(table.row, row + k, 0, u), low
     while deflection >= high and k < last:
         k += 1
-        low, high = high, _cubic(table.row, row + k + 1, 0, u)
+        low, high = high, cubic_value(table.row, row + k + 1, 0, u)
     return k, low, high
 
 
@@ -71,12 +71,12 @@ def table_force(
     Zero below lift-off; straight on with the last stiffness above the last level.
     """
     row, u, _ = position_interval(table, flank, position)
-    k, low, high = _level_interval(table, flank, row, u, deflection, hint)
+    k, low, high = level_interval(table, flank, row, u, deflection, hint)
     if deflection < low:
         return 0.0, 0.0, k
     level = table.offset[flank, 4] + k
     if deflection >= high:
-        stiffness = _cubic(table.row, row + k + 1, 4, u)
+        stiffness = cubic_value(table.row, row + k + 1, 4, u)
         return table.level[level + 1] + stiffness * (deflection - high), stiffness, k
     span = high - low
     w = (deflection - low) / span
@@ -90,7 +90,7 @@ def _force_cubic(
     table: PackedTables, row: int, level: int, u: float, span: float
 ) -> tuple[float, float, float]:
     """Return the coefficients of w, w^2, w^3 in the force on a level interval of the width `span` (m)."""
-    rise, fall = span * _cubic(table.row, row, 4, u), span * _cubic(table.row, row + 1, 4, u)
+    rise, fall = span * cubic_value(table.row, row, 4, u), span * cubic_value(table.row, row + 1, 4, u)
     step = table.level[level + 1] - table.level[level]
     return rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
 
@@ -130,12 +130,12 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
     """Return what `table_deflection` does for a force in the level interval `k`."""
     row, u, _ = position_interval(table, flank, position)
     first = table.offset[flank, 4]
-    low, wanted = _cubic(table.row, row + k, 0, u), force - table.level[first + k]
+    low, wanted = cubic_value(table.row, row + k, 0, u), force - table.level[first + k]
     if wanted <= 0.0:
         return float(low)
-    high = _cubic(table.row, row + k + 1, 0, u)
+    high = cubic_value(table.row, row + k + 1, 0, u)
     if force >= table.level[first + k + 1]:
-        return float(high + (force - table.level[first + k + 1]) / _cubic(table.row, row + k + 1, 4, u))
+        return float(high + (force - table.level[first + k + 1]) / cubic_value(table.row, row + k + 1, 4, u))
     # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
     rise, c2, c3 = _force_cubic(table, row + k, first + k, u, high - low)
     w, least, most = wanted / (rise + c2 + c3), 0.0, 1.0
@@ -154,104 +154,35 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
     return float(low + w * (high - low))
 
 
-# Compiled potential energy of a mesh-force table and its derivative in position.
-
-
-@inner
-def _cubic_slope(row: FloatArray, index: int, column: int, u: float) -> float:
-    """Return the derivative in u of the cubic in ``row[index, column : column + 4]``."""
-    return float(
-        row[index, column + 1] + u * (2.0 * row[index, column + 2] + 3.0 * u * row[index, column + 3])
-    )
-
-
-@compiled
-def table_energy(
-    table: PackedTables, flank: int, position: float, deflection: float, hint: int
-) -> tuple[float, float]:
-    """Return V = integral of the force over the deflection from lift-off, J, and dV/dx, J per base pitch.
-
-    The intervals below hold ``PackedTables.energy``; the last one is integrated up to `deflection`.
-    """
-    row, u, per_width = position_interval(table, flank, position)
-    k, low, high = _level_interval(table, flank, row, u, deflection, hint)
-    if deflection < low:
-        return 0.0, 0.0
-    energy, slope = _energy_below(table, row + k, u)
-    low_slope = _cubic_slope(table.row, row + k, 0, u)
-    high_slope = _cubic_slope(table.row, row + k + 1, 0, u)
-    span, span_slope = high - low, high_slope - low_slope
-    w = min((deflection - low) / span, 1.0)
-    w_slope = 0.0 if w == 1.0 else -(low_slope + w * span_slope) / span
-    part, change = _interval_energy(table, flank, row, k, u, w, w_slope)
-    energy, slope = energy + part, slope + change
-    if deflection >= high:
-        force = table.level[table.offset[flank, 4] + k + 1]
-        stiffness, beyond = _cubic(table.row, row + k + 1, 4, u), deflection - high
-        energy += beyond * (force + 0.5 * stiffness * beyond)
-        slope += 0.5 * _cubic_slope(table.row, row + k + 1, 4, u) * beyond**2
-        slope -= high_slope * (force + stiffness * beyond)
-    return energy, slope * per_width
-
-
-@inner
-def _energy_below(table: PackedTables, row: int, u: float) -> tuple[float, float]:
-    energy, slope = table.energy[row, ORDER], 0.0
-    for power in range(ORDER - 1, -1, -1):
-        slope = slope * u + energy
-        energy = energy * u + table.energy[row, power]
-    return energy, slope
-
-
-@inner
-def _interval_energy(
-    table: PackedTables, flank: int, row: int, k: int, u: float, w: float, w_slope: float
-) -> tuple[float, float]:
-    """Energy and its derivative in u of level interval k, up to the fraction w of it (dw/du = w_slope)."""
-    level = table.offset[flank, 4] + k
-    span = _cubic(table.row, row + k + 1, 0, u) - _cubic(table.row, row + k, 0, u)
-    stiff, stiff_end = _cubic(table.row, row + k, 4, u), _cubic(table.row, row + k + 1, 4, u)
-    span_slope = _cubic_slope(table.row, row + k + 1, 0, u) - _cubic_slope(table.row, row + k, 0, u)
-    stiff_slope = _cubic_slope(table.row, row + k, 4, u)
-    stiff_end_slope = _cubic_slope(table.row, row + k + 1, 4, u)
-    start, step = table.level[level], table.level[level + 1] - table.level[level]
-    # force on the interval: start + rise w + c2 w^2 + c3 w^3
-    rise, fall = span * stiff, span * stiff_end
-    rise_slope = span_slope * stiff + span * stiff_slope
-    fall_slope = span_slope * stiff_end + span * stiff_end_slope
-    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
-    area = w * (start + w * (rise / 2.0 + w * (c2 / 3.0 + w * c3 / 4.0)))
-    force = start + w * (rise + w * (c2 + w * c3))
-    change = rise_slope / 2.0 + w * (
-        -(2.0 * rise_slope + fall_slope) / 3.0 + w * (rise_slope + fall_slope) / 4.0
-    )
-    return span * area, span_slope * area + span * (force * w_slope + w * w * change)
-
-
-# Compiled derivative in position of the deflection at constant force.
-
-
 @compiled
 def deflection_slope(table: PackedTables, flank: int, position: float, force: float) -> float:
     """Return d(deflection)/d(position) at constant `force` > 0, m per base pitch: -F_x / F_d."""
     deflection = table_deflection(table, flank, position, force)
     row, u, per_width = position_interval(table, flank, position)
-    k, low, high = _level_interval(table, flank, row, u, deflection, 0)
-    low_slope = _cubic_slope(table.row, row + k, 0, u)
-    high_slope = _cubic_slope(table.row, row + k + 1, 0, u)
+    k, low, high = level_interval(table, flank, row, u, deflection, 0)
+    low_slope = cubic_slope(table.row, row + k, 0, u)
+    high_slope = cubic_slope(table.row, row + k + 1, 0, u)
     stiff_slope, stiff_end_slope = (
-        _cubic_slope(table.row, row + k, 4, u),
-        _cubic_slope(table.row, row + k + 1, 4, u),
+        cubic_slope(table.row, row + k, 4, u),
+        cubic_slope(table.row, row + k + 1, 4, u),
     )
     if deflection >= high:
-        stiffness = _cubic(table.row, row + k + 1, 4, u)
+        stiffness = cubic_value(table.row, row + k + 1, 4, u)
         return (high_slope - stiff_end_slope * (deflection - high) / stiffness) * per_width
     span, span_slope = high - low, high_slope - low_slope
     w = (deflection - low) / span
     w_slope = -(low_slope + w * span_slope) / span
-    rise_slope = span_slope * _cubic(table.row, row + k, 4, u) + span * stiff_slope
-    fall_slope = span_slope * _cubic(table.row, row + k + 1, 4, u) + span * stiff_end_slope
+    rise_slope = span_slope * cubic_value(table.row, row + k, 4, u) + span * stiff_slope
+    fall_slope = span_slope * cubic_value(table.row, row + k + 1, 4, u) + span * stiff_end_slope
     tangent = table_force(table, flank, position, deflection, k)[1]
     force_slope = w * (rise_slope + w * (-2.0 * rise_slope - fall_slope + w * (rise_slope + fall_slope)))
     force_slope += tangent * span * w_slope
     return -force_slope / tangent * per_width
+
+
+@inner
+def cubic_slope(row: FloatArray, index: int, column: int, u: float) -> float:
+    """Return the derivative in u of the cubic in ``row[index, column : column + 4]``."""
+    return float(
+        row[index, column + 1] + u * (2.0 * row[index, column + 2] + 3.0 * u * row[index, column + 3])
+    )

@@ -48,14 +48,14 @@ def force_balance(
     local = local_state(arrays, time, q, v)
     force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
     rows = np.repeat(arrays.elements.law == Law.ROTATING_FRAME, np.diff(arrays.elements.first))
-    kept = np.where(rows & (not gyroscopic), 0.0, 1.0)[:, None]
-    tangent = kept * local.tangent
+    weight = np.where(rows & (not gyroscopic), 0.0, 1.0)[:, None]
+    tangent = weight * local.tangent
     if not gyroscopic:
         tangent = tangent - swept_by_frames(arrays.elements, local, local.pace)
     return ForceBalance(
         force,
         arrays.stiffness + _on_freedoms(arrays, tangent),
-        arrays.damping + _on_freedoms(arrays, kept * local.viscous),
+        arrays.damping + _on_freedoms(arrays, weight * local.viscous),
         local,
     )
 

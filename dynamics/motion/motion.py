@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from dynamics.arrays.arrays import KinematicMotion, SystemArrays
-from dynamics.arrays.sparse_rows import add_modal_motion, row_product, row_products
-from dynamics.forces.elements import UNBALANCE, Elements
+from dynamics.arrays.modal_freedoms import add_modal_motion
+from dynamics.arrays.sparse_rows import row_product, row_products
+from dynamics.forces.elements import Elements
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.cubics import Cubics, area, cubic, piece_at, value_and_slope
 from dynamics.kernels.local_state import LocalState
-from dynamics.loads.load_laws import unbalance
 from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
@@ -21,10 +21,6 @@ QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""
 QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
-ITERATIONS = 30
-"""Each leaves of the error the part that the center of mass is off the axis, over the radius of gyration."""
-SETTLED = 1e-14
-"""Of the forces: the last change."""
 
 
 @compiled
@@ -125,8 +121,8 @@ def add_body_motion(
     """Do what `add_motion` does without modal freedoms, which `q` and `v` need not have."""
     bodies, turn = system.sparse.bodies, system.sparse.turn
     for r in range(coordinate.size):
-        moved, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
-        coordinate[r], rate[r] = system.elements.offset[r] + moved, moving
+        displacement, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
+        coordinate[r], rate[r] = system.elements.offset[r] + displacement, moving
     for m in range(position.size):
         position[m] += row_product(turn, turn.weight, m, q)
 
@@ -170,60 +166,3 @@ def external_force(system: SystemArrays, time: float, motion: FloatArray, force:
         torque = law_value(system.load.torque, load, time)
         for i in range(system.sparse.modal.first):
             force[i] += system.load.direction[load, i] * torque
-
-
-# Accelerations of local coordinates, for the laws that depend on them: unbalances.
-
-
-@inner
-def set_acceleration(
-    system: SystemArrays, motion: FloatArray, acceleration: FloatArray, target: FloatArray
-) -> None:
-    """Write accelerations of the local coordinates by q'' (n,), and by the kinematic motion, (R,), m/s^2."""
-    direction, drift = system.sparse.direction, system.elements.drift
-    for r in range(target.size):
-        target[r] = row_product(direction, direction.weight, r, acceleration)
-        for k in range(motion.shape[0]):
-            target[r] += drift[k, r] * motion[k, ACCELERATION]
-
-
-@inner
-def settle_unbalance(
-    system: SystemArrays,
-    motion: FloatArray,
-    local: LocalState,
-    external: FloatArray,
-    acceleration: FloatArray,
-) -> None:
-    """Make unbalances and the accelerations q'' (n,) that they depend on agree.
-
-    `external` (n,) are all forces with those of the elements in ``local.force``, and `acceleration` is what
-    they make; both change along.
-    """
-    elements, sparse = system.elements, system.sparse
-    for _ in range(ITERATIONS):
-        set_acceleration(system, motion, acceleration, local.acceleration)
-        change, size = 0.0, 0.0
-        for e in range(elements.law.size):
-            if elements.law[e] != UNBALANCE:
-                continue
-            first, end = elements.first[e], elements.first[e + 1]
-            for r in range(first, end):
-                _add_row(system, r, local.force[r], external)
-            before = local.force[first], local.force[first + 1], local.force[first + 2]
-            unbalance(elements.laws.unbalance, elements.entry[e], local, first)
-            for r in range(first, end):
-                _add_row(system, r, -local.force[r], external)
-                change = max(change, abs(local.force[r] - before[r - first]))
-                size = max(size, abs(local.force[r]))
-        for i in range(acceleration.size):
-            acceleration[i] = row_product(sparse.mobility, sparse.mobility.weight, i, external)
-        if change <= SETTLED * size:
-            break
-
-
-@inner
-def _add_row(system: SystemArrays, row: int, force: float, external: FloatArray) -> None:
-    direction = system.sparse.direction
-    for entry in range(direction.first[row], direction.first[row + 1]):
-        external[direction.column[entry]] += direction.weight[entry] * force

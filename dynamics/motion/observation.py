@@ -14,6 +14,7 @@ from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.meshes.packed_tables import PackedTables
 from dynamics.meshes.table_lookup import table_deflection, wrapped
+from dynamics.motion.local_accelerations import settle_unbalance
 from dynamics.motion.motion import (
     MOTION_COLUMNS,
     add_body_motion,
@@ -21,7 +22,6 @@ from dynamics.motion.motion import (
     external_force,
     set_drift,
     set_phases,
-    settle_unbalance,
     write_motion,
 )
 from dynamics.types import FloatArray, IntArray

@@ -87,11 +87,11 @@ def _mesh_harmonics(result: RunResult, highest: int) -> _MeshHarmonics:
         for multiple in range(1, int(highest / ratio[mesh] * (1.0 + SAME)) + 1)
     ]
     rows.sort(key=lambda row: row[0])
-    kept = rows[:1]
+    first_row = rows[:1]
     for row in rows[1:]:
-        if row[0] - kept[-1][0] > SAME * row[0]:
-            kept.append(row)
-    order, mesh, multiple = (np.array(column) for column in zip(*kept, strict=True))
+        if row[0] - first_row[-1][0] > SAME * row[0]:
+            first_row.append(row)
+    order, mesh, multiple = (np.array(column) for column in zip(*first_row, strict=True))
     return _MeshHarmonics(order, mesh, multiple)
 
 
@@ -199,20 +199,20 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     harmonics = _mesh_harmonics(result, checked_order(result, "orders", orders, mesh))
     pitches = _checked_pitches(harmonics, pitches)
     cycles = harmonics.cycles(result)
-    own = cycles[np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1))]
-    windows = list(_windows(own, pitches))
+    mesh_cycles = cycles[np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1))]
+    windows = list(_windows(mesh_cycles, pitches))
     rows = [_row(result, harmonics, cycles, signals, window) for window in windows]
-    kept = [row for row in rows if row.sweep <= MOST_SWEEP]  # a mesh that rests or reverses sweeps from 0
-    if not kept:
-        raise _no_window(own, pitches, rows)
+    steady = [row for row in rows if row.sweep <= MOST_SWEEP]  # a mesh that rests or reverses sweeps from 0
+    if not steady:
+        raise _no_window(mesh_cycles, pitches, rows)
     facts: Json = {
         "leading_shaft": leading_shaft(result),
         "pitches": pitches,
-        "windows_left_out": len(windows) - len(kept),
+        "windows_left_out": len(windows) - len(steady),
         "effect_ledger": result.effect_ledger,
     }
-    falls = all(later.speed < earlier.speed for earlier, later in pairwise(kept))
-    return _put_together(result, harmonics, kept[::-1] if falls else kept, facts)
+    falls = all(later.speed < earlier.speed for earlier, later in pairwise(steady))
+    return _put_together(result, harmonics, steady[::-1] if falls else steady, facts)
 
 
 def _checked_pitches(harmonics: _MeshHarmonics, pitches: int | None) -> int:
@@ -243,7 +243,7 @@ def _row(
     result: RunResult, harmonics: _MeshHarmonics, cycles: FloatArray, signals: FloatArray, window: slice
 ) -> _Row:
     hertz = result.mesh_frequency[:, window]
-    own = hertz[_counting_mesh(result)]
+    mesh_hertz = hertz[_counting_mesh(result)]
     progress = cycles[0, window]
     # Hann by position: the window has its length in pitches
     weight = np.sin(np.pi * (progress - progress[0]) / (progress[-1] - progress[0])) ** 2
@@ -258,7 +258,7 @@ def _row(
         frequency,
         phasors,
         bool(np.all(result.least_mesh_force[:, window] > 0.0)),
-        float(np.ptp(own) / (part @ own)),
+        float(np.ptp(mesh_hertz) / (part @ mesh_hertz)),
         _remainder(left[:, :3], phasors[:, :3], cycles[:, window], weight, frequency, result.sample_rate),
     )
 
@@ -276,11 +276,11 @@ def _remainder(
     line = np.fft.rfftfreq(weight.size, 1.0 / rate)
     half = 0.5 * float(frequency[0])
     band = (line >= half) & (line <= float(frequency[-1]) + half)
-    own, whole = (
+    energy, whole = (
         np.sum(np.abs(np.fft.rfft(series * weight, axis=-1)[..., band]) ** 2, axis=(-2, -1))
         for series in (left, left + orders)
     )
-    return np.asarray(np.divide(own, whole, out=np.zeros(own.shape), where=whole > 0.0))
+    return np.asarray(np.divide(energy, whole, out=np.zeros(energy.shape), where=whole > 0.0))
 
 
 def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:

@@ -109,8 +109,8 @@ def _weights(frequency: FloatArray, span: tuple[float, float]) -> FloatArray:
     share[:-1] += 0.5 * np.diff(nodes)
     share[1:] += 0.5 * np.diff(nodes)
     after = np.clip(np.searchsorted(frequency, nodes), 1, frequency.size - 1)
-    apart = frequency[after] - frequency[after - 1]
-    part = np.clip((nodes - frequency[after - 1]) / np.where(apart > 0.0, apart, 1.0), 0.0, 1.0)
+    spacing = frequency[after] - frequency[after - 1]
+    part = np.clip((nodes - frequency[after - 1]) / np.where(spacing > 0.0, spacing, 1.0), 0.0, 1.0)
     np.add.at(weight, after - 1, share * (1.0 - part))
     np.add.at(weight, after, share * part)
     return np.asarray(weight / (high - low))

@@ -142,7 +142,7 @@ def _waterfall(
         made[0].frequency[:lines],
         time,
         frequency,
-        np.stack([one.amplitude[..., :lines] for one in made], axis=-2),
+        np.stack([waterfall.amplitude[..., :lines] for waterfall in made], axis=-2),
         np.stack([values[..., block].std(axis=-1) for block in blocks], axis=-1),
         made[0].unit,
         made[0].noise_bandwidth,

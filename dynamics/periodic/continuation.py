@@ -201,7 +201,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
     period instead of 4 n. They are taken anew where the residual falls by too little.
     """
     aim = point.z + step * point.tangent
-    z, moved, matrix = aim.copy(), aim, np.vstack([point.jacobian, point.tangent])
+    z, correction, matrix = aim.copy(), aim, np.vstack([point.jacobian, point.tangent])
     before, renewed = np.inf, 0
     for iteration in range(ITERATION_LIMIT + 1):
         y, speed = z[:-1] * problem.size, float(z[-1] * scale)
@@ -220,12 +220,12 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
             jacobian = _jacobian(problem, scale, over_period, y, over_period.monodromy(y))
             matrix, renewed = np.vstack([jacobian, point.tangent]), renewed + 1
         elif iteration:
-            matrix = matrix + np.outer(right, moved / (moved @ moved))
+            matrix = matrix + np.outer(right, correction / (correction @ correction))
         if not np.all(np.isfinite(matrix)):
             return None
         before = float(np.linalg.norm(right))
-        moved = np.asarray(-np.linalg.lstsq(matrix, right, rcond=None)[0])
-        z = z + moved
+        correction = np.asarray(-np.linalg.lstsq(matrix, right, rcond=None)[0])
+        z = z + correction
     return None
 
 

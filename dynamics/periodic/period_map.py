@@ -24,9 +24,9 @@ from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.cubics import Cubics
 from dynamics.linearize import Modes, natural_modes
+from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import about_running, require_freedoms
 from dynamics.linearize.load_harmonics import load_cycles
-from dynamics.linearize.operating_speeds import CommonPeriod, common_period
 from dynamics.mechanism.additions import ELEMENT_PASSING
 from dynamics.meshes.packed_tables import BUCKETS_PER_KNOT
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -185,8 +185,8 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
         passed = (knot[:, None] + span * np.arange(cycles)) / pitches
         phases.append(np.ravel(passed) % 1.0)
     phase = np.sort(np.concatenate(phases))
-    kept = np.diff(phase, prepend=-1.0) > SAME
-    phase = phase[kept]
+    distinct = np.diff(phase, prepend=-1.0) > SAME
+    phase = phase[distinct]
     phase[-1] = 1.0
     return phase
 
@@ -245,10 +245,10 @@ def _stiffest(system: System) -> float:
 
 def _resonant_gain(system: System, modes: Modes) -> float:
     """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
-    held = modes.damping_ratio[modes.frequency > 0.0]
-    if system.scene.meshes or not held.size:
+    ratios = modes.damping_ratio[modes.frequency > 0.0]
+    if system.scene.meshes or not ratios.size:
         return 1.0
-    return min(MOST_GAIN, 0.5 / max(float(np.min(held)), 0.5 / MOST_GAIN))
+    return min(MOST_GAIN, 0.5 / max(float(np.min(ratios)), 0.5 / MOST_GAIN))
 
 
 @dataclass(frozen=True)

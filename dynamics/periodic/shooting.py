@@ -132,11 +132,11 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
             status = OrbitStatus.CONVERGED
             break
         update = _solve(np.eye(y.size) - jacobian, left)
-        moved = _line_search(over_period, y, update, left)
-        if moved is None:
+        searched = _line_search(over_period, y, update, left)
+        if searched is None:
             status = OrbitStatus.STALLED
             break
-        y, left = moved
+        y, left = searched
         taken += 1
     return Orbit.of(over_period, status, y, left, jacobian, taken)
 

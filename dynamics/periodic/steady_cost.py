@@ -80,8 +80,8 @@ def point_periods(
 
 def steps_share(problem: PeriodicProblem, speed: FloatArray) -> float:
     """Return how many steps motions at speeds take on average, of those of the problem."""
-    some = speed[np.linspace(0, speed.size - 1, min(speed.size, SOME)).astype(int)]
-    return float(np.mean([problem.at(float(w)).grid.level.size for w in some])) / problem.grid.level.size
+    sample = speed[np.linspace(0, speed.size - 1, min(speed.size, SOME)).astype(int)]
+    return float(np.mean([problem.at(float(w)).grid.level.size for w in sample])) / problem.grid.level.size
 
 
 def steady_cost(
@@ -94,20 +94,20 @@ def steady_cost(
     sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
     problem = periodic_problem(system, sense * float(speed[0]), repeat)
     ends = [sense * float(at) for at in (speed[0], speed[-1])]
-    each = float(np.mean([period_seconds(problem, at) for at in ends]))
+    period_cost = float(np.mean([period_seconds(problem, at) for at in ends]))
     freedoms, points, making = problem.rest.size // 2, 0, 0.0
     if branch and speed.size > 1:
         at, states = _response_states(problem, sense * speed)
-        affords = PROBED * SETTLING * each < AFFORDED
-        seconds, length = _settling(problem, at, states) if affords else (each, _lengths(states).sum())
-        each, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
+        affords = PROBED * SETTLING * period_cost < AFFORDED
+        seconds, length = _settling(problem, at, states) if affords else (period_cost, _lengths(states).sum())
+        period_cost, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
         making = min(_taken(PeriodMap(problem, end), problem.rest, 1) for end in ends)
     whole = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
     return SteadyCost(
         speed.size * (2 if speed.size > 1 else 1),
-        float(np.mean(whole)) * each * steps_share(problem, sense * speed),
+        float(np.mean(whole)) * period_cost * steps_share(problem, sense * speed),
         points,
-        point_periods(freedoms) * each + BRANCH_MAPS * making,
+        point_periods(freedoms) * period_cost + BRANCH_MAPS * making,
         tuple(repeat * abs(count) for count in problem.period.pitches),
         freedoms,
     )

@@ -134,8 +134,8 @@ def _figures_of(problem: PeriodicProblem, orbits: Sequence[Orbit], swept: int) -
     on_bearing = np.full((len(orbits), bearings), np.nan)
     for index, orbit in enumerate(orbits):
         if orbit.status.usable:
-            own = problem.at(orbit.speed) if index < swept else problem
-            per_mesh[:, index], on_bearing[index] = _figures(own, orbit)
+            problem_at = problem.at(orbit.speed) if index < swept else problem
+            per_mesh[:, index], on_bearing[index] = _figures(problem_at, orbit)
     return {
         "speed": np.array([abs(orbit.speed) for orbit in orbits]),
         "status": np.array([int(orbit.status) for orbit in orbits], dtype=np.int64),
@@ -184,10 +184,10 @@ def sweep(
     """
     state, orbits = problem.rest, []
     problems = [problem.at(float(speed)) for speed in speeds]
-    steps = np.cumsum([own.grid.level.size for own in problems])
-    for own, speed, done in zip(problems, map(float, speeds), steps, strict=True):
-        state = settled(own, speed, state, periods)
-        orbits.append(find_orbit(own, speed, state))
+    steps = np.cumsum([problem_at.grid.level.size for problem_at in problems])
+    for problem_at, speed, done in zip(problems, map(float, speeds), steps, strict=True):
+        state = settled(problem_at, speed, state, periods)
+        orbits.append(find_orbit(problem_at, speed, state))
         if orbits[-1].status.usable and orbits[-1].stable:
             state = orbits[-1].state
         if progress is not None:
@@ -404,8 +404,8 @@ def _jumps(figures: dict[str, Any], speeds: int) -> list[tuple[int, tuple[float,
     The first `speeds` figures are of rising speeds, as many after them of falling ones.
     """
     rising, falling = figures["rms_error"][:speeds], figures["rms_error"][speeds : 2 * speeds][::-1]
-    apart = np.abs(rising - falling) > SAME * np.maximum(rising, falling)  # False where one was not found
-    two = np.any(apart, axis=1)
+    jump = np.abs(rising - falling) > SAME * np.maximum(rising, falling)  # False where one was not found
+    two = np.any(jump, axis=1)
     jumps = []
     for index in range(len(two) - 1):
         low, high = (float(value) for value in figures["speed"][index : index + 2])

@@ -34,15 +34,15 @@ class ArrayFile:
     @classmethod
     def arrays(cls) -> dict[str, Stored]:
         """Return what is stored how, of the fields that are arrays."""
-        own = fields(cls)  # type: ignore[arg-type]
-        return {each.name: each.metadata["stored"] for each in own if "stored" in each.metadata}
+        items = fields(cls)  # type: ignore[arg-type]
+        return {item.name: item.metadata["stored"] for item in items if "stored" in item.metadata}
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write a netCDF-4 file; it appears whole or not at all.
 
         Complex arrays get a last dimension of real and imaginary part.
         """
-        values = {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+        values = {item.name: getattr(self, item.name) for item in fields(self)}  # type: ignore[arg-type]
         kinds = self.arrays()
         arrays = {name: np.asarray(values.pop(name)) for name in kinds}
         values |= {name: asdict(values[name]) for name in self.RECORDS}

@@ -89,8 +89,8 @@ class EnergyAudit:
     @classmethod
     def from_arrays(cls, work: FloatArray, stored: FloatArray, fallen: float = 0.0) -> EnergyAudit:
         """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
-        gained, held = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
-        return cls(*(float(value) for value in (*work, *gained, held, fallen)))
+        gained, largest_stored = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
+        return cls(*(float(value) for value in (*work, *gained, largest_stored, fallen)))
 
     def check(self) -> Check:
         """Return by how much the balance does not close, over the turnover, and how far a loss fell, J."""

@@ -11,8 +11,8 @@ from dynamics.assembly.assemble import System
 from dynamics.bearings.seat import SEAT
 from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_ARM, MISALIGNMENT
-from dynamics.mechanism.freedoms import ROTATION
-from dynamics.mechanism.line_of_action import common_face_width, table_sense
+from dynamics.mechanism.carried_planets import ROTATION
+from dynamics.mechanism.flank_gradients import common_face_width, table_sense
 from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
 from dynamics.motion.observation import Observed, static_deflections
 from dynamics.motion.sampled_states import States
@@ -109,9 +109,9 @@ def histories(
     those of the unfiltered motion.
     """
     scene = system.scene
-    q, v, moved = signals.q, signals.v, states.moved
+    q, v, quanta = signals.q, signals.v, states.moved
     outputs = scene.outputs
-    force, moment = _on_the_ground(system, laws, signals.force, q, v, moved)
+    force, moment = _on_the_ground(system, laws, signals.force, q, v, quanta)
     driving = system.driving_rows
     return {
         "time": time,
@@ -140,7 +140,7 @@ def histories(
         "displacement": np.ascontiguousarray(q.T) if outputs.displacements else np.empty((0, time.size)),
         "velocity": np.ascontiguousarray(v.T) if outputs.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
-        **_accelerations(system, laws, time, signals, moved),
+        **_accelerations(system, laws, time, signals, quanta),
     }
 
 

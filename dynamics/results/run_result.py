@@ -240,8 +240,8 @@ class RunResult:
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
         if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
-            stated = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
-            raise ResultError(f"{path.name}: schema is {stated}, expected {SCHEMA} {SCHEMA_VERSION}")
+            schema = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
+            raise ResultError(f"{path.name}: schema is {schema}, expected {SCHEMA} {SCHEMA_VERSION}")
         try:
             return _from_dataset(dataset)
         except DAMAGE as error:
@@ -270,9 +270,6 @@ SAMPLED = ("time", *OVER_TIME)
 """All that has one value per sample."""
 SERIES = OVER_TIME | _STORED
 """All series of a result, in the order of its files."""
-
-
-# The netCDF-4 file of a run, written block by block: memory does not grow with the run.
 
 
 class RunFile:
@@ -337,11 +334,11 @@ class RunFile:
     def _variable(self, name: str, series: Stored, values: FloatArray) -> Any:
         """Make one variable; what has no time is written at once."""
         if series.dimensions[-1] == "time":
-            before, each = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
-            each |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}
+            before, options = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
+            options |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}
         else:
-            each = {"data": values}
-        variable = self._file.create_dataset(name, **each, **PACKING, track_order=True)
+            options = {"data": values}
+        variable = self._file.create_dataset(name, **options, **PACKING, track_order=True)
         describe(variable, {"units": series.units, "long_name": series.long_name})
         if series.dimensions[-1] == "time":
             self._growing[name] = variable
@@ -363,7 +360,7 @@ def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
 
 def _from_dataset(dataset: xarray.Dataset) -> RunResult:
     fields: dict[str, Any] = {
-        name: tuple(str(each) for each in dataset[name].values) if name in dataset.coords else ()
+        name: tuple(str(item) for item in dataset[name].values) if name in dataset.coords else ()
         for name in NAMED
     }
     sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}

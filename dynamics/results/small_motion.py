@@ -43,10 +43,10 @@ class _Limit:
 
     def farthest(self, q: FloatArray) -> float:
         """Return the largest motion of the states q (T, n)."""
-        moved = q @ self.rows[:, : q.shape[1]].T
+        displacement = q @ self.rows[:, : q.shape[1]].T
         if self.line is None:
-            return float(np.sqrt(np.max(np.sum(moved**2, axis=1))))
-        length = np.sqrt(np.sum((self.line + moved) ** 2, axis=1))
+            return float(np.sqrt(np.max(np.sum(displacement**2, axis=1))))
+        length = np.sqrt(np.sum((self.line + displacement) ** 2, axis=1))
         return float(np.max(np.abs(length - math.hypot(*self.line))))
 
 
@@ -62,10 +62,10 @@ class SmallMotionCheck:
         """Take a block of unfiltered series, and the states they are of."""
         if not states.q.shape[0]:
             return
-        moved = [np.max(np.abs(series["dynamic_transmission_error"]), axis=1, initial=0.0)]
+        amplitudes = [np.max(np.abs(series["dynamic_transmission_error"]), axis=1, initial=0.0)]
         for limit in self._others:
-            moved.append(np.array([limit.farthest(states.q)]))
-        self._largest = np.fmax(self._largest, np.concatenate(moved))
+            amplitudes.append(np.array([limit.farthest(states.q)]))
+        self._largest = np.fmax(self._largest, np.concatenate(amplitudes))
 
     def checks(self) -> list[Check]:
         """Return those of the parts farthest beyond their bound, or of the one that comes nearest to it."""

@@ -32,9 +32,6 @@ from dynamics.shafts.shaft import PLACED, on_length
 from dynamics.temperatures import Temperatures
 from dynamics.types import FloatArray
 
-# Housings and bushings with matrices: what they can carry, and where.
-
-
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
@@ -110,9 +107,6 @@ def _alike_across(matrix: FloatArray) -> bool:
     return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))
 
 
-# Shafts of different frames: which lie on one axis, and what may join them.
-
-
 def _check_frames(scene: Scene) -> None:
     """Frames are those of carriers, pins turn with the planet's own carrier, planets rest on pins alone."""
     shafts = [shaft.name for shaft in scene.shafts]
@@ -173,20 +167,20 @@ def _check_couplings(scene: Scene) -> None:
 
 def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
     """Whether `shaft` lies on the axis of `carrier`."""
-    apart = math.dist(shaft.origin[:2], carrier.origin[:2])
-    return apart <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
+    distance = math.dist(shaft.origin[:2], carrier.origin[:2])
+    return distance <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
 
 
 def _check_bearing_laws(scene: Scene) -> None:
     """Every law, by kind, has its own direction of a bearing that can have it."""
     bearings = {bearing.name: bearing for bearing in (*scene.bushings, *scene.planet_bearings)}
-    stated = {kind: getattr(scene, kind) for kind in BEARING_PARTS}
-    for kind, parts in stated.items():
+    laws = {kind: getattr(scene, kind) for kind in BEARING_PARTS}
+    for kind, parts in laws.items():
         for index, part in enumerate(parts):
             one_of(f"{kind}[{index}].bushing", part.bushing, list(bearings))
-    for kind, parts in stated.items():
+    for kind, parts in laws.items():
         distinct(kind, [part.acts_at for part in parts])
-    for kind, parts in stated.items():
+    for kind, parts in laws.items():
         for index, law in enumerate(parts):
             bearing, field = bearings[law.bushing], law.fixed_direction
             turns = isinstance(bearing, Bushing) and scene.shaft(bearing.shaft).frame is not None
@@ -415,8 +409,8 @@ class Scene(BearingLawParts):
 
     def crosses_frames(self, coupling: Coupling) -> bool:
         """Whether a coupling has matrices and joins shafts of different frames."""
-        apart = self.shaft(coupling.first).frame != self.shaft(coupling.second).frame
-        return apart and (coupling.stiffness is not None or coupling.damping is not None)
+        different_frames = self.shaft(coupling.first).frame != self.shaft(coupling.second).frame
+        return different_frames and (coupling.stiffness is not None or coupling.damping is not None)
 
     def mounted(self, shaft: str) -> tuple[GearBody | DiscBody, ...]:
         """Return the rigid bodies on the shaft called `shaft`: gears, then discs."""

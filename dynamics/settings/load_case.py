@@ -55,14 +55,14 @@ class CaseForce:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        own = {"force": self.force, "moment": self.moment}
-        stated = {name: vector for name, vector in own.items() if vector is not None}
-        for name, vector in stated.items():
+        force_and_moment = {"force": self.force, "moment": self.moment}
+        vectors = {name: vector for name, vector in force_and_moment.items() if vector is not None}
+        for name, vector in vectors.items():
             for axis, value in zip("xyz", vector, strict=True):
                 finite(f"{name}.{axis}", value)
-        if stated and self.factor is not None:
-            raise InputError("factor", self.factor, f"left out if a {min(stated)} is given", _ONE)
-        if not stated and self.factor is None:
+        if vectors and self.factor is not None:
+            raise InputError("factor", self.factor, f"left out if a {min(vectors)} is given", _ONE)
+        if not vectors and self.factor is None:
             raise InputError("force", None, "given, or a moment, or a factor", _ONE)
 
 

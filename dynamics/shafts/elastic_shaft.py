@@ -2,205 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from dynamics.checks import positive
-from dynamics.errors import InputError
 from dynamics.shafts.beam_section import BeamSection
 from dynamics.shafts.bodies import Inertia
+from dynamics.shafts.craig_bampton import ElasticModes, Family, elastic_modes, free_frequencies, worst_error
 from dynamics.shafts.timoshenko_beam import PER_NODE, TimoshenkoBeam, timoshenko_beam
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-# Reduction of an elastic body to its interface and a few modes: Craig and Bampton.
-
-CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
-TRUNCATION = 0.01
-"""Relative error of the frequencies of interest at which enough of them are kept."""
 MESH_ERROR = 1e-3
 """Estimated relative error of the frequencies of interest at which beam elements are short enough."""
 FIRST_PARTS, LAST_PARTS = 8, 256  # elements per length of the shaft: where refining starts and ends
 ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x z, extension, torsion
-
-
-@dataclass(frozen=True)
-class _ReducedBody:
-    """Interface freedoms first, then amplitudes of b modes of unit modal mass with the interface held.
-
-    `motion` (n, a + b) is that of the body's freedoms per reduced one; `frequency` (b,) is in Hz.
-    """
-
-    motion: FloatArray
-    mass: FloatArray
-    stiffness: FloatArray
-    frequency: FloatArray
-
-
-def craig_bampton(
-    mass: FloatArray, stiffness: FloatArray, interface: IntArray, highest: float
-) -> _ReducedBody:
-    """Reduce a body (Craig and Bampton, AIAA Journal 6 (1968) 1313-1319).
-
-    The motion inside is what the interface imposes statically plus the modes with the interface held, up to a
-    frequency. Static motion under forces on the interface is exact, and so are rigid motions; natural
-    frequencies are bounded from below by the exact ones and fall to them as modes are added. Raises
-    `InputError`: the interface repeats freedoms or does not hold the body, or `highest` is not above zero.
-
-    Parameters
-    ----------
-    mass, stiffness : (n, n) arrays
-        Symmetric.
-    interface : (a,) int array
-        Freedoms where forces act; without repeats, enough to hold the body.
-    highest : float
-        Hz; modes up to it are kept.
-    """
-    from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
-
-    held = np.asarray(interface, dtype=np.int64)
-    if np.unique(held).size != held.size:
-        raise InputError("interface", held.tolist(), "without repeats")
-    limit = math.inf if highest == math.inf else positive("highest", highest)
-    inside = np.setdiff1d(np.arange(mass.shape[0]), held)
-    own, at = np.ix_(inside, inside), np.ix_(inside, held)
-    try:
-        square, shape = eigh(stiffness[own], mass[own]) if inside.size else (np.zeros(0), np.zeros((0, 0)))
-    except np.linalg.LinAlgError as error:
-        raise InputError("mass", "singular", "positive definite inside the interface") from error
-    if square.size and square[0] <= 1e-12 * square[-1]:
-        suggestion = "Add freedoms: inside, nothing may move as a rigid body."
-        raise InputError("interface", held.tolist(), "one that holds the body", suggestion)
-    frequency = np.sqrt(square) / (2.0 * math.pi)
-    kept = frequency <= limit
-    motion = np.zeros((mass.shape[0], held.size + int(np.count_nonzero(kept))))
-    motion[held, np.arange(held.size)] = 1.0
-    if inside.size:
-        motion[inside, : held.size] = -shape @ ((shape.T @ stiffness[at]) / square[:, None])
-        motion[inside, held.size :] = shape[:, kept]
-    return _ReducedBody(motion, motion.T @ mass @ motion, motion.T @ stiffness @ motion, frequency[kept])
-
-
-@dataclass(frozen=True)
-class _ElasticModes:
-    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = work of forces on shapes."""
-
-    shape: FloatArray
-    """Freedoms of the family per coordinate; the largest displacement (rotation) is 1. Shape (n, b)."""
-    mass: FloatArray
-    stiffness: FloatArray
-    """`mass`, `stiffness`: Modal: kg and N/m, of torsion kg m^2 and N m/rad. Shape (b,) each."""
-    inertial: FloatArray
-    """Coupling in the mass matrix with the k rigid motions: zero unless the rigid motion is that of a held
-    freedom. Shape (b, k).
-    """
-    fixed: int
-    """Number of modes with the interface held among what they are made of."""
-    limit: float
-    """The frequency up to which these were kept, Hz."""
-    truncation: float
-    """Estimate of the largest relative error of frequencies up to the one of interest: that of the free body
-    against the whole beam. Attached to others it may have somewhat more.
-    """
-
-    @property
-    def frequency(self) -> FloatArray:
-        """Of the free body, or of that with its held freedom at rest, Hz."""
-        return _hertz(self.stiffness / self.mass)
-
-
-@dataclass(frozen=True)
-class _Family:
-    """Matrices (n, n) of a family, its k motions without strain (n, k), and what is held (-1: nothing)."""
-
-    mass: FloatArray
-    stiffness: FloatArray
-    rigid: FloatArray
-    held: int = -1
-
-
-def _elastic_modes(family: _Family, acting: Sequence[int], highest: float) -> _ElasticModes:
-    """Reduce a family and split it into its rigid motions and elastic coordinates; none where nothing acts.
-
-    A Craig-Bampton reduction to the freedoms on which forces are `acting`, diagonalized: its motions that are
-    orthogonal in mass to the rigid ones, so that rigid motions stay those of the center of mass. With a
-    freedom held, whose motion is imposed, the motions that leave it at rest. `highest` is the frequency of
-    interest, Hz.
-    """
-    mass, stiffness, rigid, held = family.mass, family.stiffness, family.rigid, family.held
-    interface = np.array(sorted(set(acting)), dtype=np.int64)
-    if interface.size == 0:
-        n, k = rigid.shape
-        return _ElasticModes(np.zeros((n, 0)), np.zeros(0), np.zeros(0), np.zeros((0, k)), 0, highest, 0.0)
-    whole = _free_frequencies(family)
-    for cut_off in CUT_OFFS:
-        reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
-        none = np.zeros((reduced.frequency.size, rigid.shape[1]))  # rigid motions are of the interface alone
-        moved, at = np.concatenate([rigid[interface], none]), np.flatnonzero(interface == held)
-        square, vectors = _split(reduced.mass, reduced.stiffness, moved, int(at[0]) if held >= 0 else -1)
-        truncation = _worst_error(_hertz(square), whole, highest)
-        if truncation <= TRUNCATION:
-            break
-    shape = reduced.motion @ vectors
-    shape = shape / np.take_along_axis(shape, np.argmax(np.abs(shape), axis=0)[None], axis=0)[0]
-    modal = np.einsum("ij,ik,kj->j", shape, mass, shape)
-    return _ElasticModes(
-        shape,
-        modal,
-        modal * square,
-        shape.T @ mass @ rigid if held >= 0 else np.zeros((square.size, rigid.shape[1])),
-        reduced.frequency.size,
-        cut_off * highest,
-        truncation,
-    )
-
-
-def _free_frequencies(family: _Family) -> FloatArray:
-    """Return the elastic natural frequencies of a whole family, Hz."""
-    from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
-
-    mass, held = family.mass, family.held
-    kept = np.delete(np.arange(mass.shape[0]), held) if held >= 0 else np.arange(mass.shape[0])
-    own = np.ix_(kept, kept)
-    square = eigh(family.stiffness[own], mass[own], eigvals_only=True)
-    return _hertz(square if held >= 0 else square[family.rigid.shape[1] :])
-
-
-def _worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
-    """Return the largest relative error of the rising frequencies `coarse` up to `highest`.
-
-    The next one counts too, by the square of how far it is above: errors rise at least so with frequency,
-    and on its bearings a shaft has other frequencies than free.
-    """
-    count = min(int(np.searchsorted(exact, highest, side="right")) + 1, coarse.size)
-    if count == 0:
-        return 0.0
-    error = np.abs(coarse[:count] / exact[:count] - 1.0)
-    return float(np.max(error * np.minimum(highest / exact[:count], 1.0) ** 2))
-
-
-def _split(
-    mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, held: int
-) -> tuple[FloatArray, FloatArray]:
-    """Squared circular frequencies and shapes of unit modal mass of the elastic motions."""
-    from scipy.linalg import eigh, null_space  # noqa: PLC0415 (start-up time)
-
-    basis = np.delete(np.eye(mass.shape[0]), held, axis=1) if held >= 0 else null_space(rigid.T @ mass)
-    if basis.shape[1] == 0:
-        return np.zeros(0), basis
-    square, vectors = eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
-    return square, np.asarray(basis @ vectors)
-
-
-def _hertz(square: FloatArray) -> FloatArray:
-    return np.asarray(np.sqrt(square) / (2.0 * math.pi))
-
-
-# The beam of a shaft with gears on it, fine enough, apart into bending, extension and torsion.
 
 
 @dataclass(frozen=True)
@@ -227,7 +44,7 @@ class PointOfApplication:
 
 def _families(
     beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None
-) -> tuple[_Family, _Family, _Family]:
+) -> tuple[Family, Family, Family]:
     """Return bending in x z, extension and torsion with the discs' inertia."""
     mass, nodes = beam.mass.copy(), beam.position.size
     for disc in discs:
@@ -238,15 +55,15 @@ def _families(
     bent = (first[:, None] + np.array(ACROSS)).ravel()
     ones = np.ones((nodes, 1))
     tilted = np.stack([beam.position - beam.position.mean(), np.ones(nodes)], axis=1).ravel()
-    moved = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
+    rigid_motion = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
     turned = -1 if held is None else int(np.argmin(np.abs(beam.position - held)))
 
-    def part(columns: IntArray, rigid: FloatArray, at: int = -1) -> _Family:
-        own = np.ix_(columns, columns)
-        return _Family(mass[own], beam.stiffness[own], rigid, at)
+    def part(columns: IntArray, rigid: FloatArray, at: int = -1) -> Family:
+        block = np.ix_(columns, columns)
+        return Family(mass[block], beam.stiffness[block], rigid, at)
 
     return (
-        part(bent, np.stack([moved, tilted], axis=1)),
+        part(bent, np.stack([rigid_motion, tilted], axis=1)),
         part(first + ALONG, ones),
         part(first + TURN, ones, turned),
     )
@@ -267,7 +84,7 @@ def _fine_beam(
     while True:
         finer = timoshenko_beam(sections, stations, 0.5 * float(np.max(np.diff(beam.position))))
         exact = _frequencies(finer, discs, held)
-        error = 4.0 / 3.0 * max(_worst_error(a, b, highest) for a, b in zip(coarse, exact, strict=True))
+        error = 4.0 / 3.0 * max(worst_error(a, b, highest) for a, b in zip(coarse, exact, strict=True))
         parts *= 2
         if error <= MESH_ERROR or parts > LAST_PARTS:
             return beam, error
@@ -275,7 +92,7 @@ def _fine_beam(
 
 
 def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None) -> list[FloatArray]:
-    return [_free_frequencies(part) for part in _families(beam, discs, held)]
+    return [free_frequencies(part) for part in _families(beam, discs, held)]
 
 
 @dataclass(frozen=True)
@@ -288,9 +105,9 @@ class ElasticShaft:
 
     position: FloatArray
     """Nodes along the shaft, m. Shape (N,)."""
-    bending: _ElasticModes
-    extension: _ElasticModes
-    torsion: _ElasticModes
+    bending: ElasticModes
+    extension: ElasticModes
+    torsion: ElasticModes
     """`bending`, `extension`, `torsion`: Shapes (2 N, b): displacement and slope du_x/dz of each node, (N, s)
     and (N, t).
     """
@@ -395,9 +212,9 @@ def elastic_shaft(
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]
     return ElasticShaft(
         beam.position,
-        _elastic_modes(across, bent, highest),
-        _elastic_modes(along, [k for k, g in pairs if g.along], highest),
-        _elastic_modes(turn, [k for k, g in pairs if g.turn], highest),
+        elastic_modes(across, bent, highest),
+        elastic_modes(along, [k for k, g in pairs if g.along], highest),
+        elastic_modes(turn, [k for k, g in pairs if g.turn], highest),
         turn.mass,
         highest,
         damping_ratio,

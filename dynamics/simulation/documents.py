@@ -32,7 +32,8 @@ from dynamics.integrators.workspace import Count
 from dynamics.kernels.local_state import LocalState
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import branches_up_to
-from dynamics.linearize.linear_system import LinearSystem, freedom_parts, linearize
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.mode_energy import freedom_parts
 from dynamics.linearize.operating_speeds import leading_law, mesh_frequencies
 from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.mechanism.bearing_elements import BearingElement
@@ -92,9 +93,9 @@ class RunFacts:
         audit = None
         if system.scene.outputs.energy_audit:
             audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
-        held = [*checks.checks(), *([] if audit is None else [audit.check()])]
+        checks_of_run = [*checks.checks(), *([] if audit is None else [audit.check()])]
         automatic = {**decided.automatic, **before.reasons}
-        return cls(system, decided.scene, audit, held, automatic, influences)
+        return cls(system, decided.scene, audit, checks_of_run, automatic, influences)
 
     def with_errors(self, error: Json) -> RunFacts:
         """Return them with the check of the errors of the steps, where they are measured."""
@@ -111,10 +112,12 @@ def effect_ledger(run: RunFacts) -> Json:
 
 
 def _checked(entry: Json, checks: Sequence[Check]) -> Json:
-    own = [check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])]
+    found_checks = [
+        check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])
+    ]
     return {
-        "checked": "; ".join(check.reason for check in own) or NOT_CHECKED,
-        "holds": all(check.holds for check in own) if own else None,
+        "checked": "; ".join(check.reason for check in found_checks) or NOT_CHECKED,
+        "holds": all(check.holds for check in found_checks) if found_checks else None,
     }
 
 
@@ -177,7 +180,7 @@ def _resolved_case(system: System) -> Json:
 def _plain(part: Any) -> Any:
     """Return the fields of a dataclass, of a number of NumPy the number."""
     if is_dataclass(part):
-        return {each.name: getattr(part, each.name) for each in fields(part)}
+        return {item.name: getattr(part, item.name) for item in fields(part)}
     return float(part)
 
 
@@ -291,15 +294,15 @@ def _bearings_at_rest(system: System) -> Json:
 def _carried(
     elements: Elements, local: LocalState, e: int, at: BearingElement, bearing: RollingBearing
 ) -> Json:
-    own, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
-    moved = local.coordinate[own] / np.diag(at.own)
-    moved[2] += law.shift
+    rows, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
+    shift = local.coordinate[rows] / np.diag(at.own)
+    shift[2] += law.shift
     angle = 2.0 * np.pi * float(local.position[turned]) if turned >= 0 else 0.0
     loaded = LoadedBearing(bearing.row, 1, bearing.locating) if turned >= 0 else law.loaded
-    load = loaded.evaluate(moved, angle).load
+    load = loaded.evaluate(shift, angle).load
     return {
-        "displacement": moved.tolist(),
-        "force": (local.force[own] @ at.own).tolist(),
+        "displacement": shift.tolist(),
+        "force": (local.force[rows] @ at.own).tolist(),
         "element_load": float(np.max(load.sum(axis=1))),
         "peak_pressure": bearing.row.peak_pressure(float(np.max(load))),
     }
@@ -366,8 +369,8 @@ def _orders_above(run: RunFacts) -> Json:
 
 def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents`, and the ledger where an assumption is violated: a study takes responses alone."""
-    held = all(check.holds for check in run.checks)
-    return about if held else about | {"effect_ledger": effect_ledger(run)}
+    holds = all(check.holds for check in run.checks)
+    return about if holds else about | {"effect_ledger": effect_ledger(run)}
 
 
 def _known_influences(decided: Decided, system: System) -> Mapping[str, Influence]:
@@ -420,8 +423,8 @@ def tolerance_check(error: Json, integration: Integration) -> Check | None:
     steps = error.get("time_step", {})
     if "met" not in steps:
         return None
-    stated, tolerance = float(steps["rms"]), integration.tolerance
-    reason = f"{engineering(1e9 * stated, 2)} nm rms stated, {engineering(1e9 * tolerance, 2)} nm requested"
+    estimate, tolerance = float(steps["rms"]), integration.tolerance
+    reason = f"{engineering(1e9 * estimate, 2)} nm rms stated, {engineering(1e9 * tolerance, 2)} nm requested"
     if steps.get("chaotic"):
         reason = (
             f"chaotic motion: levels are within {engineering(steps['levels']['rms'], 2)} dB, traces are not"

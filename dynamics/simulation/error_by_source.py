@@ -73,16 +73,16 @@ class _Window:
         if not run.status.usable or run.samples != self.time.size:
             return None
         _, error, force = observed_signals(self.system, self.time, run.states)
-        apart, pushed = error - self.error, force - self.force
+        error_change, pushed = error - self.error, force - self.force
         orders = min((orders_seen(position, ORDERS) for position in self.position), default=0)
         if np.ptp(self.position[0]) < 1.0:
             orders = 0
         by_error = [
             order_amplitudes(position, series, orders)
-            for position, series in zip(self.position, apart, strict=True)
+            for position, series in zip(self.position, error_change, strict=True)
         ]
         by_force = np.linalg.norm(order_amplitudes(self.position[0], pushed, orders), axis=1)
-        rms = float(np.sqrt(np.mean(apart**2)))
+        rms = float(np.sqrt(np.mean(error_change**2)))
         return _Difference(rms, np.max(by_error, axis=0), np.max(by_force, axis=0, initial=0.0))
 
     def finer(self, integration: Integration) -> Integration:
@@ -94,8 +94,8 @@ class _Window:
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
-        own, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
-        laws = laws._replace(applied_force=own.applied_force)  # whose clock starts here
+        laws_here, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
+        laws = laws._replace(applied_force=laws_here.applied_force)  # whose clock starts here
         arrays = self.system.arrays._replace(elements=other.arrays.elements._replace(laws=laws))
         return replace(self.system, arrays=by_address(arrays))
 

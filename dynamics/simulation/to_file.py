@@ -19,10 +19,11 @@ from dynamics.influence import Decided, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators import march as marching
+from dynamics.integrators.checkpoints import fingerprint, restore
 from dynamics.integrators.march import Ending, March, march_on, start_march
 from dynamics.integrators.method_choice import MethodChoice, choose_method
 from dynamics.integrators.start_value import StartValue, Trail
-from dynamics.integrators.state_sink import MemorySink, StateSpool, blocks, fingerprint, restore
+from dynamics.integrators.state_sink import MemorySink, StateSpool, blocks
 from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import Widths
 from dynamics.plausibility import scene_findings

@@ -143,10 +143,10 @@ class Design:
         entries = np.arange(len(listed[0]) if listed else 1)
         *levels, entry = (axis.ravel() for axis in np.meshgrid(*grid, entries, indexing="ij"))
         values = np.full((entry.size, len(self.factors)), np.nan)
-        own, others = iter(levels), iter(listed)
+        levels_of, others = iter(levels), iter(listed)
         for column, factor in enumerate(self.factors.values()):
             if isinstance(factor, Levels):
-                values[:, column] = next(own)
+                values[:, column] = next(levels_of)
             elif isinstance(factor, Listed):
                 values[:, column] = next(others)[entry]
         return values

@@ -70,10 +70,12 @@ class _Window:
 
     def error(self, name: str, order: int = 0) -> float:
         """Sum of the errors by source that the receipt states under a name; NaN where it states none."""
-        stated = [self.run.receipt["error"].get(source, {}).get(name) for source in SOURCES]
+        errors = [self.run.receipt["error"].get(source, {}).get(name) for source in SOURCES]
         if order:
-            stated = [None if each is None or len(each) < order else each[order - 1] for each in stated]
-        known = [float(each) for each in stated if each is not None]
+            errors = [
+                None if values is None or len(values) < order else values[order - 1] for values in errors
+            ]
+        known = [float(values) for values in errors if values is not None]
         return float(np.sum(known)) if known else float("nan")
 
 

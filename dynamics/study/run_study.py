@@ -210,8 +210,8 @@ def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], 
     for _, group in groupby(order, key=lambda k: shared[k]):
         points = list(group)
         for first in range(0, len(points), RUNS):
-            some = tuple(points[first : first + RUNS])
-            yield some, tuple(values[k] for k in some)
+            batch = tuple(points[first : first + RUNS])
+            yield batch, tuple(values[k] for k in batch)
 
 
 def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:

@@ -8,6 +8,7 @@ from math import factorial
 from typing import Protocol
 
 import numpy as np
+from scipy.linalg import expm
 
 from bounds import Quantity, Text
 from dynamics.errors import InputError
@@ -62,8 +63,6 @@ class _CoupledModes:
         By the exponential of the system that the derivatives of the force extend (C. F. van Loan, IEEE
         Transactions on Automatic Control 23 (1978) 395-404).
         """
-        from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
-
         modes, forces = push.shape
         angle = natural * step
         scale = np.maximum(angle, 1.0)
@@ -102,8 +101,6 @@ class _SeparateModes:
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _SeparateModes:
         """Integrate as `_CoupledModes` does, with the `damping` (m,) of each mode."""
-        from scipy.linalg import expm  # noqa: PLC0415 (start-up time)
-
         angle = natural * step
         scale = np.maximum(angle, 1.0)
         whole = np.zeros((natural.size, 2 + CUBIC, 2 + CUBIC))

@@ -20,13 +20,8 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.cost_model import unit_work
 from fe_contact.planning.cost_of_derivatives import CycleSeconds
-from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
-    HARMONICS,
-    QUANTITIES,
-    Spectrum,
-    spectrum,
-)
+from fe_contact.ste.curve_quantities import BESIDE_MESH, HARMONICS, QUANTITIES
+from fe_contact.ste.spectrum import Spectrum, spectrum
 from fe_contact.types import BoolArray, FloatArray
 from model_studies import in_unit
 from model_studies.stage_clock import StageClock

@@ -17,8 +17,10 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
 from fe_contact.planning.cost_of_derivatives import ContactWork
+from fe_contact.planning.expected_curves import ExpectedCurves
+from fe_contact.planning.expected_error import ExpectedError, expected_error
 from fe_contact.planning.plan import Plan
-from fe_contact.planning.planned import ExpectedCurves, ExpectedError, MeshChoice, expected_error
+from fe_contact.planning.planned import MeshChoice
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
 

@@ -29,7 +29,8 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run
 from fe_contact.planning.cost_model import Prediction, unit_work
 from fe_contact.planning.cost_of_derivatives import CycleSeconds
-from fe_contact.planning.plan import FaceDiscretization, Plan
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import Plan
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.types import FloatArray
 from model_studies.progress import Report, announce, by_cost, unreported

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean
-from fe_contact.compliance.flank_compliance_2d import Field, condensed_ring, field_under
+from fe_contact.compliance.flank_compliance_2d import condensed_ring
 from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring
+from fe_contact.compliance.ring_checks import Field, field_under
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 from fe_contact.mesh.export import cell_teeth

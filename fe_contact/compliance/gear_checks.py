@@ -8,7 +8,8 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from fe_contact.compliance.condensed_gear import CondensedGear
-from fe_contact.compliance.flank import ComplianceChecks, left_by_rounding
+from fe_contact.compliance.flank import ComplianceChecks
+from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray

@@ -27,13 +27,12 @@ from fe_contact.compliance.flank_compliance_2d import (
     compliance_key,
     condensed_ring,
     condensed_teeth,
-    field_under,
     section_keys,
     tooth_indices,
-    uniform_pressure,
 )
 from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring
+from fe_contact.compliance.ring_checks import field_under, uniform_pressure
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
     UnitRootStress,

@@ -10,8 +10,6 @@ from fe_contact.effects.effect import ContactScene, Effect, Verdict, named
 from fe_contact.errors import InputError
 from fe_contact.types import Json
 
-# One effect toggled, all others as they were decided.
-
 CHOICES = ("on", "off", "auto")
 
 

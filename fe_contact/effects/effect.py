@@ -137,9 +137,6 @@ def named(registry: Sequence[Effect], brings: str) -> str:
     return next((effect.name for effect in registry if effect.brings == brings), "")
 
 
-# Everything in a scene that acts across the face, so that a plane cannot hold it.
-
-
 def across_face(scene: ContactScene) -> list[str]:
     """List what in the scene acts across the face."""
     pair = scene.pair

@@ -11,7 +11,8 @@ from fe_contact.contact import Break, flank_coordinate
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.flank.extent import Extent
-from fe_contact.flank.part import FlankPart, ReliefStart, Tooth
+from fe_contact.flank.part import FlankPart, ReliefStart
+from fe_contact.flank.tooth import Tooth
 from fe_contact.geometry import FlankGrid, FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
@@ -116,9 +117,6 @@ def _start_slope(start: ReliefStart, gear: Tooth) -> float:
     return float(np.max(np.abs(start.jump)) * np.max(start.roll_length) / gear.base_radius)
 
 
-# Profile modification: reliefs, profile crowning and slope, cut tip edges as gaps on the line of action.
-
-
 @dataclass(frozen=True)
 class ProfileModification(Effect):
     """Designed deviations of either flank from the involute."""
@@ -146,9 +144,6 @@ class ProfileModification(Effect):
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene with plain profiles."""
         return scene.with_gears(lambda gear: {"modification": gear.modification.along_face})
-
-
-# Lead modification: helix crowning and slope, end relief, twist as gaps over the face width.
 
 
 @dataclass(frozen=True)

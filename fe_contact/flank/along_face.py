@@ -11,8 +11,10 @@ from typing import ClassVar
 import numpy as np
 
 from bounds import Direction
-from fe_contact.flank.part import Polynomial, Tooth
-from fe_contact.flank.relief import FaceRelief, Shape, amount, length, shape, slope
+from fe_contact.flank.part import Polynomial
+from fe_contact.flank.relief import FaceRelief, amount, length, shape, slope
+from fe_contact.flank.relief_shape import Shape
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 _FACE = Direction.FACE

@@ -18,7 +18,8 @@ from bounds import Direction, Kind, declarations, described
 from fe_contact.flank.along_face import AlongFace
 from fe_contact.flank.along_profile import AlongProfile
 from fe_contact.flank.over_flank import OverFlank
-from fe_contact.flank.part import FlankPart, ReliefStart, Tooth, involute
+from fe_contact.flank.part import FlankPart, ReliefStart, involute
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:

@@ -18,8 +18,10 @@ import numpy as np
 from bounds import Declared, Direction, Kind, Quantity, Text, declared, inside
 from fe_contact.errors import InputError
 from fe_contact.flank.flank_grid import FlankGrid
-from fe_contact.flank.part import FlankPart, Polynomial, ReliefStart, Tooth, involute
-from fe_contact.flank.relief import ProfileRelief, Shape, amount, length, shape, slope
+from fe_contact.flank.part import FlankPart, Polynomial, ReliefStart, involute
+from fe_contact.flank.relief import ProfileRelief, amount, length, shape, slope
+from fe_contact.flank.relief_shape import Shape
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 _FLANK = Direction.PROFILE | Direction.FACE

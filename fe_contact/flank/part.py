@@ -5,66 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import or_
-from typing import ClassVar, Protocol
+from typing import ClassVar
 
 import numpy as np
 
 from bounds import Direction, Kind, SiNote, at_least, declarations
 from fe_contact.errors import InputError, declared_fields
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-# The properties that a modification reads of the gear whose flanks it changes.
 
 _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 SHORTEST = 1e-9
 """m; what is shorter is a step, and its slope no number."""
-
-
-class Tooth(Protocol):
-    """Sizes of a gear's teeth, lengths in m and angles in rad; `fe_contact.geometry` has the gears."""
-
-    @property
-    def sign(self) -> int:
-        """-1 for a ring gear, else 1."""
-
-    @property
-    def normal_module(self) -> float:
-        """m_n."""
-
-    @property
-    def face_width(self) -> float:
-        """B."""
-
-    @property
-    def base_radius(self) -> float:
-        """r_b."""
-
-    @property
-    def base_helix_angle(self) -> float:
-        """beta_b; > 0: right hand."""
-
-    @property
-    def base_thickness_half_angle(self) -> float:
-        """Half the angle of a tooth at the base circle."""
-
-    @property
-    def form_radius(self) -> float:
-        """d_Ff / 2: where involute and fillet meet."""
-
-    @property
-    def form_roll_length(self) -> float:
-        """Roll length there."""
-
-    @property
-    def tip_radius(self) -> float:
-        """d_a / 2."""
-
-    @property
-    def tip_roll_length(self) -> float:
-        """Roll length there."""
-
-    def roll_length(self, radius: float) -> float:
-        """Roll length at a radius from the base radius on."""
 
 
 @dataclass(frozen=True)

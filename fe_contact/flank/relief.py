@@ -2,68 +2,22 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar
 
 import numpy as np
 
 from bounds import Declared, Direction, Kind, SiNote, at_most, between, declarations, declared, one_of
 from fe_contact.errors import InputError, within
-from fe_contact.flank.part import FlankPart, ReliefStart, Tooth
+from fe_contact.flank.part import FlankPart, ReliefStart
+from fe_contact.flank.relief_shape import SHAPES, ReliefShape
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
-# The laws by which a relief grows from nothing to its amount.
-
-Shape = Literal["linear", "parabolic", "circular", "exponential", "logarithmic"]
-"""Names of the shapes, those of REXS 2.0 (attribute ``shape_of_relief``)."""
-
-_GROWTH = math.e - 1.0
 _DEEPEST = 1e-3  # m; catches micrometers given as meters
 _LONGEST = 10.0  # m; what a gear has room for depends on the gear
 _LENGTHS = SiNote("Lengths are in m: 1 mm is 0.001.")
-
-
-@dataclass(frozen=True)
-class _ReliefShape:
-    """The depth of a relief over the fraction of its length, both 0 where it starts and 1 at its end."""
-
-    depth: Callable[[FloatArray, float], FloatArray]
-    """Depth (...) at fractions (...) from 0 to 1, of a relief whose amount is `ratio` times its length."""
-    slope: float
-    """Derivative of the depth where it starts; 0 = tangential."""
-    bend: Callable[[float], float]
-    """Second derivative there, of the ratio."""
-
-    def __call__(self, fraction: FloatArray, ratio: float) -> FloatArray:
-        """Relative depth at fractions of the length: 0 before it starts, 1 from its end on."""
-        return self.depth(np.minimum(np.maximum(fraction, 0.0), 1.0), ratio)
-
-
-def _arc(fraction: FloatArray, ratio: float) -> FloatArray:
-    """Arc of a circle of radius (1 + ratio^2) / (2 ratio) lengths, in a form that holds for a flat one."""
-    diameter = 1.0 + ratio**2
-    rise = np.sqrt(diameter**2 - (2.0 * ratio * fraction) ** 2)
-    return np.asarray(2.0 * fraction**2 / (diameter + rise))
-
-
-SHAPES: dict[Shape, _ReliefShape] = {
-    "linear": _ReliefShape(lambda u, _: u, 1.0, lambda _: 0.0),
-    "parabolic": _ReliefShape(lambda u, _: u**2, 0.0, lambda _: 2.0),
-    "circular": _ReliefShape(_arc, 0.0, lambda ratio: 2.0 / (1.0 + ratio**2)),
-    "exponential": _ReliefShape(lambda u, _: np.expm1(u) / _GROWTH, 1.0 / _GROWTH, lambda _: 1.0 / _GROWTH),
-    "logarithmic": _ReliefShape(lambda u, _: np.log1p(_GROWTH * u), _GROWTH, lambda _: -(_GROWTH**2)),
-}
-"""The shapes by their names.
-
-The arc touches the involute where it starts. Exponential is (e^u - 1)/(e - 1), logarithmic its mirror image
-at the diagonal, ln(1 + (e - 1) u): the laws of these names without a further parameter.
-"""
-
-
-# Declarations of the figures of flank modifications: depths in m, lengths in m, laws by name.
 
 
 def amount(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
@@ -116,7 +70,7 @@ class _Relief(FlankPart):
         return float(getattr(self, f"{self._name}_length"))
 
     @property
-    def _shape(self) -> _ReliefShape:
+    def _shape(self) -> ReliefShape:
         return SHAPES[getattr(self, f"{self._name}_shape", "parabolic")]
 
     def _check_length(self, room: float) -> None:

@@ -25,7 +25,8 @@ from bounds import (
 )
 from fe_contact.errors import InputError, declared_fields
 from fe_contact.flank.involute import radius_at_roll_length, roll_length_at_radius
-from fe_contact.flank.part import SHORTEST, Tooth
+from fe_contact.flank.part import SHORTEST
+from fe_contact.flank.tooth import Tooth
 
 _ADVICE = "A relief starts on the involute, before the end of the flank to which it runs."
 

@@ -18,7 +18,7 @@ from fe_contact.geometry.tooth_surfaces import ToothSurfaces
 from fe_contact.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
-    from fe_contact.flank.part import Tooth
+    from fe_contact.flank.tooth import Tooth
 
 _LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
 MOST_TEETH = 4000

@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray, IntArray
 
 if TYPE_CHECKING:
     from fe_contact.flank.flank_grid import FlankGrid
-    from fe_contact.flank.part import Tooth
+    from fe_contact.flank.tooth import Tooth
 
 _IN_CELL = 4
 """Parts of a cell between the nodes of a surface, and of a wave between its crest and its trough."""

@@ -12,8 +12,9 @@ import numpy as np
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.curve_derivatives import acts
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.linearized_design import acts, linearized
+from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.tangent_model import TangentModel, order_amplitude

@@ -15,8 +15,8 @@ from fe_contact.microgeometry.linearized_design import differentiated, limit_row
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Rows
 from fe_contact.microgeometry.root_influence import RootInfluence
 from fe_contact.ste import ForceTable, SteDatabase
-from fe_contact.ste.database import AXIS
 from fe_contact.ste.extraction import force_table
+from fe_contact.ste.table_repair import AXIS
 from fe_contact.types import FloatArray, IntArray
 
 LOAD = "force"

@@ -6,12 +6,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import scipy
-from scipy.sparse import coo_array
 
 from bounds import Bound, SiNote, above, at_least
 from fe_contact.errors import InputError, finite, positive
-from fe_contact.types import FloatArray, IntArray, Json
+from fe_contact.types import FloatArray, Json
 
 Rows = tuple[FloatArray, FloatArray]
 """Values (R,) and their derivatives (R, d)."""
@@ -130,114 +128,3 @@ class Limits:
 
 
 NO_LIMITS = Limits()
-
-
-# The merit of designs about one of them, its curves to first order: where it is least is a linear program.
-#
-# Peak-to-peak is the difference of two maxima, and so has kinks at every optimum; over curves that are linear
-# in the variables it is exact [1]_.
-#
-# References
-# ----------
-# .. [1] K. Madsen, H. Schjaer-Jacobsen, Linearly constrained minimax optimization, Math. Programming 14
-#    (1978) 208-223.
-
-
-@dataclass(frozen=True)
-class LinearMerit:
-    """Merit of designs to first order in d variables."""
-
-    curves: FloatArray
-    """Transmission error at S nodes of the scatter, in parts of the scale of the merit. Shape (S, P, L)."""
-    by: FloatArray
-    """Its derivatives. Shape (S, P, L, d)."""
-    node_weight: FloatArray
-    """Shape (S,)."""
-    load_weight: FloatArray
-    """Rows of the objective: the largest counts. Shape (R, L)."""
-    limits: tuple[Rows, ...]
-    """Of each limit: by how much it is exceeded; the largest counts, if it is above 0."""
-    penalty: float
-    """Of exceeding them."""
-
-    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
-        """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
-        made = LinearProgram(self.by.shape[-1])
-        nodes, loads = self.by.shape[0], self.by.shape[2]
-        reach = np.maximum(np.abs(low), np.abs(high))
-        top, bottom = made.columns(nodes * loads), made.columns(nodes * loads)
-        for s in range(nodes):
-            for k in range(loads):
-                value, by = self.curves[s, :, k], self.by[s, :, k]
-                middle = 0.5 * (value.max() + value.min())  # numbers near 1, whatever the mean is
-                made.below(value - middle, by, reach, top[s * loads + k])
-                made.below(middle - value, -by, reach, bottom[s * loads + k])
-        (objective,) = made.columns(1)
-        spread = self.node_weight[:, None, None] * self.load_weight.T  # S, L, R
-        made.sums(spread.reshape(nodes * loads, -1).T, (top, bottom), objective)
-        exceeded = made.columns(len(self.limits), least=0.0)
-        for column, (value, by) in zip(exceeded, self.limits, strict=True):
-            made.below(value, by, reach, column)
-        return made.solve(low, high, objective, exceeded, self.penalty)
-
-
-class LinearProgram:
-    """A linear program in `count` steps and further columns, row by row."""
-
-    def __init__(self, count: int) -> None:
-        self._count, self._least = count, [-np.inf] * count
-        self._row: list[IntArray] = []
-        self._column: list[IntArray] = []
-        self._value: list[FloatArray] = []
-        self._right: list[FloatArray] = []
-        self._rows = 0
-
-    def columns(self, count: int, least: float = -np.inf) -> list[int]:
-        """Return so many new columns, each at least `least`."""
-        first = len(self._least)
-        self._least += [least] * count
-        return list(range(first, first + count))
-
-    def below(self, value: FloatArray, by: FloatArray, reach: FloatArray, column: int) -> None:
-        """Have value (R,) + by (R, d) step stay below a column, for steps up to `reach` (d,)."""
-        swing = np.abs(by) @ reach
-        may = value + swing >= (value - swing).max(initial=-np.inf)  # else another row is above it anyway
-        count = int(may.sum())
-        at = self._rows + np.arange(count)
-        self._add(np.repeat(at, self._count), np.tile(np.arange(self._count), count), by[may].ravel())
-        self._add(at, np.full(count, column), np.full(count, -1.0))
-        self._end(-value[may])
-
-    def sums(self, weight: FloatArray, groups: tuple[list[int], ...], column: int) -> None:
-        """Have the weighted sums (R, n) of groups of n columns stay below a column."""
-        rows = self._rows + np.arange(len(weight))
-        for group in groups:
-            self._add(np.repeat(rows, len(group)), np.tile(group, len(weight)), weight.ravel())
-        self._add(rows, np.full(rows.size, column), np.full(rows.size, -1.0))
-        self._end(np.zeros(rows.size))
-
-    def solve(
-        self, low: FloatArray, high: FloatArray, objective: int, exceeded: list[int], penalty: float
-    ) -> tuple[FloatArray, float]:
-        """Return the step of least merit and the merit; no step where none is found."""
-        cost = np.zeros(len(self._least))
-        cost[objective], cost[exceeded] = 1.0, penalty
-        value, row, column = (np.concatenate(each) for each in (self._value, self._row, self._column))
-        matrix = coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
-        least, most = np.array(self._least), np.full(cost.size, np.inf)
-        least[: low.size], most[: high.size] = low, high
-        rows = scipy.optimize.LinearConstraint(matrix, ub=np.concatenate(self._right))
-        bounds = scipy.optimize.Bounds(least, most)
-        solution = scipy.optimize.milp(cost, constraints=rows, bounds=bounds)  # no column is an integer
-        if solution.x is None:
-            return np.zeros(low.size), np.inf
-        return np.asarray(solution.x[: low.size]), float(solution.fun)
-
-    def _add(self, row: IntArray, column: IntArray, value: FloatArray) -> None:
-        self._row.append(row)
-        self._column.append(column)
-        self._value.append(value)
-
-    def _end(self, right: FloatArray) -> None:
-        self._right.append(right)
-        self._rows += right.size

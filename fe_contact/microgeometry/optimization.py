@@ -14,15 +14,10 @@ from bounds.brief import brief
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import (
-    ConfirmedDesign,
-    DesignLoads,
-    DesignSpace,
-    DesignStudy,
-    Misalignments,
-    rising,
-)
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, rising
+from fe_contact.microgeometry.design_loads import DesignLoads, Misalignments
 from fe_contact.microgeometry.design_problem import SLACK
+from fe_contact.microgeometry.design_study import DesignSpace, DesignStudy
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter, ScatterNodes
 from fe_contact.microgeometry.search import Search, SearchRun
@@ -30,8 +25,6 @@ from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_va
 from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import Estimate, FloatArray, IntArray, Json
 from model_studies import in_unit
-
-# The request of an optimization.
 
 MAP_PARTS = np.arange(1, 11) / 8.0
 """Torques of the Harris map in parts of the largest that counts."""

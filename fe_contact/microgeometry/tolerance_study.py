@@ -13,7 +13,8 @@ from bounds.brief import brief
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study, full_table, ripple_errors
+from fe_contact.microgeometry.confirmation import full_table, ripple_errors
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.drawn_teeth import ToothTolerances
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
@@ -43,8 +44,6 @@ from model_studies import in_unit
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.stage_clock import StageClock
 
-# Quantiles of a sample with confidence bounds that assume no shape of the distribution.
-
 TANGENTS = 64
 """Pairs about which tangents are taken, besides the design, at most."""
 IN_A_TASK = 25
@@ -71,9 +70,6 @@ def estimated_quantile(sample: FloatArray, fraction: float, confidence: float) -
     """Estimate a quantile of samples (N, L) of lengths with distribution-free bounds."""
     value, low, high = quantile_bounds(sample, fraction, confidence)
     return Quantile(fraction, value, np.maximum(low, 0.0), high)
-
-
-# Sampling of a tolerance Monte Carlo: the pairs it draws and the quantities it estimates.
 
 
 @dataclass(frozen=True)

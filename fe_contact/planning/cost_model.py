@@ -21,16 +21,12 @@ from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.cost_of_derivatives import ContactWork, CycleSeconds, solved_pitches
-from fe_contact.planning.plan import FaceDiscretization, Plan, PlaneDiscretization
+from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
+from fe_contact.planning.plan import Plan
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
 from model_studies.run_log import corrections
-
-# Cost of the contact of a table and of its error estimate: positions to assemble, points to solve.
-#
-# Constants fitted to tables of 3 to 70 candidates in the plane and over the face, met within 0.6 to 1.5 where
-# the search ends with the positions expected; a level without a floor may ask for twice as many.
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 2e-6, 0.36e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
@@ -429,15 +425,6 @@ def condensed_teeth(pair: ParallelAxes) -> int:
     """Return the number of teeth in the plane that can touch at once, as many as both gears have."""
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
     return min(teeth_in_reach(pair), fits - 1 + fits % 2)
-
-
-# Work of a run in seconds of one certain host: what alternatives are weighed by.
-#
-# The choice of a mesh must not depend on the host, nor on what is in the cache, nor on earlier runs: the
-# same case has the same table everywhere. So this knows none of them. It is also quick, since several
-# alternatives are weighed before a run: finite elements over the face are a fit, within a factor 1.8, to
-# the operations that `fe_contact.compliance.cyclic_compliance` counts, of gears of 18 to 60 teeth and
-# faces of 4 to 14 modules.
 
 
 def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]) -> float:

@@ -18,9 +18,6 @@ from fe_contact.hertz import contact_modulus
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, MEAN, QUANTITIES
 from fe_contact.types import FloatArray
 
-# What contacts in the places of rigid flanks would leave out: flanks tilt as teeth bend, and contacts move.
-
-
 _ALIKE, _UNLIKE = 0.1, 0.35
 """Mean change of STE over p R/(E* m^2), of gears of one material and what unlike ones add to it.
 

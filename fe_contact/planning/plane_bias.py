@@ -5,8 +5,8 @@ from __future__ import annotations
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.finite_width import finite_width_excess, plane_stress_excess
+from fe_contact.planning.discretization import Discretization, FaceDiscretization
 from fe_contact.planning.model_error import bending_ripple
-from fe_contact.planning.plan import Discretization, FaceDiscretization
 from fe_contact.ste.plane_bias import PlaneBias
 
 

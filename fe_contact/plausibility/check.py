@@ -199,8 +199,6 @@ CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATION
 assessed = Checklist(CHECKS).assessed
 
 
-# Findings of a request beside those of its results.
-
 SOLVED = ("hertz_pressure", "transmission_error")
 """Checks that a table answers by its own figures."""
 

@@ -1,4 +1,4 @@
-"""What is assessed of a pair, of its meshes and of its results, by nominal figures."""
+"""What is assessed of a pair and of its mesh, by nominal figures."""
 
 from __future__ import annotations
 
@@ -11,86 +11,18 @@ import numpy as np
 
 from bounds import DEPTHS, Direction, Finding, Kind, engineering
 from fe_contact.flank.modification import FLANK_FIELDS, fields_of
-from fe_contact.geometry import ParallelAxes, Shaft, tooth_profile
-from fe_contact.geometry.root_tangent import critical_section, tangent_angle
+from fe_contact.geometry import ParallelAxes, Shaft
 from fe_contact.geometry.toothing import Toothing
-from fe_contact.hertz import contact_modulus, peak_pressure
-from fe_contact.material import STEEL
 from fe_contact.plausibility.check import CHECKS, assessed
+from fe_contact.plausibility.nominal_intensities import (
+    nominal_deflection,
+    nominal_root_stresses,
+    pitch_point_pressure,
+)
 from fe_contact.types import FloatArray
-
-# Nominal intensities of a tooth load by closed forms: orders of magnitude before anything is solved.
-#
-# References
-# ----------
-# .. [1] ISO 6336-2:2019, clause 6: nominal contact stress at the pitch point.
-# .. [2] ISO 6336-3:2019, clauses 6 and 7: form factor Y_F and stress correction factor Y_S.
-# .. [3] ISO 6336-1:2019, clause 9: c' = 14 N/(mm um) of steel gears.
-
-SINGLE_STIFFNESS = 14e9
-"""c' in N/m per m of face width, of steel [3]_."""
-_SAMPLES = 33
-_NOTCH = (1.0, 8.0)
-"""Where the stress correction factor holds: chord over twice the root radius [2]_."""
 
 _RATED = 20.0
 """Rated loads over the lightest that is plausible."""
-
-
-def _sharing_pairs(pair: ParallelAxes) -> float:
-    """Return how many pairs of teeth share the load where fewest do; of wide helical gears on average."""
-    ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
-    return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
-
-
-def _line_load(pair: ParallelAxes, normal_force: float) -> float:
-    """Return the load per length of contact, N/m."""
-    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
-
-
-def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
-    """Return the Hertz pressure with contact at the pitch point, Pa [1]_."""
-    curvature = float(pair.relative_curvature(pair.path_of_contact.pitch_point))
-    radius = 1.0 / (curvature * math.cos(pair.base_helix_angle))
-    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
-    return float(peak_pressure(_line_load(pair, normal_force), radius, modulus))
-
-
-def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
-    """Return the deflection of the teeth along the line of action, m [3]_."""
-    moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
-    mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
-    return _line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
-
-
-def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:
-    """Return the nominal root stress of pinion and wheel, Pa: load at the end of single contact [2]_.
-
-    Of spur gears that is method B without its load factors; of helical gears the transverse section stands in
-    for the virtual spur gear.
-    """
-    path, load = pair.path_of_contact, _line_load(pair, normal_force)
-    high = min(path.start + path.base_pitch, path.end)
-    low = max(path.end - path.base_pitch, path.start)
-    rolls = (high, float(pair.mating_roll_length(low)))
-    return _root_stress(pair.pinion, load, rolls[0]), _root_stress(pair.wheel, load, rolls[1])
-
-
-def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
-    """Bending by the load (N/m) at a roll length, over the section at the root, with its notch factor."""
-    profile = tooth_profile(gear)
-    at = critical_section(profile, _SAMPLES)
-    section = profile.flank(np.array([at]))[0]
-    arc = gear.sign * roll_length**2 / (2.0 * gear.base_radius)
-    point, normal = profile.flank(np.array([arc]))[0], profile.normal(np.array([arc]))[0]
-    chord = 2.0 * float(section[0])
-    lever = abs(float(point[1] - point[0] * normal[1] / normal[0] - section[1]))
-    bending = 6.0 * lever * abs(float(normal[0])) * load / chord**2
-    step = 0.01 * profile.fillet_length
-    turned = float(np.ptp(tangent_angle(profile, np.array([at - step, at + step]))))
-    sharpness = min(max(chord * turned / (4.0 * step), _NOTCH[0]), _NOTCH[1])
-    slimness = chord / max(lever, 1e-9 * chord)
-    return float(bending * (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness)))
 
 
 def pair_findings(
@@ -238,9 +170,6 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
             yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)
 
 
-# Checks of a mesh that follow from both gears and their center distance; for the data sheet.
-
-
 def mesh_findings(pair: ParallelAxes) -> tuple[Finding, ...]:
     """Return what is implausible about the mesh of a pair that can be made and computed all the same."""
     return tuple(_findings(pair))
@@ -263,45 +192,3 @@ def _findings(pair: ParallelAxes) -> Iterator[Finding]:
     words = "the teeth hardly take over from each other"
     ratio = pair.active_contact_ratio
     yield from assessed("contact_ratio", "transverse contact ratio", ratio, "1", reason=words)
-
-
-# Checks of what was computed: contact pressure, root stress, transmission error.
-
-
-def table_findings(
-    static_transmission_error: FloatArray, max_pressure: FloatArray, normal_module: float
-) -> tuple[Finding, ...]:
-    """Return what is implausible about a table.
-
-    Parameters
-    ----------
-    static_transmission_error, max_pressure : (P, F, M, D) arrays
-        m and Pa; NaN where there is no solution.
-    normal_module : float
-        m.
-    """
-    return (*_transmission_error(static_transmission_error, normal_module), *_pressure(max_pressure))
-
-
-def flank_findings(max_pressure: float) -> tuple[Finding, ...]:
-    """Return what is implausible about the pressure (Pa) on the flanks at one load."""
-    return tuple(_pressure(np.array([max_pressure])))
-
-
-def root_findings(gear: str, stress: float) -> tuple[Finding, ...]:
-    """Return what is implausible about the peak stress (Pa) of the roots of a gear ("pinion", "wheel")."""
-    reason = f"a tooth-root stress of {stress / 1e9:.3g} GPa is beyond the strength of any steel"
-    return tuple(assessed("root_stress", f"{gear}.root_stress", stress, "Pa", reason=reason))
-
-
-def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
-    solved = np.where(np.isfinite(values), values, 0.0)
-    largest = float(np.max(np.mean(solved, axis=0), initial=0.0))
-    reason = f"tooth deflections of {engineering(largest / module, 2)} modules are beyond linear elasticity"
-    yield from assessed("transmission_error", "transmission_error", largest, "m", scale=module, reason=reason)
-
-
-def _pressure(values: FloatArray) -> Iterator[Finding]:
-    largest = float(np.max(values[np.isfinite(values)], initial=0.0))
-    reason = f"a contact pressure of {largest / 1e9:.3g} GPa is beyond the strength of any steel"
-    yield from assessed("hertz_pressure", "max_pressure", largest, "Pa", reason=reason)

@@ -8,131 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bounds import Text, at_most, from_to
+from bounds import Text, from_to
 from bounds.brief import brief
-from fe_contact.errors import InputError, positive, within
-from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES, Spectrum, even_positions, spectrum
+from fe_contact.errors import InputError
+from fe_contact.ste.curve_errors import all_sources, errors_by_source, source_places
+from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
-from fe_contact.ste.node_errors import NodePlaces, error_band
+from fe_contact.ste.node_errors import error_band
+from fe_contact.ste.operating_point import FARTHEST, OperatingPoint
 from fe_contact.ste.plane_bias import OverFace, over_face, stored_bias
+from fe_contact.ste.spectrum import Spectrum, even_positions, spectrum
 from fe_contact.types import Estimate, FloatArray
-
-# The load, misalignment and center distance of a query.
-
-PLANE, METHOD = "finite_width", "method"
-"""A plane in place of three dimensions; what the method leaves out of full contact, whatever the mesh."""
-AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)
-"""Sources that act at stored loads and alignments as well."""
-BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
-"""Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
-SOURCES = AT_NODES + BETWEEN_NODES
-DERIVATIVES = "derivatives"
-"""A source at nodes that follows all others in tables of which some base pitches are not solved."""
-OF_LOAD_ARM = ("discretisation", "slices", "position")
-"""Sources of the errors of the load arm at stored loads and alignments."""
-_FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
-
-
-@dataclass(frozen=True)
-class OperatingPoint:
-    """One load and one alignment inside a table."""
-
-    force: float
-    """Total normal tooth force F_bn, N."""
-    misalignment: float
-    center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
-
-
-def operating_point(
-    database: SteFields,
-    torque: float | None,
-    force: float | None,
-    misalignment: float | None,
-    center_distance_change: float | None,
-) -> OperatingPoint:
-    """Resolve a question to one point inside the table.
-
-    Raises `InputError`: not exactly one of `torque` and `force` is given, or a value lies outside what is
-    stored.
-    """
-    return OperatingPoint(
-        _normal_force(database, torque, force),
-        _inside("misalignment", misalignment, database.misalignment),
-        _inside("center_distance_change", center_distance_change, database.center_distance_change),
-    )
-
-
-def default_value(value: float | None, axis: FloatArray) -> float:
-    """Return the value; without one zero, or the only value of an axis of length 1."""
-    if value is not None:
-        return value
-    return float(axis[0]) if axis.size == 1 else 0.0
-
-
-def _normal_force(database: SteFields, torque: float | None, force: float | None) -> float:
-    """Return the load as F_bn in N; a stored torque gives exactly its stored force."""
-    if (torque is None) == (force is None):
-        raise InputError("torque, force", (torque, force), "exactly one of the two")
-    if torque is not None:
-        name, unit, stored, value = "torque", "N m", database.torque, positive("torque", torque)
-    else:
-        name, unit, stored, value = "force", "N", database.force, positive("force", force or 0.0)
-    known = np.flatnonzero(np.isclose(stored, value, rtol=1e-12, atol=0.0))
-    if known.size:
-        return float(database.force[known[0]])
-    if value > stored[-1]:
-        bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
-        raise InputError(name, value, bound, "Add it to the case.")
-    return value if torque is None else database.facts.normal_force(value)
-
-
-def _inside(name: str, value: float | None, axis: FloatArray) -> float:
-    hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
-    return within(name, default_value(value, axis), float(axis[0]), float(axis[-1]), hint)
-
-
-# Errors of mean, peak-to-peak and harmonics by source, as a table stores them.
-
-
-def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
-    """Return the errors of the quantities (sources, 23) in m at one load and alignment.
-
-    Linear between the nodes. NaN: not estimated.
-    """
-    values, places = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2)), _places(table, point)
-    at_nodes = places.at_nodes(np.delete(values, np.s_[len(AT_NODES) : len(SOURCES)], axis=3))[0]
-    between = [
-        places.of_interval(values[..., source, :], i)[0]
-        for i, source in enumerate(range(len(AT_NODES), len(SOURCES)))
-    ]
-    first, derivatives = np.split(at_nodes, [len(AT_NODES)])
-    return np.concatenate([first, np.array(between), derivatives])
-
-
-def _places(table: SteFields, point: OperatingPoint) -> NodePlaces:
-    """Return the place of one point between the nodes of a table."""
-    at = point.force, point.misalignment, point.center_distance_change
-    return NodePlaces.of(table, *(np.array([value]) for value in at))
-
-
-def source_names(errors: FloatArray) -> tuple[str, ...]:
-    """Return the names of the sources (9 or 10, ...) of the errors of a table."""
-    return (*SOURCES, DERIVATIVES)[: len(errors)]
-
-
-def all_sources(errors: FloatArray) -> FloatArray:
-    """Return the error (23,) of all sources (sources, 23) together, m: the root of the sum of their squares.
-
-    Meshes, slices, positions and nodes of the axes know nothing of each other, so that their errors are as
-    likely to cancel as to add up. A sum states a third more and holds hardly more often (docs/accuracy.md).
-    """
-    return np.asarray(np.sqrt(np.square(errors).sum(axis=0)))
-
-
-# Load shares between the stored points.
 
 
 def _pairs_seen(database: SteFields, position: FloatArray) -> NDArray[np.int64]:
@@ -269,7 +157,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of an
     order twice the mean band. Raises `InputError`: `at` is no list of finite positions within 1000 periods.
     """
-    position = database.position if at is None else _positions(at, _FARTHEST * database.period)
+    position = database.position if at is None else _positions(at, FARTHEST * database.period)
     even = even_positions(database.period)
     everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
     ste, band, below = _evaluate(database, force, point, everywhere)
@@ -288,7 +176,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
-        interval_error=float(_places(database, point).interval_error(database)[0]),
+        interval_error=float(source_places(database, point).interval_error(database)[0]),
         pair=_pairs_seen(database, position),
         load_share=_load_share(database, position, point),
         mean=mean,
@@ -311,7 +199,7 @@ def _evaluate(
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
-    error = error_band(database, position, _places(database, point))
+    error = error_band(database, position, source_places(database, point))
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
         return ste, error, np.zeros_like(ste)

@@ -16,7 +16,6 @@ from fe_contact.types import Json
 if TYPE_CHECKING:
     from fe_contact.geometry import ParallelAxes
 
-# The name of a result: a hash of everything that decides it.
 
 SCHEMA_VERSION = 6
 """Version 1 states no errors of the model; up to 2 the largest pressure is that of edges, too; up to 3 orders

@@ -17,15 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from bounds import at_least
 from fe_contact.errors import InputError
-from fe_contact.ste.force_table import (
-    ForceCubic,
-    ForceTable,
-    LevelGrid,
-    deflection_grid,
-    monotone_stiffness,
-    stiffness_grid,
-)
+from fe_contact.ste.force_table import ForceCubic, ForceTable
 from fe_contact.ste.interpolation import Axis, Stencil, monotone_slopes, ordered_slopes
+from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.types import FloatArray, IntArray
 
 SlopeRule = Callable[[Axis, FloatArray], FloatArray]

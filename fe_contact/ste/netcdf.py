@@ -12,15 +12,13 @@ from typing import Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import BESIDE_MESH
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
 from model_studies.netcdf import UnreadableFile, opened
 from model_studies.netcdf_content import NetcdfContent, Variable
-
-# Result files: netCDF-4 read without decoding, checked by a digest of their arrays.
 
 FORMAT = "lineofaction STE database"
 _BESIDE_MESH_SINCE = 4

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.ste.curve import OperatingPoint, at_operating_point
+from fe_contact.ste.curve import at_operating_point
 from fe_contact.ste.fields import SteFields
+from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray, IntArray
 
 _ALIKE = 5e-4

@@ -144,9 +144,9 @@ def _entries(owner: Any, override: Override, name: str) -> Iterator[tuple[Any, A
 
 def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
     names = [part.get("name") if isinstance(part, dict) else None for part in parts]
-    chosen = [index for index, own in enumerate(names) if name in (_EVERY, own)]
+    chosen = [index for index, known_name in enumerate(names) if name in (_EVERY, known_name)]
     if not chosen:
-        known = ", ".join(str(own) for own in names if own is not None) or "[0], [1] ..."
+        known = ", ".join(str(known_name) for known_name in names if known_name is not None) or "[0], [1] ..."
         raise _no_place(override, f'a part of the file: there is no "{name}"', f"Known here: {known}.")
     return chosen
 

@@ -67,8 +67,8 @@ def inputs_in(project: Path, study: Study) -> Path | None:
 
     Raises `BadInput`: several do.
     """
-    found = _inputs_in(project, study)
-    return only(found, project, f"file for {study.name}") if found else None
+    files = _inputs_in(project, study)
+    return only(files, project, f"file for {study.name}") if files else None
 
 
 def _inputs_in(project: Path, study: Study) -> list[Path]:
@@ -104,8 +104,8 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
     by_part: dict[str, list[Path]] = {part: [] for part in ("", *parts)}
     for path in results_in(project):
         name = path.relative_to(project).with_suffix("").as_posix()
-        own = (part for part in parts if name == part or name.startswith(f"{part}_"))
-        by_part[max(own, key=len, default="")].append(path)
+        owners = (part for part in parts if name == part or name.startswith(f"{part}_"))
+        by_part[max(owners, key=len, default="")].append(path)
     return {part: paths for part, paths in by_part.items() if paths}
 
 
@@ -117,8 +117,10 @@ def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path | Non
     if not named.is_dir():
         return {"": named}
     cases = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
-    found = {case.stem: own if own.is_file() else kept(case) for case, own in cases.items()}
-    tables = {name: table if table.is_file() else None for name, table in found.items()}
+    paths = {
+        case.stem: table_path if table_path.is_file() else kept(case) for case, table_path in cases.items()
+    }
+    tables = {name: table if table.is_file() else None for name, table in paths.items()}
     if not any(tables.values()):
         advice = f"Make them with: loa analyze {named}"
         raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)
@@ -135,10 +137,12 @@ def about(project: Path) -> Path | None:
 
     Raises `BadInput`: several of other names have one.
     """
-    found = [path for path, table in _tables(project) if "report" in table]
-    chosen = [path for name in ("report", "scene") for path in found if path.stem == name] or found
-    if len(chosen) > 1 and chosen == found and not {"report", "scene"} & {path.stem for path in found}:
-        raise BadInput.of("--about", str(project), "a folder of one [report]", f"Name one: {_listed(found)}.")
+    reports = [path for path, table in _tables(project) if "report" in table]
+    chosen = [path for name in ("report", "scene") for path in reports if path.stem == name] or reports
+    if len(chosen) > 1 and chosen == reports and not {"report", "scene"} & {path.stem for path in reports}:
+        raise BadInput.of(
+            "--about", str(project), "a folder of one [report]", f"Name one: {_listed(reports)}."
+        )
     return chosen[0] if chosen else None
 
 
@@ -200,14 +204,16 @@ def _state(result: Path, newest: float) -> str:
 
 def result_name(study: Study, part: str = "") -> str:
     """Return the file of a study's result in its project, relative to that; `part` as of its `InputFile`."""
-    own = f"{part}_" if part else ""
-    return f"{own}{study.folder}/{study.folder}{SUFFIX}" if study.folder else f"{own}{study.name}{SUFFIX}"
+    prefix = f"{part}_" if part else ""
+    return (
+        f"{prefix}{study.folder}/{study.folder}{SUFFIX}" if study.folder else f"{prefix}{study.name}{SUFFIX}"
+    )
 
 
 def _chosen(tables: Mapping[Path, Mapping[str, Any]], kind: str) -> list[Path]:
     """Return the files of a kind, the one of that name alone if there is one."""
-    found = [path for path, table in tables.items() if _SIGNS[kind] in table]
-    return [path for path in found if path.stem == kind] or found
+    paths = [path for path, table in tables.items() if _SIGNS[kind] in table]
+    return [path for path in paths if path.stem == kind] or paths
 
 
 def _parts(tables: Mapping[Path, Mapping[str, Any]]) -> list[str]:

@@ -36,7 +36,7 @@ def run_json(file: Path) -> dict[str, Any]:
             attributes[LEDGER] = boundary_ledger(attributes[LEDGER])
         return {
             "attributes": attributes,
-            "dimensions": {name: int(each.size) for name, each in run.dimensions.items()},
+            "dimensions": {name: int(dimension.size) for name, dimension in run.dimensions.items()},
             "variables": {
                 name: {"dimensions": list(variable.dimensions), "units": variable.attrs.get("units", "")}
                 for name, variable in run.variables.items()

@@ -109,10 +109,10 @@ def with_case(mesh: MeshInput, field: str, folder: Path) -> MeshInput:
 
 def with_own_files(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its cases written out, and the files that it still names by their whole paths."""
-    own = with_own_cases(scene, folder)
-    meshes = tuple(_in_folder(mesh, "database_file", folder) for mesh in own.meshes)
-    housings = tuple(_in_folder(part, "modes_file", folder) for part in own.housings)
-    return own.model_copy(update={"meshes": meshes, "housings": housings})
+    with_cases = with_own_cases(scene, folder)
+    meshes = tuple(_in_folder(mesh, "database_file", folder) for mesh in with_cases.meshes)
+    housings = tuple(_in_folder(part, "modes_file", folder) for part in with_cases.housings)
+    return with_cases.model_copy(update={"meshes": meshes, "housings": housings})
 
 
 def _in_folder(part: Any, field: str, folder: Path) -> Any:

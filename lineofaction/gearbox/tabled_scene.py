@@ -84,8 +84,8 @@ def tabled_scene(
         from lineofaction.gearbox.level_quantity import with_quantity  # noqa: PLC0415 (start-up time)
 
         built = with_quantity(built, scene, housings)
-    own = with_own_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
-    return TabledScene(without_modes_files(own), databases, built, housings, cpu_seconds() - began)
+    with_cases = with_own_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
+    return TabledScene(without_modes_files(with_cases), databases, built, housings, cpu_seconds() - began)
 
 
 def database_of(

@@ -166,8 +166,8 @@ def tabled(
 def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
     _warn(left_out_warnings(scene.left_out))
     cases = CheckedCases()
-    here = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
-    tables = MeshTables(folder, here)
+    computed = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
+    tables = MeshTables(folder, computed)
     return scene_by_tables(
         scene,
         folder,

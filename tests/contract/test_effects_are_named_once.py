@@ -33,8 +33,8 @@ WORDS = {"axial", "backlash", "friction", "lateral", "misalignment", "tilt"}
 """Effects whose names are directions or quantities too: refused where an effect is chosen or looked up."""
 REMAINS = {
     ("dynamics/simulation/documents.py", "flexible_shafts"): "heading of the case that a result echoes",
-    ("fe_contact/planning/plan.py", "finite_width"): "key of the hash by which tables are stored",
-    ("fe_contact/ste/curve.py", "finite_width"): "source of an error in stored tables",
+    ("fe_contact/planning/discretization.py", "finite_width"): "key of the hash by which tables are stored",
+    ("fe_contact/ste/curve_errors.py", "finite_width"): "source of an error in stored tables",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
 }
 CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")

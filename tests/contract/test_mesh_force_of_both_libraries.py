@@ -8,11 +8,11 @@ from geared_scenes import spring_table, square_wave_table
 from sliced_face import sliced_database
 
 from dynamics.kernels.compiled import compiled
+from dynamics.meshes.grid_energy import grid_energy
 from dynamics.meshes.grid_lookup import find_cell, grid_force
 from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.meshes.packed_tables import pack_tables
-from dynamics.meshes.spatial_flank import grid_energy
 from dynamics.meshes.table_lookup import table_deflection, table_force
 from fe_contact.ste import MeshForce, Metadata, PairFacts, SteDatabase
 from fe_contact.ste.force_table import ForceTable

@@ -9,7 +9,7 @@ import pytest
 
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning.plan import SECTOR_RECIPE
+from fe_contact.planning.discretization import SECTOR_RECIPE
 
 
 @pytest.fixture(scope="module")

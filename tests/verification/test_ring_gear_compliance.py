@@ -13,8 +13,8 @@ from fe_contact.compliance import PlaneHypothesis, flank_compliance, flank_compl
 from fe_contact.compliance.condensed_gear import pressure_forces
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.factorization import factorise
-from fe_contact.compliance.flank_compliance_2d import uniform_pressure
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.geometry import RingGear, tooth_profile
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe, mesh_gear
 from fe_contact.mesh.quadratic_mesh import rotated

@@ -3,97 +3,66 @@
 from __future__ import annotations
 
 import hashlib
-import math
-import os
-import platform
 import re
-import shlex
-import shutil
-import subprocess
 import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from xml.etree import ElementTree as Xml
 
 import numpy as np
 
+from dynamics.engines.fmu.compiler import binary_folder, compile_library, find_compiler
+from dynamics.engines.fmu.header import c_header
+from dynamics.engines.fmu.model_description import (
+    BOOLEAN,
+    INTEGER,
+    REAL,
+    TABLE_FILE,
+    Variable,
+    model_description,
+)
 from dynamics.engines.mesh_element import MeshElement
-from dynamics.errors import DynamicsError, InputError
+from dynamics.errors import InputError
 from dynamics.meshes.mesh_table import FIELDS, MeshTable
 from host.directories import whole_file
 
-REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
-# exponents of the SI base units
-_UNITS = {
-    "rad": {"rad": 1},
-    "rad/s": {"rad": 1, "s": -1},
-    "m": {"m": 1},
-    "m/s": {"m": 1, "s": -1},
-    "N": {"kg": 1, "m": 1, "s": -2},
-    "N.m": {"kg": 1, "m": 2, "s": -2},
-    "N/m": {"kg": 1, "s": -2},
-    "N.s/m": {"kg": 1, "s": -1},
-}
-_CAPABILITIES = (
-    "canHandleVariableCommunicationStepSize",
-    "canGetAndSetFMUstate",
-    "canSerializeFMUstate",
-    "canNotUseMemoryManagementFunctions",
-)
-COMPILERS = ("cc", "gcc", "clang")
-# -ffp-contract=off: the same rounding as the compiled look-up; -s and no paths: the same bytes every time
-FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-Wextra", "-I.")
-_FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
-_SECONDS = 120
-TABLE_FILE = "mesh_force_table.bin"
 MAGIC = b"LOAMESH1"
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_INTEGER_OUTPUTS = (
+    Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 driving, 2 coast flanks, 3 both"),
+    Variable(
+        "validity",
+        INTEGER,
+        "output",
+        "discrete",
+        "0 inside the table; plus 1 beyond its forces, 2 its misalignments, 4 its center distances",
+    ),
+)
 
 
-@dataclass(frozen=True)
-class _Variable:
-    """A variable by its name in the model description; its value reference is its index among its kind."""
-
-    name: str
-    kind: str
-    causality: str
-    variability: str
-    text: str
-    unit: str = ""
-    start: float | None = None
-    """None: an output, which follows from the others."""
+def _input(name: str, unit: str, text: str, start: float = 0.0) -> Variable:
+    return Variable(name, REAL, "input", "continuous", text, unit, start)
 
 
-def _of_kind(chosen: Sequence[_Variable], kind: str) -> list[_Variable]:
-    """Return those of `kind` in the order of their value references."""
-    return [variable for variable in chosen if variable.kind == kind]
+def _turns(name: str, text: str) -> Variable:
+    return Variable(name, INTEGER, "input", "discrete", text, "", 0)
 
 
-def _input(name: str, unit: str, text: str, start: float = 0.0) -> _Variable:
-    return _Variable(name, REAL, "input", "continuous", text, unit, start)
+def _tunable(name: str, unit: str, text: str, start: float) -> Variable:
+    return Variable(name, REAL, "parameter", "tunable", text, unit, float(start))
 
 
-def _turns(name: str, text: str) -> _Variable:
-    return _Variable(name, INTEGER, "input", "discrete", text, "", 0)
+def _switch(name: str, text: str, start: bool) -> Variable:
+    return Variable(name, BOOLEAN, "parameter", "fixed", text, "", start)
 
 
-def _tunable(name: str, unit: str, text: str, start: float) -> _Variable:
-    return _Variable(name, REAL, "parameter", "tunable", text, unit, float(start))
+def _output(name: str, unit: str, text: str) -> Variable:
+    return Variable(name, REAL, "output", "continuous", text, unit)
 
 
-def _switch(name: str, text: str, start: bool) -> _Variable:
-    return _Variable(name, BOOLEAN, "parameter", "fixed", text, "", start)
-
-
-def _output(name: str, unit: str, text: str) -> _Variable:
-    return _Variable(name, REAL, "output", "continuous", text, unit)
-
-
-def _inputs(element: MeshElement) -> list[_Variable]:
+def _inputs(element: MeshElement) -> list[Variable]:
     """Return the inputs; axes start at their knot nearest to zero."""
     return [
         _input("driver_angle", "rad", "Angle of the driver in the sense in which it drives"),
@@ -123,7 +92,7 @@ def _nearest_zero(knots: Sequence[float] | np.ndarray) -> float:
     return float(array[np.argmin(np.abs(array))])
 
 
-def _parameters(element: MeshElement) -> list[_Variable]:
+def _parameters(element: MeshElement) -> list[Variable]:
     """Return what is set before a run, numbers also during it."""
     coast = element.coast
     backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
@@ -158,166 +127,6 @@ _REAL_OUTPUTS = (
     _output("coast_stiffness", "N/m", "Derivative of coast_force in coast_approach"),
     _output("coast_viscosity", "N.s/m", "Derivative of coast_force in its rate"),
 )
-_INTEGER_OUTPUTS = (
-    _Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 driving, 2 coast flanks, 3 both"),
-    _Variable(
-        "validity",
-        INTEGER,
-        "output",
-        "discrete",
-        "0 inside the table; plus 1 beyond its forces, 2 its misalignments, 4 its center distances",
-    ),
-)
-
-
-def _model_description(name: str, chosen: Sequence[_Variable], guid: str, sources: Sequence[str]) -> bytes:
-    """Return the XML; it holds no date, so that the same table gives the same file.
-
-    `name` is a C identifier; `sources` are the C files to compile, in ``sources/``.
-    """
-    root = Xml.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=name,
-        guid=guid,
-        description="Gear mesh force from a static-transmission-error table",
-        generationTool="lineofaction",
-        variableNamingConvention="flat",
-        numberOfEventIndicators="0",
-    )
-    simulated = {"modelIdentifier": name, **dict.fromkeys(_CAPABILITIES, "true")}
-    files = Xml.SubElement(Xml.SubElement(root, "CoSimulation", simulated), "SourceFiles")
-    for source in sources:
-        Xml.SubElement(files, "File", name=source)
-    definitions = Xml.SubElement(root, "UnitDefinitions")
-    for unit_name, exponents in _UNITS.items():
-        unit = Xml.SubElement(definitions, "Unit", name=unit_name)
-        Xml.SubElement(unit, "BaseUnit", {base: str(power) for base, power in exponents.items()})
-    _add_variables(root, chosen)
-    _add_structure(root, chosen)
-    Xml.indent(root)
-    content: bytes = Xml.tostring(root, encoding="UTF-8", xml_declaration=True)
-    return content + b"\n"
-
-
-def _add_variables(root: Xml.Element, chosen: Sequence[_Variable]) -> None:
-    section, count = Xml.SubElement(root, "ModelVariables"), dict.fromkeys((REAL, INTEGER, BOOLEAN), 0)
-    for variable in chosen:
-        entry = Xml.SubElement(
-            section,
-            "ScalarVariable",
-            name=variable.name,
-            valueReference=str(count[variable.kind]),
-            description=variable.text,
-            causality=variable.causality,
-            variability=variable.variability,
-        )
-        count[variable.kind] += 1
-        facts = {"unit": variable.unit} if variable.unit else {}
-        if variable.start is not None:
-            truth = "true" if variable.start else "false"
-            facts["start"] = truth if variable.kind == BOOLEAN else repr(variable.start)
-        Xml.SubElement(entry, variable.kind, facts)
-
-
-def _add_structure(root: Xml.Element, chosen: Sequence[_Variable]) -> None:
-    """Every output depends on every input, at once."""
-    structure = Xml.SubElement(root, "ModelStructure")
-    for section in ("Outputs", "InitialUnknowns"):
-        listed = Xml.SubElement(structure, section)
-        for index, variable in enumerate(chosen, start=1):
-            if variable.causality == "output":
-                Xml.SubElement(listed, "Unknown", index=str(index))
-
-
-# The system's C compiler, which makes the FMU's binary.
-
-
-class CompilerError(DynamicsError):
-    """The C compiler refused the FMU's sources; its message is the text."""
-
-
-def binary_folder() -> tuple[str, str] | None:
-    """Return folder in ``binaries/`` and ending of this machine's binary; None where FMI 2.0 has none."""
-    return _FOLDERS.get((platform.system(), platform.machine()))
-
-
-def find_compiler() -> list[str]:
-    """Return the command of the C compiler: ``CC`` from the environment, or the first of cc, gcc, clang.
-
-    Raises `InputError`: there is none.
-    """
-    requested = shlex.split(os.environ.get("CC", ""))
-    for command in [requested] if requested else [[name] for name in COMPILERS]:
-        if shutil.which(command[0]) is not None:
-            return command
-    advice = (
-        "Install one (Debian: apt-get install gcc), name one in CC, or write the sources alone: "
-        "export_fmu(..., binary=False)."
-    )
-    raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", advice)
-
-
-def _compile_library(folder: Path, sources: Sequence[str], library: str) -> None:
-    """Compile `sources` in `folder` into the shared library of that name there."""
-    strip = [] if platform.system() == "Darwin" else ["-s"]
-    command = [*find_compiler(), *FLAGS, *strip, "-o", library, *sources, "-lm"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_SECONDS, check=False)
-    if done.returncode != 0:
-        raise CompilerError(f"{shlex.join(command)} failed:\n{done.stderr.strip()}")
-
-
-# The generated C header: value references, start values and the facts of the pair.
-
-
-def _header(element: MeshElement, chosen: Sequence[_Variable], guid: str, identity: str) -> str:
-    """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
-    parts = [_kind(_of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
-    names = ", ".join(f'"{variable.name}"' for variable in _of_kind(chosen, REAL))
-    facts = {
-        "GUID": f'"{guid}"',
-        "TABLE_FILE": f'"{TABLE_FILE}"',
-        "TABLE_IDENTITY": f'"{identity}"',
-        "DRIVER_TEETH": str(element.teeth[0]),
-        "DRIVEN_TEETH": str(element.teeth[1]),
-        "DRIVER_BASE_RADIUS": _exact(element.base_radius[0]),
-        "DRIVEN_BASE_RADIUS": _exact(element.base_radius[1]),
-        "BASE_PITCH": _exact(element.base_pitch),
-        "TAN_BASE_HELIX_ANGLE": _exact(math.tan(element.base_helix_angle)),
-    }
-    lines = [f"#define {name} {value}" for name, value in facts.items()]
-    return "\n".join(
-        [
-            "/* Generated with the model description. */",
-            "#ifndef VARIABLES_H",
-            "#define VARIABLES_H",
-            *parts,
-            f"static const char *const REAL_NAMES[] = {{{names}}};",
-            *lines,
-            "#endif",
-            "",
-        ]
-    )
-
-
-def _kind(chosen: Sequence[_Variable], kind: str) -> str:
-    """Value references and start values of one kind; what can be set comes first."""
-    settable = [variable for variable in chosen if variable.start is not None]
-    if list(chosen[: len(settable)]) != settable:
-        raise AssertionError("outputs come after what can be set")
-    names = ", ".join([*(variable.name.upper() for variable in chosen), f"{kind}_COUNT"])
-    start = ", ".join(
-        _exact(variable.start or 0.0) if kind == "REAL" else str(int(variable.start or 0))
-        for variable in chosen
-    )
-    return f"enum {{{names}, {kind}_SETTABLE = {len(settable)}}};\n#define {kind}_START_VALUES {{{start}}}"
-
-
-def _exact(value: float) -> str:
-    return float(value).hex()
-
-
-# The mesh-force table as the FMU's resource: plain little-endian numbers.
 
 
 def _table_content(table: MeshTable) -> bytes:
@@ -382,17 +191,17 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     # of each kind those that can be set first
     chosen = (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
     table = _table_content(element.table)
-    own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
-    compiled = sorted(file for file in own if file.endswith(".c"))
+    sources = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
+    compiled = sorted(file for file in sources if file.endswith(".c"))
 
     def described(guid: str) -> dict[str, bytes]:
         return {
-            "modelDescription.xml": _model_description(name, chosen, guid, compiled),
-            "sources/variables.h": _header(element, chosen, guid, _identity_of(table)).encode("ascii"),
+            "modelDescription.xml": model_description(name, chosen, guid, compiled),
+            "sources/variables.h": c_header(element, chosen, guid, _identity_of(table)).encode("ascii"),
         }
 
     content = {
-        **{f"sources/{file}": text for file, text in own.items() if file.endswith((".c", ".h"))},
+        **{f"sources/{file}": text for file, text in sources.items() if file.endswith((".c", ".h"))},
         f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
     digest, whole = hashlib.sha256(), {**content, **described("")}
@@ -414,7 +223,7 @@ def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
         sources = {Path(file).name: text for file, text in content.items() if file.startswith("sources/")}
         for file, text in sources.items():
             (folder / file).write_bytes(text)
-        _compile_library(folder, sorted(file for file in sources if file.endswith(".c")), f"{name}{ending}")
+        compile_library(folder, sorted(file for file in sources if file.endswith(".c")), f"{name}{ending}")
         return {f"binaries/{platform}/{name}{ending}": (folder / f"{name}{ending}").read_bytes()}
 
 

@@ -13,7 +13,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects import LedgerEntry
 from fe_contact.effects.composer import flipped
-from fe_contact.effects.influence.estimate import Influence
+from fe_contact.effects.influence.influence import Influence
 from fe_contact.errors import InputError
 from fe_contact.planning.plan import Plan
 from fe_contact.types import Json

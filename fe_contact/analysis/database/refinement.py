@@ -14,16 +14,15 @@ import numpy as np
 from bounds import engineering
 from fe_contact.analysis.request.model_choice import Decided, next_model
 from fe_contact.options import LEVELS
-from fe_contact.planning.plan import (
-    CLOSEST,
+from fe_contact.planning.discretization import (
     FINER_SLICES,
     SLICE_ORDER,
     SLICES,
     FaceDiscretization,
-    NodeRule,
     face_discretization,
 )
-from fe_contact.ste.curve import AT_NODES, all_sources
+from fe_contact.planning.plan import CLOSEST, NodeRule
+from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
 
 AIM = 0.9

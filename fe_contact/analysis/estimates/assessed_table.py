@@ -21,11 +21,11 @@ from fe_contact.planning.plan import Plan
 from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.sampled import spread
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.curve import BETWEEN_NODES, DERIVATIVES, OF_LOAD_ARM, SOURCES, source_names
+from fe_contact.ste.curve_errors import BETWEEN_NODES, DERIVATIVES, OF_LOAD_ARM, SOURCES, source_names
 from fe_contact.ste.curve_quantities import BY_SOURCE, QUANTITIES, mean_of_curves
-from fe_contact.ste.database import SupportLoads, with_support_loads
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.plane_bias import PlaneBias
+from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import FloatArray, Json
 
 

@@ -21,10 +21,11 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.model_error import helical_share, model_errors
-from fe_contact.planning.plan import FaceDiscretization, Plan
+from fe_contact.planning.plan import Plan
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, METHOD, OF_LOAD_ARM, PLANE
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE
 from fe_contact.ste.curve_quantities import (
     BESIDE_MESH,
     FIRST_HARMONIC,

@@ -21,9 +21,10 @@ from fe_contact.analysis.estimates.table_sample import Nested
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.request.solved_run import Solved
 from fe_contact.contact import ContactSolution
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.model_error import point_error
-from fe_contact.planning.plan import FaceDiscretization, Plan
-from fe_contact.ste.curve import METHOD, PLANE
+from fe_contact.planning.plan import Plan
+from fe_contact.ste.curve_errors import METHOD, PLANE
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03

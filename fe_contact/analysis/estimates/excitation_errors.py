@@ -9,9 +9,10 @@ import numpy as np
 
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, METHOD, OperatingPoint, all_sources, errors_by_source
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, all_sources, errors_by_source
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves
 from fe_contact.ste.extraction import sliding_sums
+from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray
 
 

@@ -13,9 +13,9 @@ from fe_contact.analysis.estimates.interval_goal import GoalOf
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.errors import DatabaseError
 from fe_contact.sampled import some_positions
-from fe_contact.ste.curve import BETWEEN_NODES
-from fe_contact.ste.database import SupportLoads
+from fe_contact.ste.curve_errors import BETWEEN_NODES
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
+from fe_contact.ste.support_loads import SupportLoads
 from fe_contact.types import FloatArray, Json
 
 

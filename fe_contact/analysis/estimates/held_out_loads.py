@@ -29,7 +29,7 @@ from fe_contact.ste.curve_quantities import (
     mean_of_curves,
     quantity_changes,
 )
-from fe_contact.ste.database import SupportLoads, with_support_loads
+from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import BETWEEN_NODES
+from fe_contact.ste.curve_errors import BETWEEN_NODES
 from fe_contact.types import FloatArray
 
 LEAST_SHARE = 0.1

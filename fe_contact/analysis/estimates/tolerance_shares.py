@@ -8,7 +8,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.estimates.interval_goal import LEAST_SHARE, IntervalGoal
 from fe_contact.analysis.request.request import Request
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
+from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
 from fe_contact.ste.plane_bias import PlaneBias, stored_bias
 from fe_contact.types import FloatArray, Json

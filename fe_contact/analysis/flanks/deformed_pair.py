@@ -25,7 +25,7 @@ from fe_contact.errors import integer
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
-from fe_contact.planning.plan import FaceDiscretization
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.plan import FaceDiscretization, PlaneDiscretization
+from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 
 FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
 """Elements along the root, and their depth below both flanks, against those of the contact's sectors."""

@@ -33,7 +33,8 @@ from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning.cost_model import body_seconds
-from fe_contact.planning.plan import Plan, PlaneDiscretization
+from fe_contact.planning.discretization import PlaneDiscretization
+from fe_contact.planning.plan import Plan
 from fe_contact.plausibility import root_findings, unexpected
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 from model_studies.stage_clock import StageClock

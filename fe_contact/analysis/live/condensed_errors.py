@@ -19,10 +19,10 @@ from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
+from fe_contact.planning.expected_error import usual_mesh_error
 from fe_contact.planning.plan import Plan
-from fe_contact.planning.planned import usual_mesh_error
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES
+from fe_contact.ste.curve_errors import AT_NODES
 from fe_contact.ste.curve_quantities import MEAN, QUANTITIES
 from fe_contact.types import FloatArray
 

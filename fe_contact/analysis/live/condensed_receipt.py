@@ -9,7 +9,7 @@ from fe_contact.analysis.database.contact_receipt import failed_points
 from fe_contact.analysis.estimates.assessed_table import AssessedTable
 from fe_contact.analysis.estimates.error_sources import worst_residual
 from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
-from fe_contact.ste.curve import BETWEEN_NODES
+from fe_contact.ste.curve_errors import BETWEEN_NODES
 from fe_contact.types import Json
 from model_studies.stage_clock import StageClock
 

@@ -36,7 +36,8 @@ from fe_contact.contact import (
 from fe_contact.contact.plain_touch import Touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.cost_model import condensed_teeth
-from fe_contact.planning.plan import FaceDiscretization, Plan
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 

@@ -16,7 +16,7 @@ from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.pairs.slice_stiffness import parabolic_stiffness
 from fe_contact.analysis.request.request import Checked
-from fe_contact.planning.planned import ExpectedCurves
+from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray
 

@@ -6,12 +6,8 @@ from collections.abc import Iterable, Mapping
 
 from fe_contact.analysis.request.request import Checked
 from fe_contact.effects import ContactScene
-from fe_contact.effects.influence.estimate import (
-    EstimatedInfluence,
-    Influence,
-    estimate_influence,
-    estimate_influences,
-)
+from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence, estimate_influences
+from fe_contact.effects.influence.influence import Influence
 
 Influences = Mapping[str, Influence | None]
 

@@ -18,15 +18,11 @@ from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.effects.influence.estimate import estimate_influence
 from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import Prediction, effort
-from fe_contact.planning.plan import FaceDiscretization, NodeRule, Plan
-from fe_contact.planning.planned import (
-    ExpectedCurves,
-    MeshChoice,
-    MeshOption,
-    chosen_mesh,
-    expected_error,
-    mesh_options,
-)
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.expected_curves import ExpectedCurves
+from fe_contact.planning.expected_error import expected_error
+from fe_contact.planning.plan import NodeRule, Plan
+from fe_contact.planning.planned import MeshChoice, MeshOption, chosen_mesh, mesh_options
 from fe_contact.types import Json
 
 WIDTH_SHARE = 0.8

@@ -8,7 +8,7 @@ from bounds import Text, at_least, warn_of
 from fe_contact.analysis.request.neglected_effects import neglected_effects
 from fe_contact.analysis.request.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.compliance.flank import LARGEST_ROUNDING, least_face_width
+from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import LedgerEntry, compose
 from fe_contact.errors import InputError

@@ -20,7 +20,7 @@ from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked, checked_request
 from fe_contact.effects import EFFECTS, LedgerEntry
-from fe_contact.effects.influence.estimate import Influence
+from fe_contact.effects.influence.influence import Influence
 from fe_contact.errors import InputError, MeshError, SolveError, chosen
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes

@@ -10,7 +10,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.errors import InputError
 from fe_contact.options import Run
-from fe_contact.planning.plan import PLANE_REFINEMENT
+from fe_contact.planning.discretization import PLANE_REFINEMENT
 from fe_contact.ste import SteDatabase
 
 SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}

@@ -1,7 +1,8 @@
 """Records of full finite-element contact: the truth that the accuracy study compares its fidelities with.
 
 `full_contact_records.json` holds the curves of a few pairs; `python -m benchmarks.full_contact_records`
-writes it, and names there the version of the solver and the pairs.
+writes it, and names there the version of the solver and the pairs. Arrays run along M misalignments, P
+positions and T torques.
 """
 
 from __future__ import annotations
@@ -31,9 +32,6 @@ NO_RECORD = (
 )
 SAME = 1e-9
 """Relative difference up to which two dimensions of a gear are the same number in other units."""
-
-
-# Axes of arrays: M misalignments, P positions, T torques.
 
 
 @dataclass(frozen=True)

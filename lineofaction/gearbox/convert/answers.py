@@ -10,9 +10,9 @@ import numpy as np
 from bounds import engineering
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, ToothLoads
-from fe_contact.ste.curve import OperatingPoint
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
+from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
@@ -104,7 +104,7 @@ def _typed(values: FloatArray, unit: float) -> list[float]:
 def tooth_loads_json(database: SteDatabase, point: OperatingPoint) -> Json:
     """Return the loads of the teeth by the names of the gears whose teeth differ."""
     loads = database.tooth_loads(**asdict(point), allow_failed=True)
-    return {GEARS[own.gear]: _tooth_loads(own) for own in loads}
+    return {GEARS[loads_of_gear.gear]: _tooth_loads(loads_of_gear) for loads_of_gear in loads}
 
 
 def teeth_words(teeth: Sequence[int]) -> str:
@@ -115,17 +115,17 @@ def teeth_words(teeth: Sequence[int]) -> str:
     return f"teeth {first} and {others[0]}" if len(others) == 1 else f"tooth {first} and {len(others)} more"
 
 
-def _tooth_loads(own: ToothLoads) -> Json:
+def _tooth_loads(loads: ToothLoads) -> Json:
     answer: Json = {
-        "most_loaded": list(own.most_loaded),
-        "force_n": float(own.force.max()),
-        "over_mean": own.over_mean,
-        "force_by_tooth_n": own.force.tolist(),
-        "most_pressed": list(own.most_pressed),
+        "most_loaded": list(loads.most_loaded),
+        "force_n": float(loads.force.max()),
+        "over_mean": loads.over_mean,
+        "force_by_tooth_n": loads.force.tolist(),
+        "most_pressed": list(loads.most_pressed),
     }
-    if np.isfinite(own.pressure).all():
-        answer["pressure_mpa"] = float(own.pressure.max()) / MPA
-        answer["pressure_by_tooth_mpa"] = (own.pressure / MPA).tolist()
+    if np.isfinite(loads.pressure).all():
+        answer["pressure_mpa"] = float(loads.pressure.max()) / MPA
+        answer["pressure_by_tooth_mpa"] = (loads.pressure / MPA).tolist()
     return answer
 
 

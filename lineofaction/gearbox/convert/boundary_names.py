@@ -15,7 +15,8 @@ from dynamics.joints.rotations import FreeRotation, ImposedRotation
 from dynamics.loads.applied_force import AppliedForce, Unbalance
 from dynamics.settings.run import Integration, Outputs
 from dynamics.shafts.beam_section import BeamSection
-from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
+from dynamics.shafts.bodies import Inertia
+from dynamics.shafts.rigid_bodies import DiscBody, GearBody
 from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall

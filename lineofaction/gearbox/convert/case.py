@@ -164,8 +164,8 @@ def analysis_options(case: Case) -> AnalysisOptions:
     with boundary_errors():
         relative, floor = accuracy.tolerance, accuracy.tolerance_floor_nm * NM
         allowed = None if relative is None else AllowedError(relative, floor)
-        own = {"tolerance": allowed, "effects": dict(case.effects)}
-        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | own)
+        converted = {"tolerance": allowed, "effects": dict(case.effects)}
+        return AnalysisOptions(**in_si(AnalysisOptions, accuracy) | converted)
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:

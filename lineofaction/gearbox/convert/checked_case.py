@@ -124,12 +124,12 @@ class CheckedCases:
 
     def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
         name = json.dumps(inputs, sort_keys=True)
-        kept = self._kept.get(name)
-        if kept is None:
-            kept = self._kept[name] = CheckedCase(case())
+        checked = self._kept.get(name)
+        if checked is None:
+            checked = self._kept[name] = CheckedCase(case())
             while len(self._kept) > self._most:
                 self._kept.popitem(last=False)
-        return kept
+        return checked
 
 
 def check_case(case: Case) -> ParallelAxes:

@@ -48,7 +48,7 @@ def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
 
 def _parts(kind: type[Part], value: BaseModel | tuple[BaseModel, ...], name: str) -> object:
     if isinstance(value, tuple):
-        return tuple(part_of(kind, each, f"{name}[{index}]") for index, each in enumerate(value))
+        return tuple(part_of(kind, entry, f"{name}[{index}]") for index, entry in enumerate(value))
     return part_of(kind, value, name)
 
 
@@ -56,12 +56,12 @@ def _parts(kind: type[Part], value: BaseModel | tuple[BaseModel, ...], name: str
 def _shared_fields(kind: Any, model: Any) -> tuple[tuple[str, str, float], ...]:
     """Return the fields that a dataclass and a table share: name, the table's name, SI value of its unit."""
     declared = {figure.name: (figure.field, figure.unit.factor) for figure in figures(kind)}
-    own = {name for name, field in model.model_fields.items() if model_in(field.annotation) is None}
+    plain = {name for name, field in model.model_fields.items() if model_in(field.annotation) is None}
     shared = []
     for name in (entry.name for entry in fields(kind) if entry.init):
         known = declared.get(name)
         fits = [known] if known else [(name + end, factor(name + end)) for end in ("", *ENDINGS)]
-        shared += [(name, field, unit) for field, unit in fits if field in own][:1]
+        shared += [(name, field, unit) for field, unit in fits if field in plain][:1]
     return tuple(shared)
 
 
@@ -69,5 +69,5 @@ def _in_unit(value: Any, unit: float) -> Any:
     if unit == 1.0:
         return value
     if isinstance(value, tuple):
-        return tuple(_in_unit(each, unit) for each in value)
+        return tuple(_in_unit(entry, unit) for entry in value)
     return value * unit if isinstance(value, float) else value

@@ -40,7 +40,7 @@ def drawn_housings(inputs: Json, folder: Path, announce: Callable[[str], None]) 
     return {"surface": packed_surface(points, facets) if solid else None}
 
 
-def _drawn(index: int, housing: HousingInput, folder: Path, most: int) -> tuple[FloatArray, IntArray]:
+def _drawn(index: int, housing: HousingInput, folder: Path, limit: int) -> tuple[FloatArray, IntArray]:
     """Return points in the scene, m, and facets of a housing given by its solid."""
     from dynamics.housings.drawn_surface import drawn_mesh, drawn_step  # noqa: PLC0415 (start-up time)
 
@@ -54,13 +54,13 @@ def _drawn(index: int, housing: HousingInput, folder: Path, most: int) -> tuple[
     with named(part):
         try:
             of_step = field == "step_file"
-            surface = drawn_step(file, most) if of_step else drawn_mesh(file, str(housing.mesh_unit), most)
+            surface = drawn_step(file, limit) if of_step else drawn_mesh(file, str(housing.mesh_unit), limit)
         except InputError as error:
             content = housing.step_file or housing.mesh_file
             assert content is not None  # the schema comes first
-            own = f"{error.field}_mm" if error.field.endswith((".size", ".place")) else error.field
+            field_name = f"{error.field}_mm" if error.field.endswith((".size", ".place")) else error.field
             value = content.name if error.value == file.name else error.value
-            raise InputError(own, value, error.bound, error.suggestion) from None
+            raise InputError(field_name, value, error.bound, error.suggestion) from None
     placement = Placement.of(housing.own_x_axis, housing.own_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
     return placement.points(surface.points), surface.facets
 

@@ -87,8 +87,9 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
             yield f"repeated with {name}: {reason} (first run {cost}{since})"
     corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
     for gear, radius in corrected.items():
-        stated, used = (1e3 * radius[name] for name in ("given", "used"))
-        yield f"base radius of {gear} corrected from {stated:.6g} to {used:.6g} mm: one base pitch per train"
+        from_teeth, used = (1e3 * radius[name] for name in ("given", "used"))
+        change = f"from {from_teeth:.6g} to {used:.6g} mm"
+        yield f"base radius of {gear} corrected {change}: one base pitch per train"
     for check in attributes.get("effect_ledger", {}).get("checks", ()):
         if check["holds"] is False:
             part = check["part"] or check["effect"]

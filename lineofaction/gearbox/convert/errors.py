@@ -39,14 +39,14 @@ class _CaseReader(Reader):
 
     def own_unit(self, unit: str) -> Unit:
         """Return the unit of the field by its name, with its symbol if that is to be written."""
-        own = unit_of(self.name) or Unit(unit)
-        return own if unit else Unit("", own.factor)
+        of_name = unit_of(self.name) or Unit(unit)
+        return of_name if unit else Unit("", of_name.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
         """Return the field's unit for what is measured like it; of lengths mm, um for small ones."""
-        own = unit_of(self.name)
-        if own and own.si == unit != "m":
-            return own
+        of_name = unit_of(self.name)
+        if of_name and of_name.si == unit != "m":
+            return of_name
         if unit == "m":
             return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
         return next(

@@ -17,7 +17,8 @@ import numpy as np
 from dynamics.errors import InputError
 from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
-from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES, check_mesh_content
+from dynamics.mesh_content import check_mesh_content
+from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput

@@ -19,7 +19,7 @@ from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.linearized_design import CurveDerivatives, FlankDerivatives, curve_derivatives
+from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.tolerances import iso1328_tolerances
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
@@ -94,8 +94,8 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
     }
 
 
-def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
-    """Return what one pair of teeth meets on its way through the mesh; `apart` (P, N, K) in m.
+def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
+    """Return what one pair of teeth meets on its way through the mesh; `separation` (P, N, K) in m.
 
     The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
     where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
@@ -106,7 +106,9 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
     loaded = (flanks.pressure[first] > 0.0).any(axis=-1).ravel()
     low, high = math.floor(place[loaded].min() * _STEPS) - 1, math.ceil(place[loaded].max() * _STEPS) + 1
     rows = np.arange(low, high + 1) / _STEPS
-    face = np.linspace(flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(apart[0, 0])))
+    face = np.linspace(
+        flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(separation[0, 0]))
+    )
 
     def laid(values: FloatArray) -> FloatArray:
         table = values[first].reshape(place.size, -1)[order]
@@ -119,7 +121,7 @@ def _passage_json(flanks: LoadDistribution, apart: FloatArray) -> Json:
         "step": 1.0 / _STEPS,
         "face_position_mm": _short(face / MM),
         "pressure_mpa": np.rint(laid(flanks.pressure) / MPA).astype(int).tolist(),
-        "apart_um": np.round(laid(apart) / UM, 2).tolist(),
+        "apart_um": np.round(laid(separation) / UM, 2).tolist(),
     }
 
 
@@ -262,9 +264,9 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
         return (_flanks_json(loaded(k)) for k in range(table.force.size))
 
     def passages() -> Iterator[Json]:
-        apart = solved.problem.moved(solved.solution.force)
+        separation = solved.problem.moved(solved.solution.force)
         for k in range(table.force.size):
-            yield _passage_json(loaded(k), apart[:, k].reshape(loaded(k).force.shape))
+            yield _passage_json(loaded(k), separation[:, k].reshape(loaded(k).force.shape))
 
     def derivatives() -> Iterator[Json]:
         return iter(_derivatives_json(curve_derivatives(bodies, pair, torques, None, *alignment)))

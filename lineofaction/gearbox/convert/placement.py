@@ -35,9 +35,9 @@ class Placement:
     @property
     def fields(self) -> dict[str, list[float]]:
         """The fields of a housing that say it; none where the file stands as the scene does."""
-        moved = {"origin_mm": self.origin / MM, "x_axis": self.axes[:, 0], "z_axis": self.axes[:, 2]}
+        frame = {"origin_mm": self.origin / MM, "x_axis": self.axes[:, 0], "z_axis": self.axes[:, 2]}
         return {
             name: [as_typed(float(np.round(value, 9)) + 0.0) for value in values]
-            for name, values in moved.items()
+            for name, values in frame.items()
             if not np.allclose(values, _OWN[name], rtol=0.0, atol=1e-9)
         }

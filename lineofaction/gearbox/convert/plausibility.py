@@ -120,9 +120,9 @@ def _field_in(case: Case) -> Callable[[str], str]:
     def field(name: str) -> str:
         boundary = case_field(name)
         for gear in ("pinion", "wheel"):
-            own, shared = f"pair.{gear}.material.", "material."
-            if boundary.startswith(own) and getattr(case.pair, gear).material is None:
-                return shared + boundary.removeprefix(own)
+            of_gear, shared = f"pair.{gear}.material.", "material."
+            if boundary.startswith(of_gear) and getattr(case.pair, gear).material is None:
+                return shared + boundary.removeprefix(of_gear)
         return boundary
 
     return field

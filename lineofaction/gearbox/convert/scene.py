@@ -11,7 +11,8 @@ from dynamics.effects.ledger import mechanism_of
 from dynamics.joints import Housing
 from dynamics.mechanism import with_planets
 from dynamics.mechanism.base_pitches import PRINTED
-from dynamics.mechanism.kinematics import at_steady_speeds, check_motion
+from dynamics.mechanism.kinematics import at_steady_speeds
+from dynamics.mechanism.motion_checks import check_motion
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table

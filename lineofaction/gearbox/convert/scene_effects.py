@@ -56,14 +56,14 @@ def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
 
     Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
     """
-    shown, trifles = scene_effects(ledger)
+    effects, trifles = scene_effects(ledger)
     columns = ["effect", "on", "without it", "freedoms", "where and why"]
     rows = dict[tuple[str, bool], list[str]]()
-    for one in shown:
-        cells = [one.name, "yes" if one.on else "no", one.size, one.freedoms, ""]
-        row = rows.setdefault((one.name, one.on), cells)
-        row[-1] = f"{row[-1]}\n{one.parts}: {one.reason}".lstrip()
-    names = dict.fromkeys(one.name for one in trifles if one.possible)
+    for effect in effects:
+        cells = [effect.name, "yes" if effect.on else "no", effect.size, effect.freedoms, ""]
+        row = rows.setdefault((effect.name, effect.on), cells)
+        row[-1] = f"{row[-1]}\n{effect.parts}: {effect.reason}".lstrip()
+    names = dict.fromkeys(effect.name for effect in trifles if effect.possible)
     return columns, [*rows.values()], f"{trifles_title(names)}: {', '.join(names)}" if names else ""
 
 

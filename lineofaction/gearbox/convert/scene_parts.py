@@ -150,9 +150,9 @@ def _disc(table: DiscInput) -> DiscBody:
 @identity_cached
 def _gears(tables: tuple[GearBodyInput, ...], teeth: tuple[GearTeeth, ...]) -> tuple[GearBody, ...]:
     gears = []
-    for index, (table, own) in enumerate(zip(tables, teeth, strict=True)):
+    for index, (table, toothing) in enumerate(zip(tables, teeth, strict=True)):
         with named(f"gears[{index}]"):
-            gears.append(_gear(table, own))
+            gears.append(_gear(table, toothing))
     return tuple(gears)
 
 
@@ -160,8 +160,8 @@ def _gear(table: GearBodyInput, teeth: GearTeeth) -> GearBody:
     inertia = part_of(Inertia, table.inertia, "inertia")
     if inertia is None:
         inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, table.bore_diameter_mm * MM)
-    own = {name: value for name, value in vars(teeth).items() if name != "pitch_diameter"}
-    return GearBody(**in_si(GearBody, table), **own, inertia=inertia)
+    sizes = {name: value for name, value in vars(teeth).items() if name != "pitch_diameter"}
+    return GearBody(**in_si(GearBody, table), **sizes, inertia=inertia)
 
 
 @identity_cached

@@ -101,16 +101,16 @@ def _named(field: str, housing: HousingInput) -> Iterator[None]:
         except BadInput as error:
             raise error.within(field) from None
         except InputError as error:
-            own = _own_name(error.field, housing)
-            raise InputError(own, error.value, error.bound, error.suggestion) from None
+            field_name = _own_name(error.field, housing)
+            raise InputError(field_name, error.value, error.bound, error.suggestion) from None
         except DynamicsError as error:
             raise JobFailed(f'housing "{housing.name}": {error}') from error
 
 
 def _own_name(field: str, housing: HousingInput) -> str:
     """Return the scene file's name of a field of `dynamics.housings`, but for its unit."""
-    for pattern, own in _NAMES.items():
-        field = pattern.sub(own, field)
+    for pattern, scene_name in _NAMES.items():
+        field = pattern.sub(scene_name, field)
     names = {f"points.{point.name}": f"points[{i}].position" for i, point in enumerate(housing.points)}
     names |= {f"feet.{foot.name}": f"feet[{i}]" for i, foot in enumerate(housing.feet)}
     names |= {f"seats.{seat.bearing}": f"seats[{i}]" for i, seat in enumerate(housing.seats)}

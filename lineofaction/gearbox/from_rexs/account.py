@@ -70,15 +70,15 @@ class Account:
 
     def _lines(self, part: Component) -> Iterator[Line]:
         said = dict(self._said[id(part)])
-        own = said.pop("", None)
+        whole = said.pop("", None)
         for attribute in part.attributes:
             fate, words = said.setdefault(attribute.id, ("ignored", UNUSED))
             if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
                 said[attribute.id] = _assumed(attribute, fate, words)
         used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
-        own = own or (("taken", "") if used else ("ignored", UNUSED))
+        whole = whole or (("taken", "") if used else ("ignored", UNUSED))
         place, name = self.place(part), part.name or ""
-        for item, (fate, words) in {"": own, **said}.items():
+        for item, (fate, words) in {"": whole, **said}.items():
             yield Line(place, part.id, part.type, name, item, fate, words, part.line)
 
 

@@ -78,8 +78,8 @@ def _with(model: Model, assumption: Assumption) -> Model:
         is_own, in_case = place == f"component {part.id}", "load case" in place and former is not None
         if part.id != assumption.component or not (is_own or in_case):
             return part
-        kept = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
-        return replace(part, attributes=(*kept, _attribute(assumption, former)))
+        others = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
+        return replace(part, attributes=(*others, _attribute(assumption, former)))
 
     return model.mapped(changed)
 

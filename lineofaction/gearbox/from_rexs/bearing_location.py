@@ -32,11 +32,11 @@ def _axial_location(part: Part, sense: int, item: str = _ABSORPTION) -> str | No
     Both, positive, negative, none; None where the file does not say. `sense` is +1 where u of the bearing is
     along z, -1 where it is against it.
     """
-    stated = _LOCATING.get(part.text(item, "directions in which it holds the shaft, by its own u") or "")
-    if stated in _OPPOSITE and sense < 0:
-        part.say(item, "derived", f"{_OPPOSITE[stated]} along z: its u is against z")
-        return _OPPOSITE[stated]
-    return stated
+    location = _LOCATING.get(part.text(item, "directions in which it holds the shaft, by its own u") or "")
+    if location in _OPPOSITE and sense < 0:
+        part.say(item, "derived", f"{_OPPOSITE[location]} along z: its u is against z")
+        return _OPPOSITE[location]
+    return location
 
 
 def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
@@ -44,12 +44,12 @@ def _contact_side(part: Part, row: Part | None, sense: int) -> int | str:
 
     The row's own direction counts, else that of the bearing; the reason where neither says or they differ.
     """
-    own = _SIGN.get(_axial_location(part, sense) or "")
-    stated = None if row is None else _axial_location(row, sense, f"{_ABSORPTION}_of_row")
-    of_row = _SIGN.get(stated or "")
-    if own is not None and of_row is not None and own != of_row:
+    of_bearing = _SIGN.get(_axial_location(part, sense) or "")
+    location = None if row is None else _axial_location(row, sense, f"{_ABSORPTION}_of_row")
+    of_row = _SIGN.get(location or "")
+    if of_bearing is not None and of_row is not None and of_bearing != of_row:
         return f"{_ABSORPTION} of the bearing and of its row are opposite"
-    side = of_row or own
+    side = of_row or of_bearing
     return side or f"{_ABSORPTION} does not say which direction its contact angle holds: positive or negative"
 
 

@@ -169,8 +169,8 @@ def operating_point(part: Part) -> FloatArray | None:
     if not np.any(matrix):
         return None
     matrix = 0.5 * (matrix + matrix.T)
-    least, most = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
-    if most <= 0.0 or least < -1e-6 * most or np.max(np.abs(matrix)) >= RIGID_FROM:
+    least, largest = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
+    if largest <= 0.0 or least < -1e-6 * largest or np.max(np.abs(matrix)) >= RIGID_FROM:
         for name in (name for row in names for name in row if part.attribute(name) is not None):
             part.say(name, "refused", "no stiffness matrix: it is not positive semidefinite, or not finite")
         return None

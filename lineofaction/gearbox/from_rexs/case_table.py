@@ -109,10 +109,10 @@ def _strangers(
     """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
     parts = [gear.part for gear in pair.gears]
     named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, facts, strict=True)]
-    stated = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
+    values = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
     mends = [
         f"--assume {part.id}.{item}={factor * mate:.9g}"
-        for part, mate in zip(parts, stated[::-1], strict=True)
+        for part, mate in zip(parts, values[::-1], strict=True)
         if isinstance(mate, (int, float))
     ]
     advice = f"Open it with {' or '.join(mends)}." if mends else ""
@@ -132,7 +132,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
     # d_f = d - 2 m_n (h_fP - x_E), of a ring gear d + 2 m_n (h_fP - x_E)
     height = gear.normal_module * (depth.dedendum_coefficient - shift) + depth.infeed(gear.pressure_angle)
     root = gear.reference_diameter - 2.0 * gear.sign * height
-    held, diameter = ("rim_diameter_mm", rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", bore)
+    held_field, diameter = ("rim_diameter_mm", rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", bore)
     return {
         "teeth": gear.teeth,
         "face_width_mm": rounded(gear.face_width / MM),
@@ -142,7 +142,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
         "thickness_allowance_um": rounded(depth.thickness_allowance / UM),
         "tooth_thinning": depth.tooth_thinning,
-        held: rounded(diameter(gear, root) / MM),
+        held_field: rounded(diameter(gear, root) / MM),
         **depth.cutter,
         **blank_table(gear),
     }
@@ -152,8 +152,8 @@ def _tip_alteration(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Ma
     """Return the tip alteration coefficient of an external gear that suits all its external mates."""
     if gear.sign < 0:
         return 0.0
-    own = (pair for pair in pairs if gear.part.id in {each.part.id for each in pair.gears})
-    return min((_alteration(pair, shifts) for pair in own), default=0.0)
+    meshing = (pair for pair in pairs if gear.part.id in {member.part.id for member in pair.gears})
+    return min((_alteration(pair, shifts) for pair in meshing), default=0.0)
 
 
 def _alteration(pair: ToothedPair, shifts: Mapping[int, float]) -> float:

@@ -42,14 +42,14 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
             continue
         turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(Placement.of(group) or FIXED))
         turned = turn @ matrix @ turn.T
-        kept = [index for index, name in enumerate(bearings) if name]
+        rows = [index for index, name in enumerate(bearings) if name]
         group.say("", "taken", "elastic housing")
-        words = f"stiffness under {len(kept)} bearings; u, v, w turned to x, y, z, mm to m"
+        words = f"stiffness under {len(rows)} bearings; u, v, w turned to x, y, z, mm to m"
         group.say(_MATRIX, "taken", words)
         yield {
             "name": names.of(group),
             "bushings": [name for name in bearings if name],
-            "stiffness_matrix": _condensed(turned, kept).tolist(),
+            "stiffness_matrix": _condensed(turned, rows).tolist(),
         }
 
 
@@ -105,16 +105,16 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
         return None
     scale = np.tile([1e3**0.5] * 3 + [1e-3**0.5] * 3, points)
     matrix *= scale[:, None] * scale
-    most = float(np.max(np.abs(matrix)))
-    if not np.isfinite(most) or np.any(np.abs(matrix - matrix.T) > _SYMMETRIC * most):
+    largest = float(np.max(np.abs(matrix)))
+    if not np.isfinite(largest) or np.any(np.abs(matrix - matrix.T) > _SYMMETRIC * largest):
         group.say(_MATRIX, "refused", "not symmetric, or not finite")
         return None
     return np.asarray(0.5 * (matrix + matrix.T))
 
 
-def _condensed(matrix: FloatArray, kept: list[int]) -> FloatArray:
+def _condensed(matrix: FloatArray, points: list[int]) -> FloatArray:
     """Return the stiffness over some points, the others free of force."""
-    rows = np.concatenate([np.arange(_PER_POINT * index, _PER_POINT * (index + 1)) for index in kept])
+    rows = np.concatenate([np.arange(_PER_POINT * index, _PER_POINT * (index + 1)) for index in points])
     free = np.setdiff1d(np.arange(len(matrix)), rows)
     if not free.size:
         return matrix

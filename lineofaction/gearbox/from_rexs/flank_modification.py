@@ -72,8 +72,8 @@ class FlankPlace:
     def stated_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
         """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
         words = "where the amount is stated"
-        stated = self.roll_length(part, diameter, words)
-        return (part.number(length, f"{words}: a roll length") if stated is None else stated) or end
+        roll = self.roll_length(part, diameter, words)
+        return (part.number(length, f"{words}: a roll length") if roll is None else roll) or end
 
     def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
         """Return the roll lengths over which an amount is stated, those of the whole flank by default."""

@@ -68,12 +68,12 @@ def _axes(
 
 def _through(axis: FloatArray, kinks: Sequence[float]) -> FloatArray:
     """Return an axis whose inner nodes next to kinks are moved to them."""
-    moved = axis.copy()
+    shifted = axis.copy()
     for kink in kinks:
         nearest = int(np.argmin(np.abs(axis - kink)))
         if 0 < nearest < len(axis) - 1:
-            moved[nearest] = kink
-    return moved
+            shifted[nearest] = kink
+    return shifted
 
 
 def _difference(place: FlankPlace, modifications: Sequence[Modification], grid: FlankGrid) -> float:

@@ -84,10 +84,10 @@ class Train:
     def _free(self, resting: set[int]) -> FloatArray:
         """Return an orthonormal base (rotors, freedoms) of the speeds that ratios and resting ones permit."""
         columns = [*self.held, *map(self.rotors.index, resting)]
-        held = np.zeros((len(columns), len(self.rotors)))
-        held[range(len(columns)), columns] = 1.0
+        fixed = np.zeros((len(columns), len(self.rotors)))
+        fixed[range(len(columns)), columns] = 1.0
         scale = np.linalg.norm(self.rows, axis=1, keepdims=True)
-        return _null_space(np.vstack([self.rows / scale, held]))
+        return _null_space(np.vstack([self.rows / scale, fixed]))
 
     def forces(self, known: Mapping[int, float], open_rotors: Sequence[int]) -> Flow | None:
         """Return the torques of stages and open rotors that balance the known ones.

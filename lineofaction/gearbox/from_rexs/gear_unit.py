@@ -162,7 +162,9 @@ class Part:
     def shaft(self) -> Part | None:
         """The first shaft that has the component, None if there is none."""
         relations = self.unit.relations("assembly", "ordered_assembly")
-        owners = [each.of_role("assembly") for each in relations if each.of_role("part") == self.id]
+        owners = [
+            relation.of_role("assembly") for relation in relations if relation.of_role("part") == self.id
+        ]
         parts = (self.unit.part(owner) for owner in owners if owner is not None)
         return next((part for part in parts if part.type == "shaft"), None)
 
@@ -210,7 +212,9 @@ class GearUnit:
         """Return what each load case of the first spectrum sets, empty without a spectrum."""
         spectra = self.model.spectra[:1]
         return tuple(
-            tuple(Part(part, self) for part in case.components) for each in spectra for case in each.cases
+            tuple(Part(part, self) for part in case.components)
+            for spectrum in spectra
+            for case in spectrum.cases
         )
 
     @cached_property
@@ -278,10 +282,10 @@ def _connections(unit: GearUnit, types: tuple[str, ...]) -> Iterator[Connection]
 
 
 def _engaged(part: Part) -> bool:
-    stated = part.value("is_engaged")
-    if stated is None:
+    engaged = part.value("is_engaged")
+    if engaged is None:
         return True
-    values = stated if isinstance(stated, tuple) else (stated,)
+    values = engaged if isinstance(engaged, tuple) else (engaged,)
     index = _shift_index(part.unit)
     if not 0 <= index < len(values):
         part.say("is_engaged", "refused", f"no value for gear {index + 1}; taken as engaged")

@@ -31,9 +31,9 @@ def helix_crowning(place: FlankPlace, part: Part) -> Modification:
         fields = {"helix_crowning_um": rounded(amounts[0] / UM)}
     else:
         sides = zip((True, False), (0.0, place.width), ends, amounts, strict=True)
-        for datum, face, stated, amount in sides:
+        for datum, face, reference, amount in sides:
             name = place.face_field("helix_crowning", datum=datum)
-            fields[f"{name}_um"] = rounded(amount * ((face - highest) / (stated - highest)) ** 2 / UM)
+            fields[f"{name}_um"] = rounded(amount * ((face - highest) / (reference - highest)) ** 2 / UM)
             fields[f"{name}_length_mm"] = rounded(1e3 * abs(face - highest))
     return Modification(
         part, lambda _roll, face: two_parabolas(face, highest, ends, amounts), fields, faces=(highest,)
@@ -77,8 +77,8 @@ def end_relief(place: FlankPlace, part: Part) -> Modification:
     is_datum = side == "datum_face"
     end, inwards = (0.0, 1.0) if is_datum else (place.width, -1.0)
     start = end + inwards * length
-    stated = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated", end)
-    growth = Growth(depth, shape, start, stated)
+    reference = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated", end)
+    growth = Growth(depth, shape, start, reference)
     if not 0.0 < length <= place.width or not (start - growth.stated) * inwards > 0.0:
         raise part.refusal(f"end_relief_length_{side}", rounded(1e3 * length), "above 0, within the face")
     name = place.face_field("end_relief", datum=is_datum)

@@ -181,6 +181,6 @@ def _u(part: Part, item: str) -> float:
 
 
 def _place(shaft: Part, base: Part, offset: FloatArray, words: str, places: dict[int, Placement]) -> None:
-    beside = places[base.id]
-    places[shaft.id] = Placement(np.asarray(beside.origin + offset), beside.axes)
+    base_place = places[base.id]
+    places[shaft.id] = Placement(np.asarray(base_place.origin + offset), base_place.axes)
     shaft.say("support_vector", "derived", words)

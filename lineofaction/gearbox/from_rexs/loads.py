@@ -122,10 +122,10 @@ class SceneMotion:
         for rotor in sorted(self._layout.rotors.held & set(self._shafts.by_rotor)):
             name = names.of(self._layout.unit.part(rotor), " held")
             drives.append({"name": name, "shaft": self._shafts.by_rotor[rotor].name, "speed_rpm": [0.0]})
-        most = max((abs(torque.torque) for torque in self.torques), default=0.0)
+        largest = max((abs(torque.torque) for torque in self.torques), default=0.0)
         for torque in self.torques:
             speed = self._flow.speed(torque.rotor)
-            if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _HELD_TORQUE * most:
+            if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _HELD_TORQUE * largest:
                 continue
             value = rounded(-torque.torque * math.copysign(1.0, speed))
             loads.append(

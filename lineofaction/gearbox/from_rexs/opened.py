@@ -83,9 +83,9 @@ class OpenedUnit:
         """Return the texts of the files by their names."""
         files = {f"{case.name}.toml": toml_text(plain_table(case.case)) for case in self.cases}
         if self.scene is not None:
-            table, beside = side_files(plain_table(self.scene))
+            table, side = side_files(plain_table(self.scene))
             files[SCENE_FILE] = toml_text(table)
-            files |= {file.name: file.unpacked().decode() for file in beside}
+            files |= {file.name: file.unpacked().decode() for file in side}
         if self.load_cases:
             files[LOAD_CASES_FILE] = toml_text({"load_cases": [case.table() for case in self.load_cases]})
         files[ACCOUNT_FILE] = account_csv(self.lines)

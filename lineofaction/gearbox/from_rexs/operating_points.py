@@ -78,10 +78,10 @@ def _share(case: tuple[Part, ...]) -> float | None:
 
 
 def _point(
-    name: str, place: tuple[int, float], own: tuple[Part, ...], case: tuple[Part, ...]
+    name: str, place: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
 ) -> OperatingPoint:
     """Return an operating point: what a case sets counts before what the component itself states."""
-    parts = [*own, *case]
+    parts = [*unit_parts, *case]
     loads = [part for part in parts if part.type == "external_load"]
     speeds = {
         part.id: speed

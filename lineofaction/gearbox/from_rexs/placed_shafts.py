@@ -92,12 +92,12 @@ def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
     summed = list(accumulate((section.length for section in sections), initial=first))[:-1]
     for (_, part), at, section in zip(pieces, summed, sections, strict=True):
         item = "u_coordinate_on_shaft"
-        stated = part.number(item, "left end of the section, mm")
+        start = part.number(item, "left end of the section, mm")
         derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
-        if stated is None:
+        if start is None:
             part.say(item, "derived", derived)
-        elif abs(stated - at) > SAME_PLACE:
-            part.say(item, "refused", f"{stated * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
+        elif abs(start - at) > SAME_PLACE:
+            part.say(item, "refused", f"{start * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
         yield at, section
 
 
@@ -134,8 +134,8 @@ def _material(shaft: Part) -> dict[str, float]:
     names = {"elastic_modulus": "youngs_modulus", "poisson_ratio": "poissons_ratio", "density": "density"}
     for part in shaft.referenced:
         if part.type == "material":
-            values = {own: part.number(item, f"{own} of the shaft") for item, own in names.items()}
-            return {own: value for own, value in values.items() if value}
+            values = {field: part.number(item, f"{field} of the shaft") for item, field in names.items()}
+            return {field: value for field, value in values.items() if value}
     return {}
 
 

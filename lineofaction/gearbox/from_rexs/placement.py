@@ -59,9 +59,9 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     if part.id in inner or len(inner) > _MOST_REFERENCES:
         bound = "a component that is not placed by this one itself"
         raise part.refusal(_REFERENCE, inner[-1], bound, "Refer to the gear unit.")
-    stated, shaft = Placement.of(part, inner), part.shaft
-    if stated is not None:
-        return stated
+    frame, shaft = Placement.of(part, inner), part.shaft
+    if frame is not None:
+        return frame
     if shaft is None or shaft.id == part.id:
         return _in_reference(part, np.zeros(3), inner)
     base = frame_of(shaft, (*inner, part.id))
@@ -76,8 +76,8 @@ def u_on_shaft(part: Part) -> float | None:
     """
     shaft, place = part.shaft, Placement.of(part)
     base = None if shaft is None else Placement.of(shaft)
-    stated = part.number("u_coordinate_on_shaft", "place along the shaft")
-    return stated if place is None or base is None else base.along(place.origin)
+    coordinate = part.number("u_coordinate_on_shaft", "place along the shaft")
+    return coordinate if place is None or base is None else base.along(place.origin)
 
 
 def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
@@ -88,8 +88,8 @@ def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Pla
     if length < PARALLEL:
         raise part.refusal("w_axis_vector", list(map(float, axis)), "not along u_axis_vector")
     w = np.asarray(across / length)
-    own, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(part)
-    return own if outer is None else own.within(frame_of(outer, (*inner, part.id)))
+    frame, outer = Placement(origin, np.array([u, np.cross(w, u), w])), _reference(part)
+    return frame if outer is None else frame.within(frame_of(outer, (*inner, part.id)))
 
 
 def _reference(part: Part) -> Part | None:

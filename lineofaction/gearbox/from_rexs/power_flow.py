@@ -158,8 +158,8 @@ class _Problem:
 
     def at_open_ends(self, flow: Flow, opened: list[int]) -> dict[int, float]:
         """Return the torques of the train's other end by the load that is there, else by the shaft."""
-        stated = set(map(self.rotor, opened))
-        return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in stated}
+        loaded = set(map(self.rotor, opened))
+        return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in loaded}
 
     def _at(self, rotor: int) -> int:
         """Return the external load of a rotor that states no torque, else the rotor's shaft."""
@@ -173,7 +173,7 @@ class _Problem:
     def _ends(self, loaded: set[int]) -> list[int]:
         """Return the rotors of a single stage that no load acts on and nothing holds."""
         counts = np.count_nonzero(self._train.rows, axis=0)
-        held = loaded | {self._train.rotors[column] for column in self._train.held}
+        bound = loaded | {self._train.rotors[column] for column in self._train.held}
         return [
-            r for r, count in zip(self._train.rotors, counts, strict=True) if count == 1 and r not in held
+            r for r, count in zip(self._train.rotors, counts, strict=True) if count == 1 and r not in bound
         ]

@@ -92,13 +92,15 @@ def both_amounts(
     part: Part, items: tuple[str, str], field: str, bound: str, words: str
 ) -> tuple[float, float]:
     """Return the amounts of a crowning on both sides, one that is left out as on the other."""
-    stated = [part.number(item, field) for item in items]
-    if stated == [None, None]:
+    amounts = [part.number(item, field) for item in items]
+    if amounts == [None, None]:
         raise part.refusal(items[0], None, bound)
-    for item, value in zip(items, stated, strict=True):
+    for item, value in zip(items, amounts, strict=True):
         if value is None:
             part.say(item, "defaulted", words)
-    first, second = (value if value is not None else other or 0.0 for value, other in (stated, stated[::-1]))
+    first, second = (
+        value if value is not None else other or 0.0 for value, other in (amounts, amounts[::-1])
+    )
     return first, second
 
 
@@ -124,9 +126,9 @@ def profile_crowning(place: FlankPlace, part: Part) -> Modification:
         fields = {"profile_crowning_um": rounded(amounts[0] / UM)}
     else:
         sides = zip(("tip", "root"), (place.tip, place.root), ends, amounts, strict=True)
-        for side, end, stated, amount in sides:
+        for side, end, reference, amount in sides:
             name = f"profile_crowning_{side}"
-            fields[f"{name}_um"] = rounded(amount * ((end - highest) / (stated - highest)) ** 2 / UM)
+            fields[f"{name}_um"] = rounded(amount * ((end - highest) / (reference - highest)) ** 2 / UM)
             fields[f"{name}_length_mm"] = rounded(place.radial(highest, end))
     return Modification(
         part, lambda roll, _face: two_parabolas(roll, highest, ends, amounts), fields, rolls=(highest,)

@@ -44,8 +44,8 @@ def _statement(group: list[Line], reason: str) -> str:
     named = "; ".join(
         f"{line_name(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
     )
-    most = max(LONGEST - len(reason) - 2, LONGEST // 2)
-    named = named if len(named) <= most else f"{named[: most - 4]} ..."
+    room = max(LONGEST - len(reason) - 2, LONGEST // 2)
+    named = named if len(named) <= room else f"{named[: room - 4]} ..."
     return f"{named}: {reason}"[:LONGEST]
 
 

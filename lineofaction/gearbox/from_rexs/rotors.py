@@ -33,7 +33,7 @@ class Rotors:
 
     def members(self, rotor: int) -> tuple[int, ...]:
         """Return the ids of the components that make up a rotor."""
-        return tuple(part for part, own in self.of.items() if own == rotor)
+        return tuple(part for part, part_rotor in self.of.items() if part_rotor == rotor)
 
 
 def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
@@ -56,12 +56,14 @@ def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
                 carriers.add(_merge(of, list(ends)))
                 changed = True
     grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
-    held = frozenset(of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry))
+    grounded_rotors = frozenset(
+        of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry)
+    )
     between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
     for entry in joined:
         if entry not in between:
             entry.part.say("", "derived", "rigid: its sides are parts of one planet carrier")
-    return Rotors(of, held, between, tuple(sets))
+    return Rotors(of, grounded_rotors, between, tuple(sets))
 
 
 def _merge(of: dict[int, int], parts: list[int]) -> int:

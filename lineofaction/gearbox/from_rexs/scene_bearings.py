@@ -125,8 +125,8 @@ class SceneBearings:
     def _turned(self, part: Part, held: Part, matrix: FloatArray) -> FloatArray:
         """Return the stiffness (5, 5) in x, y, z, tilt_x, tilt_y of a matrix along u, v, w of a bearing."""
         full = np.zeros((6, 6))
-        kept = np.array([0, 1, 2, 4, 5])
-        full[np.ix_(kept, kept)] = matrix
+        rows = np.array([0, 1, 2, 4, 5])
+        full[np.ix_(rows, rows)] = matrix
         both = np.kron(np.eye(2), self._layout.turn(part, held))
         return np.asarray((both @ full @ both.T)[:5, :5])
 

@@ -54,10 +54,10 @@ def scene_gears(
 def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
     """State a center distance that contradicts the places of the shafts: no verb takes such a scene."""
     first, second = (layout.shafts[shaft.id].origin for shaft in stage.shafts)
-    apart = math.hypot(*(second - first)[:2])
-    if not math.isclose(apart, case.center_distance, rel_tol=SAME):
-        words = f"{case.center_distance / MM:.7g} mm, and its shafts are {apart / MM:.7g} mm apart, "
-        mend = f"--assume {stage.stage.id}.center_distance={apart / MM:.7g}"
+    distance = math.hypot(*(second - first)[:2])
+    if not math.isclose(distance, case.center_distance, rel_tol=SAME):
+        words = f"{case.center_distance / MM:.7g} mm, and its shafts are {distance / MM:.7g} mm apart, "
+        mend = f"--assume {stage.stage.id}.center_distance={distance / MM:.7g}"
         words += f"where no verb takes them: open it with {mend}, or move a shaft"
         stage.stage.say("center_distance", "refused", words)
 

@@ -59,15 +59,21 @@ class SceneShafts:
         """Return the shafts that computed stages and couplings make parts of one train."""
         first = {planets.planets[0].id for planets in layout.rotors.sets}
         others = {shaft.id for planets in layout.rotors.sets for shaft in planets.planets} - first
-        kept = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
-        rotors = _joined(layout, kept)
-        bodies = cls({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, kept)
+        complete = tuple(s for s in stages if not others & {shaft.id for shaft in s.shafts})
+        rotors = _joined(layout, complete)
+        bodies = cls({rotor: _shaft(layout, rotor, names) for rotor in sorted(rotors)}, complete)
         for placed in layout.shafts.values():
             if placed.part.id not in others and layout.rotor(placed.part.id) not in rotors:
                 placed.part.say("", "refused", "no computed stage or coupling joins it to the train")
-        for stage in (each for each in kept if layout.carrier(each) is not None):
+        for stage in (
+            stage_of_shaft for stage_of_shaft in complete if layout.carrier(stage_of_shaft) is not None
+        ):
             for gear, shaft in zip(stage.gears, stage.shafts, strict=True):
-                meshing = (each for each in kept if shaft.id in {own.id for own in each.shafts})
+                meshing = (
+                    stage_of_shaft
+                    for stage_of_shaft in complete
+                    if shaft.id in {member.id for member in stage_of_shaft.shafts}
+                )
                 if len(set(map(layout.carrier, meshing))) > 1:
                     bodies.stubs[gear.id] = _stub(layout, shaft, gear, names)
         _enter_frames(layout, bodies)

@@ -101,9 +101,9 @@ def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> Toothe
     meshing = Meshing.of(stage, driver, torques)
     loaded = [LoadedFlank.of(meshing, gear) for gear in (meshing.pinion, meshing.wheel)]
     gears = [ToothingData.of(flank) for flank in loaded]
-    apart = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
-    offset = float(apart @ meshing.z)
-    distance = _center_distance(stage, apart - offset * meshing.z)
+    between = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
+    offset = float(between @ meshing.z)
+    distance = _center_distance(stage, between - offset * meshing.z)
     pair = ToothedPair(meshing, gears[0], gears[1], distance, offset, torques)
     _ = pair.working_pressure_angle  # raises if there is none
     return pair

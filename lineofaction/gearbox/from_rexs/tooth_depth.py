@@ -78,8 +78,8 @@ def _implied_addendum(gear: ToothingData, diameter: float, shift: float) -> floa
 def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
     """Return d + 2 m_n (x + h_aP + k) in m, of a ring gear d - 2 m_n (x + h_aP)."""
     item, words = "addendum_coefficient_basic_profile", "h_aP of the tip diameter"
-    stated = (flank.number(item, words) for flank in gear.loaded.flanks)
-    addendum = next((value for value in stated if value is not None), _ADDENDUM)
+    depths = (flank.number(item, words) for flank in gear.loaded.flanks)
+    addendum = next((value for value in depths if value is not None), _ADDENDUM)
     height = shift + addendum + alteration
     computed = gear.reference_diameter + 2.0 * gear.sign * gear.normal_module * height
     formula = "d + 2 m_n (x + h_aP + k)" if gear.sign > 0 else "d - 2 m_n (x + h_aP)"

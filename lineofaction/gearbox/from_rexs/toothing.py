@@ -98,6 +98,6 @@ def _helix_angle(gear: Part) -> float:
 def _say_difference(loaded: LoadedFlank, item: str, value: float) -> None:
     """State that a value of the unloaded flank is left aside where it differs."""
     other = loaded.other
-    own = None if other is None else other.number(item, "as of the loaded flank")
-    if other is not None and own is not None and own != value:
+    value_of_other = None if other is None else other.number(item, "as of the loaded flank")
+    if other is not None and value_of_other is not None and value_of_other != value:
         other.say(item, "ignored", f"the case has the loaded {loaded.side} flank's")

@@ -56,11 +56,11 @@ def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) ->
     cutoff = length / CUTOFFS if cutoff is None else cutoff
     if cutoff < length / _MOST_CUTOFFS:
         raise ValueError(f"a trace of at most {_MOST_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
-    apart = float(np.diff(place).max())
-    if apart > cutoff * (1.0 + 1e-9):
+    spacing = float(np.diff(place).max())
+    if spacing > cutoff * (1.0 + 1e-9):
         raise ValueError(
             f"a trace whose points are at most the cut-off {1e3 * cutoff:.4g} mm apart; "
-            f"two are {1e3 * apart:.4g} mm apart"
+            f"two are {1e3 * spacing:.4g} mm apart"
         )
     stations = np.linspace(place[0], place[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
     filtered = gaussian(place, values, stations, cutoff)

@@ -114,12 +114,12 @@ def _taken(point: Point, chart: Chart) -> str:
 
 
 def _pitches(traces: Mapping[tuple[int, str], list[Point]], chart: Chart) -> dict[str, list[float]]:
-    stated = {name for _, name in traces if name in PITCHES}
-    if not stated:
+    names = {name for _, name in traces if name in PITCHES}
+    if not names:
         return {}
-    if len(stated) > 1:
+    if len(names) > 1:
         raise ValueError("single or cumulative pitch deviations, not both")
-    (name,), teeth = stated, chart.gear.teeth
+    (name,), teeth = names, chart.gear.teeth
     missing = [tooth for tooth in range(1, teeth + 1) if not traces.get((tooth, name))]
     if missing:
         raise ValueError(

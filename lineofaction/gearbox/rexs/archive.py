@@ -69,11 +69,11 @@ def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     return files
 
 
-def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, most: int) -> bytes:
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limit: int) -> bytes:
     """Return a file of an archive, of at most so many bytes, whatever the archive says."""
     with archive.open(entry) as stream:
-        data = stream.read(most + 1)
-    if len(data) > most:
+        data = stream.read(limit + 1)
+    if len(data) > limit:
         bound = f"at most {MOST_BYTES} bytes and {_MOST_RATIO} times its archive"
         raise BadInput.of("archive", f"{entry.filename}, larger", bound)
     return data

@@ -66,8 +66,8 @@ class _Table(Element):
         return tuple((name, self.text(name)) for name in list(self.fields))
 
     def type_of(self, inherited: str | None) -> str:
-        stated = self.fields.get("type")
-        if stated in (None, "") and inherited is not None:
+        kind = self.fields.get("type")
+        if kind in (None, "") and inherited is not None:
             self.fields.pop("type", None)
             return inherited
         return self.text("type")
@@ -107,30 +107,30 @@ def read_json(data: bytes) -> Model:
     finite, or is no REXS.
     """
     root = _Table.of(_Table.of(_json(data), "file").fields.get("model"), "model")
-    beside: dict[str, Any] = {
+    further: dict[str, Any] = {
         name: root.fields.pop(name) for name in ("load_spectrum", "accumulation") if name in root.fields
     }
     components = tuple(part.component({}) for part in root.parts("component"))
     types = {component.id: component.type for component in components}
     relations = (part.relation() for part in root.parts("relation"))
-    return root.model(relations, components, _spectra(beside, types))
+    return root.model(relations, components, _spectra(further, types))
 
 
-def _spectra(beside: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpectrum]:
+def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpectrum]:
     """Yield the load spectrum, if there is one, with its accumulation, which stands beside it.
 
     A component of a load case may leave its type to the component of its id.
     """
-    if beside.get("load_spectrum") is None:
-        if "accumulation" in beside:
+    if further.get("load_spectrum") is None:
+        if "accumulation" in further:
             raise BadInput.of("model.accumulation", "an accumulation", "beside a load spectrum")
         return
-    table = _Table.of(beside["load_spectrum"], "model.load_spectrum")
+    table = _Table.of(further["load_spectrum"], "model.load_spectrum")
     cases = table.parts("load_case") if "load_cases" in table.fields else []
     loads = tuple(case.load_case(types) for case in cases)
     number, extra, whole = table.number("id"), table.extra(), None
-    if beside.get("accumulation") is not None:
-        parts = _Table.of(beside["accumulation"], "model.accumulation").parts("component")
+    if further.get("accumulation") is not None:
+        parts = _Table.of(further["accumulation"], "model.accumulation").parts("component")
         whole = tuple(part.component(types) for part in parts)
     yield LoadSpectrum(number, loads, whole, extra)
 
@@ -232,8 +232,8 @@ def _written(element: Written | Attribute) -> dict[str, Any]:
 
 def _attribute(attribute: Attribute) -> dict[str, Any]:
     """Return an attribute; one without a value says null."""
-    own = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin, **dict(attribute.extra)}
-    fields = {name: value for name, value in own.items() if value is not None}
+    known = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin, **dict(attribute.extra)}
+    fields = {name: value for name, value in known.items() if value is not None}
     value: Any = attribute.value
     if attribute.code is None or value is None:
         return {**fields, attribute.kind: value}

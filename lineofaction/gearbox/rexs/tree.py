@@ -130,7 +130,7 @@ class Written:
 
 def written(model: Model) -> Written:
     """Return a model as an element to write."""
-    own = {
+    known = {
         "version": model.version,
         "applicationId": model.application,
         "applicationVersion": model.application_version,
@@ -142,11 +142,11 @@ def written(model: Model) -> Written:
         "components": [_component(part) for part in model.components],
         "load_spectra": [_spectrum(spectrum) for spectrum in model.spectra],
     }
-    return Written("model", _stated(own, model.extra), groups)
+    return Written("model", _stated(known, model.extra), groups)
 
 
-def _stated(own: Mapping[str, str | int | None], extra: Extra) -> dict[str, str | int]:
-    return {name: value for name, value in own.items() if value is not None} | dict(extra)
+def _stated(fields: Mapping[str, str | int | None], extra: Extra) -> dict[str, str | int]:
+    return {name: value for name, value in fields.items() if value is not None} | dict(extra)
 
 
 def _named(

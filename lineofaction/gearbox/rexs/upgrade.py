@@ -69,9 +69,9 @@ def _component(
     attributes = []
     for attribute in component.attributes:
         for change in (_unit, _kind, _enum):
-            attribute, words, kept = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
+            attribute, words, former = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
             if words:
-                changes.append(Change(version, place, attribute.id, kept, words))
+                changes.append(Change(version, place, attribute.id, former, words))
         name, words = _name(component.type, attribute.id, step, names)
         if words:
             changes.append(Change(version, place, attribute.id, name == attribute.id, words))
@@ -80,13 +80,13 @@ def _component(
 
 
 def _name(component: str, name: str, step: _Step, names: set[str]) -> tuple[str, str]:
-    own = f"{component}.{name}"
-    if own in step["moved"]:
-        targets = ", ".join(step["moved"][own])
+    qualified = f"{component}.{name}"
+    if qualified in step["moved"]:
+        targets = ", ".join(step["moved"][qualified])
         return name, f"the component has it no more{f'; these have it now: {targets}' if targets else ''}"
     if name in step["attributes"]["removed"]:
         return name, "the attribute is gone"
-    later = step["attributes"]["renamed"].get(own, step["attributes"]["renamed"].get(name, name))
+    later = step["attributes"]["renamed"].get(qualified, step["attributes"]["renamed"].get(name, name))
     if later != name and later in names:
         return name, f"renamed to {later}, which the component has besides"
     return later, f"renamed to {later}" if later != name else ""

@@ -61,7 +61,7 @@ def si_value(value: float, unit: str | None, expected: str, place: str) -> float
     written = units().get("none" if unit is None else unit)
     wanted = units()[expected]
     if written is None or written.si != wanted.si:
-        fit = ", ".join(name for name, own in units().items() if own.si == wanted.si and name)
+        fit = ", ".join(name for name, unit_row in units().items() if unit_row.si == wanted.si and name)
         raise BadInput.of(f"{place}, unit", unit, f"one of {fit}")
     return value * written.factor + written.offset
 

@@ -107,20 +107,20 @@ class _XmlElement(Element):
         if len(bodies) > 1 or (bodies and self.content()):
             raise BadInput.of(self.place, name, "one value, array or matrix")
         is_kind = entry_kind(self.fields.get(_KIND_FIELD, "")) in KINDS
-        stated = self.fields.pop(_KIND_FIELD) if is_kind else None
-        kind, value, code = bodies[0]._shaped(name, stated) if bodies else self._scalar(name, stated)
+        kind_name = self.fields.pop(_KIND_FIELD) if is_kind else None
+        kind, value, code = bodies[0]._shaped(name, kind_name) if bodies else self._scalar(name, kind_name)
         unit, origin = self.optional_text("unit"), self.optional_text("origin")
         return Attribute(name, kind, value, unit, code, origin, self.extra())
 
-    def _scalar(self, name: str, stated: str | None) -> tuple[str, Value, None]:
+    def _scalar(self, name: str, kind_name: str | None) -> tuple[str, Value, None]:
         """Return kind, value and no code; an empty one has no value."""
         text = self.content()
         if not text:
-            return stated or kind_of(name, []), None, None
-        kind = entry_kind(stated) if stated else kind_of(name, [text])
+            return kind_name or kind_of(name, []), None, None
+        kind = entry_kind(kind_name) if kind_name else kind_of(name, [text])
         return kind, scalar_of(kind, text, f"{self.place}, {name}"), None
 
-    def _shaped(self, name: str, stated: str | None) -> tuple[str, Value, str | None]:
+    def _shaped(self, name: str, kind_name: str | None) -> tuple[str, Value, str | None]:
         """Return kind, value and code of an array, a matrix or an array of arrays."""
         place = f"{self.place}, {name}"
         code = self.fields.get("code")
@@ -129,7 +129,7 @@ class _XmlElement(Element):
         is_array = self.name == "array"
         bodies = [self] if is_array else self.parts("r" if self.name == "matrix" else "array")
         texts = [["".join(cell.words) for cell in body.parts("c")] for body in bodies]
-        kind = entry_kind(stated) if stated else kind_of(name, [text for row in texts for text in row])
+        kind = entry_kind(kind_name) if kind_name else kind_of(name, [text for row in texts for text in row])
         rows = tuple(tuple(scalar_of(kind, text, place) for text in row) for row in texts)
         if is_array:
             return f"{kind}_array", rows[0], None
@@ -181,8 +181,8 @@ def _root(data: bytes) -> _XmlElement:
         words = expat.errors.messages.get(error.code, "unknown")
         bound = f"well-formed XML, which line {error.lineno} is not ({words})"
         lines = data.splitlines()[error.lineno - 1 : error.lineno]
-        shown = lines[0].strip()[:_SHOWN].decode(errors="replace") if lines else ""
-        raise BadInput.of("file", shown, bound, "REXS is XML, JSON or a ZIP of them.") from None
+        first_line = lines[0].strip()[:_SHOWN].decode(errors="replace") if lines else ""
+        raise BadInput.of("file", first_line, bound, "REXS is XML, JSON or a ZIP of them.") from None
     return builder.root.inside[0]
 
 
@@ -258,14 +258,14 @@ def _lines(element: Written | Attribute, indent: str = "") -> Iterator[str]:
 
 def _fields(fields: Mapping[str, str | int]) -> str:
     """Return fields in quotes; ends of lines stay what they are."""
-    kept = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
-    return "".join(f" {name}={quoteattr(str(value), kept)}" for name, value in fields.items())
+    escapes = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+    return "".join(f" {name}={quoteattr(str(value), escapes)}" for name, value in fields.items())
 
 
 def _attribute(attribute: Attribute) -> str:
-    own = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin}
-    own[_KIND_FIELD] = _hidden_kind(attribute)
-    fields = {name: value for name, value in own.items() if value is not None} | dict(attribute.extra)
+    known = {"id": attribute.id, "unit": attribute.unit, "origin": attribute.origin}
+    known[_KIND_FIELD] = _hidden_kind(attribute)
+    fields = {name: value for name, value in known.items() if value is not None} | dict(attribute.extra)
     return f"<attribute{_fields(fields)}>{_body(attribute)}</attribute>"
 
 
@@ -276,8 +276,8 @@ def _hidden_kind(attribute: Attribute) -> str | None:
     entry = kind_of(attribute.id, texts_of(attribute.value))
     rows = isinstance(attribute.value, tuple) and any(isinstance(row, tuple) for row in attribute.value)
     forms = (f"{entry}_matrix", f"array_of_{entry}_arrays") if rows else (f"{entry}_array",)
-    shown = forms if isinstance(attribute.value, tuple) else (entry,)
-    return None if attribute.kind in shown else attribute.kind
+    visible = forms if isinstance(attribute.value, tuple) else (entry,)
+    return None if attribute.kind in visible else attribute.kind
 
 
 def _body(attribute: Attribute) -> str:

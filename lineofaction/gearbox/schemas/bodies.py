@@ -8,7 +8,8 @@ from pydantic import ConfigDict, Field, Strict, model_validator
 
 from dynamics.bearings.seat import PlanetBearing
 from dynamics.joints.coupling import Coupling
-from dynamics.shafts.bodies import DiscBody, GearBody, Inertia
+from dynamics.shafts.bodies import Inertia
+from dynamics.shafts.rigid_bodies import DiscBody, GearBody
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.model import (
     BoundaryModel,

@@ -66,5 +66,5 @@ def _with(component: Component, results: Iterable[Attribute]) -> Component:
     """Return a component with results, after what else it has."""
     new = tuple(results)
     names = {attribute.id for attribute in new}
-    kept = tuple(attribute for attribute in component.attributes if attribute.id not in names)
-    return replace(component, attributes=(*kept, *new))
+    others = tuple(attribute for attribute in component.attributes if attribute.id not in names)
+    return replace(component, attributes=(*others, *new))

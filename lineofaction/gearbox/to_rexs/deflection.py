@@ -86,5 +86,5 @@ def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) 
         if mesh.name in parts.meshes:
             part = parts.meshes[mesh.name]
             sense = turned * part.sense
-            own = flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
-            yield part.component, (*alignment_results(mesh, sense), *own)
+            of_flanks = flank_results(flanks[mesh.name], sense) if mesh.name in flanks else ()
+            yield part.component, (*alignment_results(mesh, sense), *of_flanks)

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from bounds import engineering
-from fe_contact.microgeometry.sweep import TORQUE, SweptQuantity
+from fe_contact.microgeometry.sweep import SweptQuantity
+from fe_contact.microgeometry.sweep_request import TORQUE
 from lineofaction.gearbox.studies.sweep.run import QUANTITIES, SweepResult
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (

@@ -12,7 +12,7 @@ from bounds import engineering
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import EffectAblation as SceneEffect
 from fe_contact.analysis.studies.ablation import Ablation, EffectAblation
-from fe_contact.effects.influence.estimate import Influence, signed
+from fe_contact.effects.influence.influence import Influence, signed
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,

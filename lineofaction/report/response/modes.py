@@ -8,8 +8,8 @@ import numpy as np
 
 from bounds import leftover
 from dynamics.linearize import ModalAnalysis
-from dynamics.linearize.linear_system import freedom_parts
 from dynamics.linearize.modal_analysis import LARGE
+from dynamics.linearize.mode_energy import freedom_parts
 from lineofaction.gearbox.studies.modes.run import moved_surface
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette

@@ -8,7 +8,7 @@ import pytest
 
 from benchmarks.quiet_helical import AssessedInfluence, groups, markdown, share_right
 from benchmarks.quiet_helical_cases import quiet_pairs
-from fe_contact.effects.influence.estimate import Influence
+from fe_contact.effects.influence.influence import Influence
 
 RIPPLE = Influence(50.0, 0.0, -1e-6, 0.1e-6, 10e-6, 0.2e-6)
 

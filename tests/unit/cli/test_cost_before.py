@@ -23,7 +23,7 @@ from dynamics.influence import neglected_check
 from dynamics.scene import Scene
 from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.microgeometry import evaluator
-from fe_contact.microgeometry.confirmation import design_study
+from fe_contact.microgeometry.design_study import design_study
 from fe_contact.microgeometry.tolerance_study import curves_of_samples
 from fe_contact.options import Run
 from fe_contact.planning.cost_of_derivatives import ContactWork

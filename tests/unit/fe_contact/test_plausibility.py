@@ -11,7 +11,7 @@ import pytest
 from bounds import PlausibilityWarning
 from fe_contact import Gear, GearPair, SteDatabase, analyze
 from fe_contact.plausibility import flank_findings, pair_findings, root_findings, table_findings
-from fe_contact.plausibility.pair_checks import (
+from fe_contact.plausibility.nominal_intensities import (
     nominal_deflection,
     nominal_root_stresses,
     pitch_point_pressure,

@@ -31,7 +31,7 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.geometry import BasicRack, BoreSeat, FlankGrid, InternalGearPair, Key
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.microgeometry.confirmation import DesignLoads
+from fe_contact.microgeometry.design_loads import DesignLoads
 from fe_contact.microgeometry.objective import WeightedMean
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.search import Search

@@ -7,7 +7,7 @@ from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.estimates import position_errors
 from fe_contact.analysis.estimates import table_sample as solved_again
 from fe_contact.sampled import sample_of, some_positions, spread, spread_around
-from fe_contact.ste.curve import AT_NODES
+from fe_contact.ste.curve_errors import AT_NODES
 
 LOADS = np.array([100.0, 150.0, 230.0, 400.0, 700.0, 1100.0, 2000.0])
 

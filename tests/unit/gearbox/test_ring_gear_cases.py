@@ -12,7 +12,7 @@ import pytest
 
 from bounds import Kind, PlausibilityWarning
 from fe_contact.analysis.analyze import analyze
-from fe_contact.compliance.flank import LARGEST_ROUNDING, disc_rounding
+from fe_contact.compliance.rounding import LARGEST_ROUNDING, disc_rounding
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.material import Material

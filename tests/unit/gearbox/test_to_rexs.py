@@ -31,7 +31,7 @@ from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
 from dynamics.deflection import LoadCase, loaded_scene
-from dynamics.mechanism.line_of_action import table_sense
+from dynamics.mechanism.flank_gradients import table_sense
 from fe_contact.ste import Metadata, SteDatabase
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit

@@ -25,7 +25,8 @@ from fe_contact.analysis.pairs import contact_lines
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter
-from fe_contact.microgeometry.search import Ended, NelderMead, Search, SequentialLinearProgramming
+from fe_contact.microgeometry.search import Ended, Search
+from fe_contact.microgeometry.search_methods import NelderMead, SequentialLinearProgramming
 from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceStudy, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import DesignVariable

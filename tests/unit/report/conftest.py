@@ -16,7 +16,7 @@ from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
 from fe_contact.analysis.flanks.flank_scene import flank_scene
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
-from fe_contact.effects.influence.estimate import Influence
+from fe_contact.effects.influence.influence import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS

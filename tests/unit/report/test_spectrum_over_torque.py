@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve_quantities import even_positions
+from fe_contact.ste.spectrum import even_positions
 from lineofaction.report.drawing.figure import FloatArray, HeatMap
 from lineofaction.report.ste.curves import load_curve, load_labels, shown_loads
 from lineofaction.report.ste.page import static_results

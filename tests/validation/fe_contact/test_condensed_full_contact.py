@@ -10,7 +10,7 @@ import pytest
 from spur_gears import PAIR
 
 from verification.full_contact import Resolution, solve_full_contact
-from verification.full_contact.condensation import placed_mesh
+from verification.full_contact.condensation import gear_boundary
 
 REFERENCE = Path(__file__).parents[2] / "reference" / "spur_20_20_full_contact.csv"
 SOURCE = "CalculiX 2.20 and a mortar code, resolved meshes, plane strain, uncertainty 0.1 % (0.3 % at 10 N m)"
@@ -36,7 +36,7 @@ def rows(torque: float) -> dict[float, tuple[float, float]]:
 )
 def test_positions_under_one_load(torque: float, record_figure, monkeypatch) -> None:
     """Of the codes, too, a plain ring at the root circle stands for all teeth but five."""
-    monkeypatch.setattr(placed_mesh, "RAISED", 0.0)
+    monkeypatch.setattr(gear_boundary, "RAISED", 0.0)
     expected = [rows(torque)[driven] for driven in DRIVEN]
     position, ste = np.array(expected).T
     found = solve_full_contact(PAIR, [torque], position)

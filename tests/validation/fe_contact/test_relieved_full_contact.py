@@ -14,7 +14,7 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear, SteDatabase, analyze
 from fe_contact.material import Material
 from fe_contact.planning.model_error import FLOOR, flank_tilt
-from fe_contact.ste.curve import AT_NODES, METHOD, all_sources
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, all_sources
 from verification.full_contact import solve_full_contact
 
 SOURCE = "CalculiX 2.20, 1.5 elements per Hertz half-width, plane strain, uncertainty 0.2 %"

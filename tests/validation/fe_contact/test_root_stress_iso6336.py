@@ -15,7 +15,7 @@ from analysis_requests import point_request
 from fe_contact import Gear, GearPair, root_stress
 from fe_contact.geometry import tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
-from fe_contact.plausibility.pair_checks import nominal_root_stresses
+from fe_contact.plausibility.nominal_intensities import nominal_root_stresses
 
 
 class RootSection(NamedTuple):

@@ -9,7 +9,7 @@ import pytest
 from spur_gears import GEAR
 
 from fe_contact import GearPair, Shaft, SteDatabase, analyze
-from fe_contact.effects.shaft_deflection import SeatCompliance
+from fe_contact.effects.shaft_compliance import SeatCompliance
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 

@@ -17,10 +17,10 @@ from sliced_face import rigid_share_database, sliced_database
 from dynamics.assembly.assemble import System, assemble
 from dynamics.integrators import static_equilibrium
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Scene
-from fe_contact.ste.extraction import SMOOTHING
+from fe_contact.ste.load_levels import SMOOTHING
 
 PITCH = 2.0 * math.pi * BASE_RADIUS / 20
 UP = np.array([0.0, 0.0, 1.0])

@@ -8,7 +8,8 @@ import pytest
 
 from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.catalog import BAND, RATING, SLENDERNESS, from_catalog
-from dynamics.bearings.loaded_bearing import LoadedBearing, element_passing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.passing_elements import element_passing
 from dynamics.errors import InputError
 
 # Internal geometry from a catalog line, against bearings whose balls are published; refused bearings.

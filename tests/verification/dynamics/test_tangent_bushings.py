@@ -8,7 +8,8 @@ from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import BallBearing, RollerBearing
-from dynamics.bearings.loaded_bearing import LoadedBearing, tangent_bushing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.tangent_bushing import tangent_bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
 from dynamics.motion.observation import local_state

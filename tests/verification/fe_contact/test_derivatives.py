@@ -15,7 +15,7 @@ from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.contact import adjoint, force_changes, load_arm, solve_contact
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
-from fe_contact.microgeometry.linearized_design import curve_derivatives
+from fe_contact.microgeometry.curve_derivatives import curve_derivatives
 from fe_contact.microgeometry.variables import modified
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, quantity_derivatives
 

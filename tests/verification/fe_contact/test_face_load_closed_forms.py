@@ -23,7 +23,7 @@ from fe_contact.contact import (
 )
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance
+from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
 from fe_contact.geometry import Shaft
 from fe_contact.material import Material
 

@@ -19,7 +19,8 @@ from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear
 from fe_contact.mesh import SectorRecipe
 from fe_contact.options import AnalysisOptions
-from fe_contact.planning.plan import FaceDiscretization, make_plan
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.plan import make_plan
 from fe_contact.ste import SteDatabase
 
 MODULE, WIDTH = 2e-3, 20e-3

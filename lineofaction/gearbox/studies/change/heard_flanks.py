@@ -14,7 +14,7 @@ from dynamics.assembly.assemble import System, assemble
 from dynamics.deflection.loaded_scene import with_loads
 from dynamics.errors import DynamicsError
 from dynamics.linearize import FlankTransfer, OtherFlanks, flank_transfer
-from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.common_period import common_period
 from dynamics.linearize.transfer import FlankExcitation, transfer_seconds
 from dynamics.noise import (
     BearingForce,

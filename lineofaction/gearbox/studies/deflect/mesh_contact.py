@@ -16,7 +16,7 @@ from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.database import joined_over_misalignment
+from fe_contact.ste.joined_tables import joined_over_misalignment
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import PLANE, analysis_options, gear_pair
 from lineofaction.gearbox.schemas import Case

@@ -15,8 +15,9 @@ from dynamics.types import FloatArray
 from fe_contact.errors import FeContactError
 from fe_contact.microgeometry.design_problem import PENALTY, Assessed, SearchProblem
 from fe_contact.microgeometry.evaluator import LoadFigures
+from fe_contact.microgeometry.linear_program import LinearProgram
 from fe_contact.microgeometry.linearized_table import TabledLoads, tabled_loads
-from fe_contact.microgeometry.objective import LinearProgram, Rows
+from fe_contact.microgeometry.objective import Rows
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.change.heard_flanks import HeardLoad

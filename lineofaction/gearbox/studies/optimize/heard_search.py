@@ -20,20 +20,14 @@ from fe_contact.analysis.table_fields import table_of_solution
 from fe_contact.effects import EFFECTS, named
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.microgeometry.optimize import search_all
 from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
-from fe_contact.microgeometry.search import (
-    EXPLORED,
-    FINISHED,
-    MISSES,
-    Search,
-    StagedLinearProgramming,
-    never,
-)
+from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.search_methods import EXPLORED, FINISHED, MISSES, StagedLinearProgramming, never
 from fe_contact.microgeometry.variables import effect_of, modified
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray

@@ -18,15 +18,14 @@ from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, OptimizationRequest
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
-from fe_contact.microgeometry.search import (
+from fe_contact.microgeometry.search import Search, usual_designs
+from fe_contact.microgeometry.search_methods import (
     DifferentialEvolution,
     Method,
     NelderMead,
-    Search,
     SequentialLinearProgramming,
     StagedLinearProgramming,
     never,
-    usual_designs,
 )
 from fe_contact.microgeometry.variables import DesignVariable
 from lineofaction.gearbox.convert.boundary_names import boundary_name

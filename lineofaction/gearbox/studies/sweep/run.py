@@ -15,15 +15,8 @@ from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
-from fe_contact.microgeometry.sweep import (
-    CENTER_DISTANCE,
-    TORQUE,
-    Sweep,
-    SweepAxis,
-    SweepRequest,
-    SweptQuantity,
-    sweep,
-)
+from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
+from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point

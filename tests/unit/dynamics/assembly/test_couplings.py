@@ -17,7 +17,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.implicit_step import invert
+from dynamics.integrators.stage_preparation import invert
 from dynamics.joints import Coupling, ImposedRotation
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled

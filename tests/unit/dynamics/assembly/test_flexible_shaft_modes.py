@@ -20,7 +20,7 @@ from dynamics.bearings import Bushing
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import linearize, natural_modes, whirl_modes
-from dynamics.linearize.campbell import speed_terms
+from dynamics.linearize.whirl_modes import speed_terms
 from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Outputs

@@ -21,7 +21,7 @@ from dynamics.bearings import Bushing
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Coupling
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.line_of_action import common_face_width, misalignment_gradient
+from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.results import EnergyAudit

@@ -17,7 +17,7 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.march import stored_energy
 from dynamics.joints import Coupling
 from dynamics.linearize import natural_modes
-from dynamics.linearize.operating_speeds import common_period
+from dynamics.linearize.common_period import common_period
 from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state

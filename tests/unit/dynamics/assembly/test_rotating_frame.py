@@ -14,7 +14,7 @@ from dynamics.forces.laws import Law
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import Coupling, FreeRotation
 from dynamics.linearize import whirl_modes
-from dynamics.linearize.campbell import speed_terms
+from dynamics.linearize.whirl_modes import speed_terms
 from dynamics.loads import TimeLaw
 from dynamics.motion.force_balance import force_balance
 from dynamics.motion.observation import local_state

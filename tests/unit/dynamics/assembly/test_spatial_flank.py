@@ -14,7 +14,7 @@ from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration, Outputs

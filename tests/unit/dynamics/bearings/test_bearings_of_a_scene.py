@@ -21,8 +21,9 @@ from rotors_on_bearings import (
 from dynamics.assembly.assemble import assemble
 from dynamics.assembly.bearing_rest import bearing_rows
 from dynamics.bearings import Bushing, RollingBearing
-from dynamics.bearings.loaded_bearing import LoadedBearing, tangent_bushing
+from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.bearings.row_law import row_law
+from dynamics.bearings.tangent_bushing import tangent_bushing
 from dynamics.errors import InputError
 from dynamics.forces.laws import BEARING_LAW_KINDS
 from dynamics.integrators import static_equilibrium

@@ -21,7 +21,7 @@ from dynamics.forces import RollingContact
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.line_of_action import misalignment_gradient
+from dynamics.mechanism.flank_gradients import misalignment_gradient
 from dynamics.motion.observation import local_state
 
 FORCE, FACE = 100.0 / BASE_RADIUS, 0.025

@@ -9,7 +9,8 @@ from geared_scenes import gear_pair_scene, spring_table
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import BallBearing, RollerBearing, RollingBearing
-from dynamics.bearings.loaded_bearing import LoadedBearing, element_passing
+from dynamics.bearings.loaded_bearing import LoadedBearing
+from dynamics.bearings.passing_elements import element_passing
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Coupling

@@ -12,7 +12,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.meshes import CoastFlank
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration

@@ -16,7 +16,7 @@ from dynamics.linearize import natural_modes
 from dynamics.loads import LoadTorque, TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.meshes.mesh_table import FIELDS
-from dynamics.meshes.spatial_flank import CREEP_SPEED
+from dynamics.meshes.sliding_friction import CREEP_SPEED
 from dynamics.meshes.technique import PlainTable
 from dynamics.motion.force_balance import force_balance
 from dynamics.scene import Integration, Outputs

@@ -15,7 +15,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
-from dynamics.engines.fmu.export import CompilerError, binary_folder, find_compiler
+from dynamics.engines.fmu.compiler import CompilerError, binary_folder, find_compiler
 from dynamics.errors import InputError
 
 fmpy = fmu_instance.fmpy

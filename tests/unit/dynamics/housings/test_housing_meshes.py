@@ -37,7 +37,7 @@ from dynamics.housings.assembled_housing import mass_and_stiffness
 from dynamics.housings.drawn_surface import DrawnSurface, drawn_mesh
 from dynamics.housings.mesh_files import element_shape
 from dynamics.housings.reduction import reduce_housing
-from dynamics.solid_housing import check_mesh_content
+from dynamics.mesh_content import check_mesh_content
 from host import missing_protections
 
 # Meshes of housings from files and from STEP: the same by every format, one clear error for a bad one.

@@ -16,12 +16,8 @@ from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
-from dynamics.influence.linear_figures import (
-    LinearFigures,
-    OperatingCondition,
-    linear_figures,
-    operating_conditions,
-)
+from dynamics.influence.linear_figures import LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import OperatingCondition, operating_conditions
 from dynamics.joints import FreeRotation, Housing
 from dynamics.loads import AppliedForce, TimeLaw
 from dynamics.loads.load_course import Orders

@@ -15,12 +15,8 @@ from dynamics.acoustics import a_weighting
 from dynamics.assembly.assemble import System, assemble
 from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
 from dynamics.influence.level_change import MOST, BearingForces, level_change
-from dynamics.influence.linear_figures import (
-    LinearFigures,
-    OperatingCondition,
-    conditions_at,
-    linear_figures,
-)
+from dynamics.influence.linear_figures import LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import OperatingCondition, conditions_at
 from dynamics.linearize import forced_response
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs, Scene

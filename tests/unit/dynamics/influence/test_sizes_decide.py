@@ -17,7 +17,7 @@ from dynamics.influence import decide_effects, estimate_influences, neglected_ch
 from dynamics.influence.content_key import content_key
 from dynamics.influence.neglected_check import Decided
 from dynamics.linearize import partial_fractions
-from dynamics.linearize.harmonic_response import parametric_response
+from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs, Scene

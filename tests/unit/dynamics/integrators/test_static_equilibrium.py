@@ -12,7 +12,8 @@ from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.arrays.sparse_rows import LEAST, TOGETHER, joined_by_chains, modal_freedoms_of, sparse_matrices
+from dynamics.arrays.modal_freedoms import LEAST, TOGETHER, modal_freedoms_of
+from dynamics.arrays.sparse_rows import joined_by_chains, sparse_matrices
 from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import SolveError

@@ -19,7 +19,7 @@ from dynamics.kernels.by_address import by_address, by_value
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.routine import routine
 from dynamics.loads import SpeedCurve
-from dynamics.loads.load_laws import SpeedTorqueLaws
+from dynamics.loads.speed_torque_law import SpeedTorqueLaws
 
 
 class Inside(NamedTuple):

@@ -26,16 +26,15 @@ from dynamics.linearize import (
 from dynamics.linearize.campbell import (
     FINEST,
     INTERVALS,
-    WhirlModes,
     branches_up_to,
     continued_branches,
     likeness,
     modes_at,
     whirl_branches,
-    whirl_sense,
 )
 from dynamics.linearize.flank_cycles import averaged, flank_cycles, resting
 from dynamics.linearize.linear_system import LinearSystem
+from dynamics.linearize.whirl_modes import WhirlModes, whirl_sense
 from dynamics.loads import TimeLaw
 from dynamics.scene import Outputs
 from dynamics.shafts import Inertia, Shaft

@@ -32,11 +32,11 @@ from dynamics.linearize import (
     peaks,
     steady_vibration,
 )
-from dynamics.linearize.harmonic_response import parametric_response
 from dynamics.linearize.load_harmonics import load_harmonics
+from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
 from dynamics.loads import TimeLaw
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.scene import Outputs
 from dynamics.simulation import simulate
 from fe_contact.ste import ForceTable

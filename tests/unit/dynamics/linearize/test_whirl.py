@@ -31,10 +31,12 @@ from dynamics.linearize import (
     varying_stiffness,
     whirl_modes,
 )
-from dynamics.linearize.campbell import terms_at
-from dynamics.linearize.harmonic_response import extremes, parametric_response
+from dynamics.linearize.harmonic_response import extremes
+from dynamics.linearize.modal_elimination import modal_elimination
 from dynamics.linearize.operating_speeds import law_speeds
-from dynamics.linearize.steady_vibration import _modal_elimination, excited, gyroscopic_terms, swept_vibration
+from dynamics.linearize.parametric_response import parametric_response
+from dynamics.linearize.steady_vibration import excited, gyroscopic_terms, swept_vibration
+from dynamics.linearize.whirl_modes import terms_at
 from dynamics.loads import TimeLaw
 from dynamics.scene import Integration, Outputs
 from dynamics.shafts import Inertia, Shaft
@@ -144,11 +146,9 @@ def test_a_response_with_the_modes_eliminated_is_that_of_the_whole_matrices(monk
     system = assemble(replace(scene, meshes=gear_pair_scene(table).meshes))
     speeds = np.linspace(50.0, 400.0, 40)
     small = harmonic_response(system, speeds)
-    eliminated = steady_vibration._modal_elimination
+    eliminated = steady_vibration.modal_elimination
     seen = []
-    monkeypatch.setattr(
-        steady_vibration, "_modal_elimination", lambda *given: seen.append(eliminated(*given))
-    )
+    monkeypatch.setattr(steady_vibration, "modal_elimination", lambda *given: seen.append(eliminated(*given)))
     whole = harmonic_response(system, speeds)
     assert all(part is not None for part in seen) and seen
     for name in ("dynamic_transmission_error", "bearing_force", "displacement"):
@@ -173,12 +173,12 @@ def test_what_the_rows_of_elements_do_not_explain_is_not_eliminated():
     system = assemble(housed_pair())
     linear, modal = linearize(system), system.arrays.sparse.modal
     unit = np.ones(linear.scale.size)
-    assert _modal_elimination(modal, unit, linear.stiffness, linear.damping, linear.mass) is not None
+    assert modal_elimination(modal, unit, linear.stiffness, linear.damping, linear.mass) is not None
     coupled = linear.stiffness.copy()
     coupled[-1, -2] = coupled[-2, -1] = 1e-6 * np.max(np.abs(coupled))
-    assert _modal_elimination(modal, unit, coupled, linear.damping, linear.mass) is None
+    assert modal_elimination(modal, unit, coupled, linear.damping, linear.mass) is None
     twice = modal._replace(shape=np.repeat(modal.shape[:1], len(modal.shape), axis=0))
-    assert _modal_elimination(twice, unit, linear.stiffness, linear.damping, linear.mass) is None
+    assert modal_elimination(twice, unit, linear.stiffness, linear.damping, linear.mass) is None
 
 
 # Response with a stiffness that varies along the pitch: linear limit, time domain, swept resonances.

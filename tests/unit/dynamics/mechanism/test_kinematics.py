@@ -18,8 +18,9 @@ from dynamics.errors import InputError
 from dynamics.joints import FreeRotation, ImposedRotation
 from dynamics.linearize import modal_analysis
 from dynamics.loads import LoadTorque, TimeLaw
+from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 from dynamics.mechanism.kinematics import solve_kinematics
-from dynamics.mechanism.line_of_action import common_face_width, line_of_action, misalignment_gradient
+from dynamics.mechanism.line_of_action import line_of_action
 from dynamics.meshes import GearMesh
 from dynamics.motion.motion import write_motion
 from dynamics.scene import Scene

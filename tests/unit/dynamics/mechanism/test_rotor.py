@@ -8,7 +8,7 @@ from geared_scenes import gear_pair_scene, with_gear
 
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
-from dynamics.mechanism.bodies import build_rotor
+from dynamics.mechanism.rotor import build_rotor
 from dynamics.shafts import Inertia
 
 

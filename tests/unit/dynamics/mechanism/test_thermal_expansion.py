@@ -23,13 +23,15 @@ from warm_scenes import (
 
 from dynamics.assembly.assemble import assemble
 from dynamics.bearings import Bushing
-from dynamics.bearings.ring_fits import Cylinder, RingFits, fit_pressure, warm_rings
+from dynamics.bearings.ring_fits import RingFits
 from dynamics.bearings.row_law import row_law
 from dynamics.bearings.spring_curve import SpringCurve
+from dynamics.bearings.warm_rings import Cylinder, fit_pressure, warm_rings
 from dynamics.effects.bearing_temperature import axial_state
 from dynamics.effects.ledger import mechanism_of
 from dynamics.errors import InputError
-from dynamics.mechanism.thermal_expansion import warmed_bearings, warmed_meshes
+from dynamics.mechanism.thermal_expansion import warmed_bearings
+from dynamics.mechanism.warm_meshes import warmed_meshes
 from dynamics.solid_housing import CAST_ALUMINUM, Material
 from dynamics.temperatures import Temperatures
 

@@ -10,7 +10,8 @@ import pytest
 from drawn_trains import PlacedGear, Train, off_pitches, position, touching
 
 from dynamics.errors import InputError
-from dynamics.mechanism.kinematics import check_motion, solve_kinematics
+from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.mechanism.motion_checks import check_motion
 from dynamics.mechanism.train_phases import train_phases
 from dynamics.meshes import CoastFlank
 

@@ -18,7 +18,8 @@ from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import FIELDS, check_table
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table, straight_table
-from dynamics.meshes.table_lookup import deflection_slope, table_deflection, table_energy, table_force
+from dynamics.meshes.table_energy import table_energy
+from dynamics.meshes.table_lookup import deflection_slope, table_deflection, table_force
 
 # Tables that break the protocol are refused, each by its field.
 

@@ -20,8 +20,9 @@ from planetary_scenes import planetary_scene, published_set
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError, SolveError
 from dynamics.integrators import static_equilibrium
+from dynamics.integrators.checkpoints import leaves_of, read_checkpoint, restore, write_checkpoint
 from dynamics.integrators.march import start_march
-from dynamics.integrators.state_sink import BLOCK, leaves_of, read_checkpoint, restore, write_checkpoint
+from dynamics.integrators.state_sink import BLOCK
 from dynamics.loads import TimeLaw
 from dynamics.meshes import CoastFlank
 from dynamics.results import RunResult

@@ -29,7 +29,7 @@ from fe_contact.analysis.deviating_cycle import DeviatingCycle, cycle_contact, d
 from fe_contact.errors import InputError, SolveError
 from fe_contact.planning import cost_of_derivatives
 from fe_contact.planning.cost_of_derivatives import BATCH, solved_pitches
-from fe_contact.ste.curve import DERIVATIVES, SOURCES, source_names
+from fe_contact.ste.curve_errors import DERIVATIVES, SOURCES, source_names
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, quantity_changes
 
 TEETH = (17, 19)

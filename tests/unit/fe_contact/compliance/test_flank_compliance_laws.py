@@ -23,8 +23,8 @@ from fe_contact.compliance import (
 )
 from fe_contact.compliance.condensed_sector import freedoms, inward_loads
 from fe_contact.compliance.flank import refuse_broken_laws
-from fe_contact.compliance.flank_compliance_2d import uniform_pressure
 from fe_contact.compliance.plane_elasticity import stiffness_matrix
+from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material

@@ -20,7 +20,8 @@ from fe_contact.compliance import (
 )
 from fe_contact.compliance.condensed_gear import condensed_gear, probe_loads
 from fe_contact.compliance.condensed_sector import freedoms
-from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring, uniform_pressure
+from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring
+from fe_contact.compliance.ring_checks import uniform_pressure
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance

@@ -18,7 +18,7 @@ from fe_contact.compliance import flank_compliance_3d
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.elimination_tree import EliminationTree, bisected_tree
 from fe_contact.compliance.factorization import factorise, nested_dissection
-from fe_contact.compliance.flank import (
+from fe_contact.compliance.rounding import (
     EPSILON,
     LARGEST_ROUNDING,
     disc_rounding,

@@ -29,7 +29,7 @@ from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.strip import Gap, gap_table
-from fe_contact.effects.influence.deflection_budget import Springs
+from fe_contact.effects.influence.estimated_curve import Springs
 from fe_contact.types import Status
 
 MODULUS = 115e9

@@ -13,7 +13,7 @@ from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.plain_touch import conjugate_touch, flank_coordinate
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
-from fe_contact.flank.relief import SHAPES
+from fe_contact.flank.relief_shape import SHAPES
 from fe_contact.geometry import InternalGearPair, RingGear, corner_contact, edge_gap
 
 

@@ -16,9 +16,12 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.influence.deflection_budget import DeflectionBudget, Springs, deflection_budget
+from fe_contact.effects.influence.axial_compliance import _bent
+from fe_contact.effects.influence.deflection_budget import DeflectionBudget, deflection_budget
 from fe_contact.effects.influence.estimate import EstimatedInfluence, estimate_influence
-from fe_contact.effects.influence.slice_compliance import _bent, _tooth_bending, half_plane, slice_compliance
+from fe_contact.effects.influence.estimated_curve import Springs
+from fe_contact.effects.influence.slice_compliance import slice_compliance
+from fe_contact.effects.influence.tooth_bending import half_plane, tooth_bending
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.options import TableAxes
 from fe_contact.planning.plan import make_plan
@@ -189,7 +192,7 @@ def test_hertz_is_what_two_half_planes_approach_down_to_the_middles_of_the_teeth
     width = float(half_width(line_load, relative_radius(*rolls), modulus))
     expected = 0.0
     for gear, length in zip((pair.pinion, pair.wheel), rolls, strict=True):
-        bending, ratio = _tooth_bending(gear), gear.material.poissons_ratio
+        bending, ratio = tooth_bending(gear), gear.material.poissons_ratio
         depth = float(bending.at(bending.depth, np.array(length**2 / (2.0 * gear.base_radius))))
         expected += (
             half_plane(gear) * line_load * (math.log(2.0 * depth / width) - 0.5 * ratio / (1.0 - ratio))

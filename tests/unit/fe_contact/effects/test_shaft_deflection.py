@@ -13,7 +13,8 @@ from fe_contact.contact import ContactModel, ContactProblem, PatchRule, Slices, 
 from fe_contact.contact import with_compliances as with_added
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.effects.shaft_deflection import SeatCompliance, ShaftCompliance, ShaftDeflection
+from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
+from fe_contact.effects.shaft_deflection import ShaftDeflection
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft
 
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06, bearing_stiffness=4e8)

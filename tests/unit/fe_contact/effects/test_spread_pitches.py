@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.effects.influence.deflection_budget import MOST_PITCHES, spread_pitches
+from fe_contact.effects.influence.estimated_curve import MOST_PITCHES, spread_pitches
 
 PAIRS = [(23, 67), (20, 64), (32, 96), (34, 55), (17, 23), (53, 102), (61, 125), (199, 500)]
 """Teeth: hunting, with common factors, of Fibonacci, many."""

@@ -30,7 +30,7 @@ from fe_contact.geometry import (
     Wave,
 )
 from fe_contact.planning.plan import make_plan
-from fe_contact.ste.curve_quantities import Spectrum
+from fe_contact.ste.spectrum import Spectrum
 
 HELIX = math.radians(22.0)
 AMPLITUDE, ANGLE = 2e-7, 0.7

@@ -13,7 +13,7 @@ from spur_gears import make_gear
 
 from bounds import at_most
 from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.flank.relief import SHAPES, Shape
+from fe_contact.flank.relief_shape import SHAPES, Shape
 from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearPair, RingGear, tooth_profile
 from fe_contact.geometry.toothing import Toothing
 

@@ -10,8 +10,8 @@ import pytest
 from spur_gears import LONG_RELIEFS
 
 from fe_contact import Gear, GearPair
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.confirmed_figures import HELD, confirmed_figures
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter

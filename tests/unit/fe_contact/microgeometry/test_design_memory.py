@@ -15,7 +15,8 @@ from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization
 from fe_contact.microgeometry.optimize import optimize
-from fe_contact.microgeometry.search import Cancel, DifferentialEvolution, Search, never
+from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.search_methods import Cancel, DifferentialEvolution, never
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 

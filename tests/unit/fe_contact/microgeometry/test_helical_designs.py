@@ -12,22 +12,16 @@ import pytest
 from analysis_requests import design_request
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study
 from fe_contact.microgeometry.design_problem import DesignProblem
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, WeightedMean
 from fe_contact.microgeometry.optimization import Optimization, Outcome
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import NO_SCATTER, GaussHermite, Scatter
-from fe_contact.microgeometry.search import (
-    SIMPLEX_MERIT,
-    SIMPLEX_SIZE,
-    NelderMead,
-    Search,
-    SearchRun,
-    search_from,
-)
+from fe_contact.microgeometry.search import Search, SearchRun, search_from
+from fe_contact.microgeometry.search_methods import SIMPLEX_MERIT, SIMPLEX_SIZE, NelderMead
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from lineofaction.gearbox.studies.optimize.run import RUN

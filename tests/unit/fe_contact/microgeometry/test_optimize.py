@@ -13,12 +13,13 @@ from analysis_requests import design_request
 from spur_gears import LONG_RELIEFS, PAIR
 
 from fe_contact import GearPair, analyze
-from fe_contact.microgeometry.confirmation import DesignSpace, design_study
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.objective import Limits, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, Outcome
 from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import Scatter
-from fe_contact.microgeometry.search import NelderMead, Search
+from fe_contact.microgeometry.search import Search
+from fe_contact.microgeometry.search_methods import NelderMead
 from fe_contact.microgeometry.variables import DesignVariable, modified
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.types import FloatArray

@@ -13,13 +13,8 @@ from spur_gears import PAIR
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_tolerances import helix_slope_tolerance, profile_slope_tolerance, rounded
-from fe_contact.microgeometry.confirmation import (
-    DesignLoads,
-    DesignSpace,
-    design_study,
-    misalignment_axis,
-    snapped_to_axis,
-)
+from fe_contact.microgeometry.design_loads import DesignLoads, misalignment_axis, snapped_to_axis
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, SobolSample
 from fe_contact.microgeometry.tolerances import iso1328_tolerances

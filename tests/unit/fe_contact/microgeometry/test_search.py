@@ -12,22 +12,21 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from fe_contact.microgeometry import optimize as choice
+from fe_contact.microgeometry import best_design as choice
+from fe_contact.microgeometry.conclusion import outcome_and_reason
 from fe_contact.microgeometry.confirmation import HarrisMap, rising
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
-from fe_contact.microgeometry.objective import Limits, LinearMerit, Objective, WeightedMean, Worst
+from fe_contact.microgeometry.linear_program import LinearMerit
+from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Outcome
-from fe_contact.microgeometry.optimize import _conclusion, _search_one, search_all
-from fe_contact.microgeometry.search import (
+from fe_contact.microgeometry.optimize import _search_one, search_all
+from fe_contact.microgeometry.search import Ended, Search, SearchRun, search_from
+from fe_contact.microgeometry.search_methods import (
     EXPLORED,
     DifferentialEvolution,
-    Ended,
     NelderMead,
-    Search,
-    SearchRun,
     SequentialLinearProgramming,
     StagedLinearProgramming,
-    search_from,
 )
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
@@ -339,7 +338,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
     asked: Any = SimpleNamespace(own=(0.0,), search=Search())
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
     study: Any = SimpleNamespace(decided=SimpleNamespace(checked=checked, plan=None))
-    found = choice._choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
+    found = choice.choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
     places = [0.1 * k for k in range(1, rounds + 1)]
     assert searched == [sorted([0.0, 0.5, *places[: k + 1]]) for k in range(rounds)]
     assert len(found.runs) == rounds + 1 and found.best == rounds
@@ -369,7 +368,7 @@ def concluded(after: HarrisMap, objective: float = 0.2, violation: float = 0.0) 
     designs = {"start": design(BEFORE, 0.3), "optimum": design(after, objective, violation)}
     choice = SimpleNamespace(runs=(run,), run=run, **designs)
     request = SimpleNamespace(search=Search(), outside=())
-    return _conclusion(cast(Any, choice), cast(Any, request))
+    return outcome_and_reason(cast(Any, choice), cast(Any, request))
 
 
 BEFORE = harris(0.042, 0.2, 0.3)

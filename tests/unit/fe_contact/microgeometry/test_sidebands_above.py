@@ -16,7 +16,7 @@ from fe_contact.geometry.flank_tolerances import (
     run_out_tolerance,
     single_pitch_tolerance,
 )
-from fe_contact.microgeometry.confirmation import design_study
+from fe_contact.microgeometry.design_study import design_study
 from fe_contact.microgeometry.drawn_teeth import (
     FLANK,
     PITCH,

@@ -15,7 +15,8 @@ from spur_gears import LONG_RELIEFS, PAIR
 from fe_contact import GearPair, PitchDeviation, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.order_limit import Causes, ModeledPairs, OrderLimit, as_spread
-from fe_contact.microgeometry.sweep import Sweep, SweepAxis, SweepRequest, sweep
+from fe_contact.microgeometry.sweep import Sweep, sweep
+from fe_contact.microgeometry.sweep_request import SweepAxis, SweepRequest
 from fe_contact.microgeometry.tolerance_study import (
     Sampling,
     ToleranceRequest,

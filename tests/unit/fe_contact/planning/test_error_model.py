@@ -18,16 +18,9 @@ from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import effort
-from fe_contact.planning.plan import (
-    CLOSEST,
-    FACE_NODES,
-    FLOOR_SHARE,
-    PLANE_NODES,
-    POSITION_SHARE,
-    SLICE_ORDER,
-    NodeRule,
-)
-from fe_contact.ste.curve import METHOD, PLANE, SOURCES
+from fe_contact.planning.discretization import SLICE_ORDER
+from fe_contact.planning.plan import CLOSEST, FACE_NODES, FLOOR_SHARE, PLANE_NODES, POSITION_SHARE, NodeRule
+from fe_contact.ste.curve_errors import METHOD, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 
 FACTOR = 3.0

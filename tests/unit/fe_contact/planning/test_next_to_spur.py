@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
-from fe_contact.ste.curve import AT_NODES
+from fe_contact.ste.curve_errors import AT_NODES
 
 # both pairs have the sectors of one level, whichever it is
 pytestmark = pytest.mark.usefixtures("coarse_sectors")

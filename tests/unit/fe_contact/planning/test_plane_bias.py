@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
-from fe_contact.ste.curve import AT_NODES, PLANE
+from fe_contact.ste.curve_errors import AT_NODES, PLANE
 
 FORCES = [400.0, 1000.0]
 RELIEVED = FlankModification(tip_relief=10e-6, tip_relief_length=0.9e-3)

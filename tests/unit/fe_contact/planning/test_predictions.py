@@ -32,7 +32,8 @@ from fe_contact.planning.cost_model import (
     predict_run,
 )
 from fe_contact.planning.cost_of_derivatives import solved_pitches
-from fe_contact.planning.planned import ExpectedError, MeshOption, mesh_for_time, mesh_for_tolerance
+from fe_contact.planning.expected_error import ExpectedError
+from fe_contact.planning.planned import MeshOption, mesh_for_time, mesh_for_tolerance
 from model_studies.run_log import FILE as LOG
 
 LEVELS = ("draft", "standard", "fine")

@@ -12,8 +12,9 @@ from small_table import small_table
 
 from fe_contact.errors import DatabaseError, SolveError
 from fe_contact.ste.compiled_force import CompiledForce
-from fe_contact.ste.database import joined_over_misalignment
-from fe_contact.ste.extraction import SMOOTHING, sliding_sums
+from fe_contact.ste.extraction import sliding_sums
+from fe_contact.ste.joined_tables import joined_over_misalignment
+from fe_contact.ste.load_levels import SMOOTHING
 
 M = (-20e-6, 0.0, 15e-6)
 

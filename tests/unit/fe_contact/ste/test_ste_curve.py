@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
-from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
     BESIDE_MESH,
     FIRST_HARMONIC,

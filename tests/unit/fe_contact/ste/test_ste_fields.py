@@ -10,9 +10,9 @@ from held_out import held_out_error
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste import Metadata, PairFacts
-from fe_contact.ste.database import without_failed_rows
 from fe_contact.ste.facts import content_hash
 from fe_contact.ste.fields import DIMENSIONS
+from fe_contact.ste.table_repair import without_failed_rows
 from fe_contact.types import Status
 
 

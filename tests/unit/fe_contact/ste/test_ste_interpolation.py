@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fe_contact.ste import force_table as level_grid
-from fe_contact.ste.force_table import deflection_grid, monotone_stiffness, stiffness_grid
+from fe_contact.ste import level_grid
 from fe_contact.ste.interpolation import Axis, interpolate, monotone_slopes, ordered_slopes
+from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 
 FINE = np.linspace(-0.5, 1.5, 4001)
 EPSILON = np.finfo(float).eps

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from held_out import held_out_error
 
-from fe_contact.ste.extraction import LoadLevels, gradual_contact, refined_levels
+from fe_contact.ste.load_levels import LoadLevels, gradual_contact, refined_levels
 
 COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
 BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)

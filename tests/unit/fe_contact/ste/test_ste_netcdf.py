@@ -14,7 +14,7 @@ import xarray
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste import SCHEMA_VERSION, SteDatabase
-from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status

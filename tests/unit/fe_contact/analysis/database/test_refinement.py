@@ -13,8 +13,8 @@ from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
 from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, next_pass
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request_check import check_request
-from fe_contact.planning.plan import SLICE_ORDER
-from fe_contact.ste.curve import AT_NODES, METHOD, SOURCES
+from fe_contact.planning.discretization import SLICE_ORDER
+from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
 
 
 def pair(helix: float = 0.0, width: float = 16e-3, **more) -> GearPair:

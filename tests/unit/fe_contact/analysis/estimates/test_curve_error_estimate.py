@@ -15,8 +15,8 @@ from fe_contact.analysis.estimates.curve_errors import HARMONIC_SHARE
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, Run
-from fe_contact.planning.plan import SLICE_ORDER, face_discretization
-from fe_contact.ste.curve import OF_LOAD_ARM, SOURCES, all_sources
+from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
+from fe_contact.ste.curve_errors import OF_LOAD_ARM, SOURCES, all_sources
 from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, quantity_changes
 from fe_contact.ste.fields import DIMENSIONS
 

@@ -8,7 +8,7 @@ import pytest
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.estimates.excitation_errors import excitation_errors
 from fe_contact.geometry.backlash import reference_center_distance
-from fe_contact.ste.curve import all_sources
+from fe_contact.ste.curve_errors import all_sources
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, quantity_changes
 from fe_contact.ste.extraction import sliding_sums
 

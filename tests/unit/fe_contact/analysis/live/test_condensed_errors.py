@@ -15,7 +15,7 @@ from fe_contact.analysis.pairs.pair_contact import PairContact
 from fe_contact.geometry import FlankModification
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.curve import AT_NODES, SOURCES
+from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, PEAK_TO_PEAK
 from fe_contact.types import FloatArray
 

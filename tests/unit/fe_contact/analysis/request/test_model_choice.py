@@ -17,7 +17,7 @@ from fe_contact.analysis.request.model_choice import alternative_requests, decid
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.ste.curve import SOURCES
+from fe_contact.ste.curve_errors import SOURCES
 
 LOADS = [400.0, 1600.0]
 

@@ -1,0 +1,124 @@
+"""Power balance of a harmonic vibration: what excitation puts in and what parts lose, by harmonic."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dynamics.linearize.absorbers import (
+    bearing_absorbers,
+    body_absorbers,
+    coupling_absorbers,
+    element_absorbers,
+)
+from dynamics.linearize.load_harmonics import load_harmonics
+from dynamics.linearize.steady_vibration import Excited, Steady, gyroscopic_terms, speed_blocks
+from dynamics.types import ComplexArray, FloatArray
+
+LOADS = "loads"
+
+
+FRAMES = "rotating frames"
+
+
+@dataclass(frozen=True)
+class PowerBalance:
+    """Mean powers of H harmonics at S speeds, W; p sources, a sinks."""
+
+    source: tuple[str, ...]
+    """Meshes, by their transmission errors; `LOADS`: forces and unbalances, where they excite."""
+    input: FloatArray
+    """By each, negative where it brakes the vibration. Shape (p, S, H)."""
+    sink: tuple[str, ...]
+    kind: tuple[str, ...]
+    """`sink`, `kind`: Parts and what they are, one of `KINDS`."""
+    loss: FloatArray
+    """In each. A mesh whose friction feeds the vibration has a negative one. Shape (a, S, H)."""
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """The fields of `ForcedResponse` that hold it."""
+        powers = {"source": self.source, "input": self.input, "sink": self.sink}
+        powers |= {"sink_kind": self.kind, "loss": self.loss}
+        return {f"power_{name}": value for name, value in powers.items()}
+
+    @property
+    def residual(self) -> float:
+        """Power that is put in and lost nowhere over that put in, all harmonics, at the worst speed."""
+        missing = np.abs(np.sum(self.input, axis=0) - np.sum(self.loss, axis=0)).sum(axis=-1)
+        turned = np.abs(self.input).sum(axis=(0, 2))
+        return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
+
+    def by_kind(self) -> dict[str, FloatArray]:
+        """Return what parts of a kind lose together, all harmonics, (S,)."""
+        total = np.sum(self.loss, axis=2)
+        return {
+            kind: np.sum(total[[own == kind for own in self.kind]], axis=0)
+            for kind in dict.fromkeys(self.kind)
+        }
+
+
+def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalance:
+    """Return where the power of a vibration at `speed` (S,) comes from and goes to.
+
+    Forces of complex amplitude F on coordinates of amplitude y put in Re(F conj(i w y))/2. Each part is
+    assembled by itself, so the residual tells what the linear solves and the sum of the parts leave.
+    """
+    gained: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
+    lost: dict[tuple[str, str], list[FloatArray]] = {}
+    loaded = False
+    for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
+        u, absorbed = steady.displacement[part], dict[tuple[str, str], FloatArray]()
+        rate = 1j * steady.omega[part, :, None] * u
+        for name, cycle in zip(gained, at.cycles, strict=False):
+            along = rate @ at.system.arrays.direction[cycle.rows].T
+            force = steady.force if len(steady.force) == 1 else steady.force[part]
+            gained[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
+        loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
+        loaded = loaded or bool(np.any(loads))
+        gained.setdefault(LOADS, []).append(_power(loads, rate))
+        for name, kind, power in _losses(at, speed[part], u, rate):
+            absorbed[name, kind] = absorbed.get((name, kind), 0.0) + power
+        for key, power in absorbed.items():
+            lost.setdefault(key, []).append(power)
+    if not loaded:
+        gained.pop(LOADS, None)
+    return PowerBalance(
+        tuple(gained),
+        np.array([np.concatenate(powers) for powers in gained.values()]).reshape(-1, *steady.omega.shape),
+        tuple(name for name, _ in lost),
+        tuple(kind for _, kind in lost),
+        np.array([np.concatenate(powers) for powers in lost.values()]).reshape(-1, *steady.omega.shape),
+    )
+
+
+def _losses(
+    at: Excited, speed: FloatArray, u: ComplexArray, rate: ComplexArray
+) -> Iterable[tuple[str, str, FloatArray]]:
+    """Yield name, kind and power (S, H) of parts; one part may come several times.
+
+    The sum of all parts with damping about the equilibrium, driving flanks by their mean tangents, is the
+    damping of `LinearSystem`; what gyroscopic and frame terms do comes last.
+    """
+    elements = element_absorbers(at.system, at.linear, at.cycles, at.time)
+    system = at.system
+    springs = (*bearing_absorbers(system), *coupling_absorbers(system), *body_absorbers(system))
+    for part in (*elements, *springs):
+        if not (np.any(part.damping) or np.any(part.stiffness)):
+            continue
+        along = rate @ part.rows.T
+        force = (u @ part.rows.T) @ part.stiffness.T + along @ part.damping.T
+        yield part.name, part.kind, _power(force, along)
+    if at.turning:
+        terms = gyroscopic_terms(at.system, speed)
+        damping, stiffness = (np.stack([term[k] for term in terms]) for k in (0, 1))
+        force = np.einsum("sij,shj->shi", damping, rate) + np.einsum("sij,shj->shi", stiffness, u)
+        yield FRAMES, "frame", _power(force, rate)
+
+
+def _power(force: ComplexArray, rate: ComplexArray) -> FloatArray:
+    """Return the mean power of forces (..., k) on rates (..., k), peak amplitudes, W."""
+    return np.asarray(0.5 * np.real(np.sum(force * rate.conj(), axis=-1)))

@@ -1,0 +1,44 @@
+"""The mean mesh forces that carry the loads in the kinematic motion."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.arrays.arrays import slope
+from dynamics.loads.time_law import TimeLaw
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.nominal_forces import levers, load_moments, shaft_acceleration, shafts_without_drive
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knots
+
+
+def mean_forces(mechanism: Mechanism) -> FloatArray:
+    """Return what balances loads and imposed accelerations at moments that show how they run, (m, T) in N.
+
+    Negative: the coast flank carries it. Where the balance leaves a choice, the one of least forces.
+    """
+    scene, kinematics, inertia = mechanism.scene, mechanism.kinematics, mechanism.rotational_inertia
+    moments = _telling_moments(scene)
+    torque = load_moments(scene, kinematics, moments)
+    imposed = np.array([slope(drive.speed, moments) for drive in scene.drives]).reshape(-1, moments.size)
+    ratio = kinematics.float_ratio[:, : len(scene.drives)]
+    torque -= inertia[:, None] * (ratio @ imposed)
+    torque -= inertia[:, None] * shaft_acceleration(scene, kinematics, inertia, torque)
+    free = shafts_without_drive(scene, kinematics)
+    lever = levers(scene, kinematics)[free]
+    force = np.linalg.lstsq(lever, torque[free], rcond=1e-12)[0]
+    return np.asarray(force[: len(scene.meshes)], dtype=float)
+
+
+def _telling_moments(scene: Scene) -> FloatArray:
+    """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
+    courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
+    laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
+    stated = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
+    inside = stated[(stated > 0.0) & (stated < scene.duration)]
+    knots = np.unique(np.concatenate([[0.0, scene.duration], inside]))
+    part = np.linspace(0.0, 1.0, BETWEEN_KNOTS, endpoint=False)
+    between = knots[:-1, None] + np.diff(knots)[:, None] * part
+    return np.concatenate([knots[:1], between.ravel(), np.nextafter(knots[1:], 0.0)])

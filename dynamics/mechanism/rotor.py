@@ -1,0 +1,154 @@
+"""A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+
+from dynamics.bearings import Bushing, PlanetBearing
+from dynamics.bearings.matrix import matrix_rows
+from dynamics.scene.scene import Scene, on_axis
+from dynamics.shafts import ElasticShaft, Inertia, Shaft
+from dynamics.shafts.shaft import nearest_on
+from dynamics.types import FloatArray
+
+Support = TypeVar("Support", Bushing, PlanetBearing)
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """One body: six rigid freedoms, and the elastic coordinates of its shaft."""
+
+    shaft: Shaft
+    inertia: Inertia
+    """Of shaft, gears and discs about their common center of mass."""
+    center: FloatArray
+    """That center in the fixed frame, m: the point whose displacements are the freedoms. Shape (3,)."""
+    bushings: tuple[Bushing, ...]
+    """Its supports on the ground, with damping filled in."""
+    planet_bearings: tuple[PlanetBearing, ...]
+    """Its supports on the carrier's pin, with damping filled in."""
+    frame: int | None
+    """Rotor of the carrier in whose rotating frame it is described."""
+    carrier: int | None
+    """The same for a planet: a rotor off the carrier's axis, which the carrier takes along."""
+    curved: tuple[tuple[FloatArray, float], ...] = ()
+    """Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where no
+    bearing does, with their levers. Tuple of ((5, 5) array, float).
+    """
+    elastic: ElasticShaft | None = None
+    """How its shaft bends and twists; None: rigid."""
+
+    @cached_property
+    def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
+        """All supports."""
+        return (*self.bushings, *self.planet_bearings)
+
+    @cached_property
+    def elastic_count(self) -> int:
+        """Number of elastic coordinates."""
+        return 0 if self.elastic is None else self.elastic.mass.size
+
+    @property
+    def rigid_kinds(self) -> tuple[str, ...]:
+        """Rigid freedoms that bending needs: it is measured against them."""
+        bends = self.elastic is not None and self.elastic.bends
+        return ("x", "y", "tilt_x", "tilt_y") if bends else ()
+
+    def on_shaft(self, position: float) -> float:
+        """Return the position on the shaft nearest to `position`, m from its left end."""
+        return nearest_on(position, self.shaft.length)
+
+    def lever(self, support: Bushing | PlanetBearing) -> float:
+        """Axial distance of `support` from the center of mass, m."""
+        return float(self.shaft.origin[2] + support.position - self.center[2])
+
+    @cached_property
+    def radial_stiffness(self) -> float:
+        """Sum over the supports, N/m."""
+        plain = sum(support.radial_stiffness for support in self.supports)
+        return plain + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
+
+    @cached_property
+    def axial_stiffness(self) -> float:
+        """Sum over the supports, N/m."""
+        plain = sum(support.axial_stiffness for support in self.supports)
+        return plain + sum(float(k[2, 2]) for k, _ in self._matrices)
+
+    @cached_property
+    def elastic_lever(self) -> float:
+        """Axial distance from the center of mass to where a radial force does not tilt the shaft, m."""
+        moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
+        for k, lever in self._matrices:
+            moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
+        return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
+
+    @cached_property
+    def tilt_stiffness(self) -> float:
+        """Moment per tilt about the elastic center, N m/rad."""
+        arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
+        plain = sum(stiffness * arm**2 for stiffness, arm in arms)
+        added = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
+        return plain + sum(
+            0.5 * float((k[0, 0] + k[1, 1]) * a**2 + 2.0 * a * (k[0, 4] - k[1, 3]) + k[3, 3] + k[4, 4])
+            for k, a in added
+        )
+
+    @cached_property
+    def _matrices(self) -> list[tuple[FloatArray, float]]:
+        """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
+        matrices = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
+        return [*matrices, *self.curved]
+
+
+def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
+    """Gather what belongs to `shaft`."""
+    parts = [*shaft.bodies, *((body.inertia, body.position) for body in scene.mounted(shaft.name))]
+    mass = sum(part.mass for part, _ in parts)
+    along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
+    transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)
+    inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
+    center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
+    bushings = [bushing for bushing in scene.ground_bearings if bushing.shaft == shaft.name]
+    bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
+    supports = max(len(bushings) + len(bearings), 1)
+    share, tilting = mass / supports, transverse / supports
+    frame = scene.frame_index(scene.shaft_index(shaft.name))
+    planet = frame is not None and not on_axis(shaft, scene.shafts[frame])
+    return Rotor(
+        shaft=shaft,
+        inertia=inertia,
+        center=center,
+        bushings=tuple(_damped(bushing, share, tilting) for bushing in bushings),
+        planet_bearings=tuple(_damped(bearing, share, tilting) for bearing in bearings),
+        frame=frame,
+        carrier=frame if planet else None,
+    )
+
+
+def _damped(support: Support, share: float, tilting: float) -> Support:
+    """Fill in the damping that follows from the damping ratio; that of a matrix in proportion to it.
+
+    `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
+    where the matrix holds tilt alone.
+    """
+
+    def damping(stated: float | None, stiffness: float) -> float:
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if stated is None else stated
+
+    support = replace(
+        support,
+        radial_damping=damping(support.radial_damping, support.radial_stiffness),
+        axial_damping=damping(support.axial_damping, support.axial_stiffness),
+    )
+    if support.stiffness is None or support.damping is not None:
+        return support
+    matrix = support.added_stiffness
+    largest, inertia = float(np.max(np.diag(matrix)[:3])), share
+    if largest == 0.0:
+        largest, inertia = float(np.max(np.diag(matrix)[3:])), tilting
+    time = 2.0 * support.damping_ratio * float(np.sqrt(inertia / largest)) if largest > 0.0 else 0.0
+    return replace(support, damping=matrix_rows(time * matrix))

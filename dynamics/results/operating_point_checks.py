@@ -1,0 +1,93 @@
+"""Checks of a run on tables that are read at one misalignment or center distance."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bounds import engineering
+from dynamics.assembly.assemble import System
+from dynamics.mechanism.additions import MISALIGNMENT
+from dynamics.mechanism.flank_gradients import distance_gradient, misalignment_gradient
+from dynamics.meshes import GearMesh
+from dynamics.meshes.technique import table_at_operating_point
+from dynamics.motion.sampled_states import States
+from dynamics.results.checks import Check, SeriesBlock
+from dynamics.results.histories import FIELDS
+from dynamics.types import FloatArray
+
+USUAL_TOLERANCE = 0.01
+"""Relative change of the mean transmission error that may pass where no tolerance was requested."""
+
+WHAT = ("tilt", "center distance")
+
+
+class HeldOperatingPointChecks:
+    """Gathers, block by block, how far bodies moved along axes of tables that did not follow them."""
+
+    def __init__(self, system: System) -> None:
+        self._system = system
+        self._watched = [  # axes that are not followed, and the derivative of each in the freedoms (n,)
+            (axis, index, _gradient(system, axis, index))
+            for axis, field in enumerate(FIELDS)
+            for index, mesh in enumerate(system.scene.meshes)
+            if any(
+                row.possible and not row.on for row in system.ledger.adding(field) if row.part == mesh.name
+            )
+        ]
+        self._range = [(0.0, 0.0)] * len(self._watched)
+
+    def see(self, _series: SeriesBlock, states: States) -> None:
+        """Widen the range of the operating points by a block of states."""
+        for k, (_, _, gradient) in enumerate(self._watched):
+            point = states.q @ gradient[: states.q.shape[1]]
+            low, high = self._range[k]
+            self._range[k] = (
+                float(np.min(point, initial=low)),
+                float(np.max(point, initial=high)),
+            )
+
+    def checks(self) -> list[Check]:
+        """Return one per mesh and axis.
+
+        ``farthest`` is how far the bodies moved in m, ``change`` how much that changes the mean transmission
+        error of the nominal force, of its value.
+        """
+        pairs = zip(self._watched, self._range, strict=True)
+        return [self._check(axis, mesh, max(span, key=abs)) for (axis, mesh, _), span in pairs]
+
+    def _check(self, axis: int, index: int, farthest: float) -> Check:
+        system, quantity = self._system, WHAT[axis]
+        mesh, force = system.scene.meshes[index], float(system.flanks.nominal_force[index])
+        change = _change(mesh, force, axis, farthest)
+        reported = (
+            f"bodies moved by up to {farthest:.3g} m, which "
+            f"changes the mean by {engineering(100.0 * change, 2)} %"
+        )
+        return Check(
+            system.ledger.effect_adding(FIELDS[axis]),
+            f"{quantity} stays at the operating point",
+            mesh.name,
+            abs(change) <= (system.scene.tolerance or USUAL_TOLERANCE),
+            reported,
+            {"farthest": farthest, "change": change},
+        )
+
+
+def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
+    """Return the relative change of the mean transmission error at `force` by `moved` (m) along an axis."""
+    level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
+    point = np.array([mesh.misalignment, mesh.center_distance_change])
+    means = [
+        float(np.mean(table_at_operating_point(mesh.table, *at).deflection[..., level]))
+        for at in (point, point + moved * np.eye(2)[axis])
+    ]
+    return means[1] / means[0] - 1.0 if means[0] != 0.0 else 0.0
+
+
+def _gradient(system: System, axis: int, index: int) -> FloatArray:
+    """Return the derivative of a mesh's operating point on an axis in the free freedoms, (n,)."""
+    scene, rotors, line = system.scene, system.rotors, system.lines[index]
+    if FIELDS[axis] == MISALIGNMENT:
+        sense = system.kinematics.mesh_sense[index]
+        return system.freedoms.keep(misalignment_gradient(scene, rotors, index, line, sense))
+    return system.freedoms.keep(distance_gradient(scene, rotors, index, line))

@@ -1,0 +1,118 @@
+"""Datasets of universal files: 58 (function at a nodal degree of freedom), 164 (units), 2411 (nodes)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from dynamics.types import FloatArray
+
+DOUBLE = 4  # ordinates are real, double precision
+
+
+EVEN = 1  # abscissa by its first value and its increment
+
+
+NO_AXIS = (0, 0, 0, "NONE", "NONE")
+SPECTRUM = "amplitude (peak), Hann window"
+
+
+class FunctionType(IntEnum):
+    """Kinds of function of dataset 58."""
+
+    TIME_RESPONSE = 1
+    SPECTRUM = 12
+    ORDER = 24
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """An axis of dataset 58."""
+
+    code: int
+    """Specific data type: 8 displacement, 9 reaction force, 12 acceleration, 17 time, 18 frequency, 19
+    revolutions per minute, 20 order.
+    """
+    length: int
+    force: int
+    """`length`, `force`: Exponents of the units of length and force."""
+    label: str
+    unit: str
+    """`label`, `unit`: At most 20 characters."""
+
+
+@dataclass(frozen=True)
+class NodalFunction:
+    """A function for dataset 58."""
+
+    kind: FunctionType
+    lines: tuple[str, ...]
+    """Up to five lines of text."""
+    entity: str
+    """Name of the response, at most 10 characters."""
+    node: int
+    direction: int
+    """`node`, `direction`: Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
+    """
+    abscissa: Quantity
+    ordinate: Quantity
+    first: float
+    increment: float
+    """`first`, `increment`: Of the abscissa; the file keeps six digits."""
+    values: FloatArray
+    """Shape (N,)."""
+
+
+def units_dataset() -> str:
+    """Return dataset 164: the units of the file, SI."""
+    factors = "".join(f"{value:25.16E}" for value in (1.0, 1.0, 1.0)).replace("E", "D")
+    offset = f"{273.15:25.16E}".replace("E", "D")
+    return _dataset(164, [f"{1:10d}{'SI: Meter (newton)':<20}{2:10d}", factors, offset])
+
+
+def nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
+    """Return dataset 2411: labels and positions (3,) in m, in the fixed frame."""
+    records = []
+    for label, origin in nodes:
+        records.append(f"{label:10d}{1:10d}{1:10d}{11:10d}")
+        records.append("".join(f"{value:25.16E}" for value in origin).replace("E", "D"))
+    return _dataset(2411, records)
+
+
+def function_dataset(function: NodalFunction) -> str:
+    """Return dataset 58: a function at a nodal degree of freedom."""
+    lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
+    entity = f"{function.entity[:10]:<10}"
+    node = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"
+    form = f"{DOUBLE:10d}{function.values.size:10d}{EVEN:10d}"
+    axes = [_axis(quantity) for quantity in (function.abscissa, function.ordinate, None, None)]
+    return _dataset(
+        58,
+        [
+            *lines,
+            f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{node}",
+            f"{form}{function.first:13.5E}{function.increment:13.5E}{0.0:13.5E}",
+            *axes,
+            *_numbers(function.values),
+        ],
+    )
+
+
+def _axis(quantity: Quantity | None) -> str:
+    code, length, force, label, unit = vars(quantity).values() if quantity else NO_AXIS
+    return f"{code:10d}{length:5d}{force:5d}{0:5d} {label[:20]:<20} {unit[:20]:<20}"
+
+
+def _numbers(values: FloatArray) -> list[str]:
+    """Four numbers a record."""
+    whole = values.size // 4 * 4
+    rows = (("%20.12E" * 4 + "\n") * (whole // 4) % tuple(values[:whole])).splitlines()
+    rest = values[whole:]
+    return [*rows, "%20.12E" * rest.size % tuple(rest)] if np.size(rest) else rows
+
+
+def _dataset(number: int, records: list[str]) -> str:
+    return "\n".join([f"{-1:6d}", f"{number:6d}", *records, f"{-1:6d}"]) + "\n"

@@ -1,0 +1,143 @@
+"""The transmission error of a contact model without finite elements, in milliseconds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    PatchRule,
+    Slices,
+    Start,
+    contact_candidates,
+    in_pitches,
+    solve_contact,
+    with_compliances,
+    with_flanks,
+)
+from fe_contact.effects.influence.slice_compliance import slice_compliance
+from fe_contact.effects.influence.tooth_bending import half_plane
+from fe_contact.geometry import ParallelAxes
+from fe_contact.hertz import contact_modulus
+from fe_contact.types import FloatArray, IntArray
+
+PLANE_POSITIONS, FACE_POSITIONS = 64, 32
+
+
+FACE_SLICES = 11
+
+
+MOST_PITCHES = 32
+"""Base pitches looked at where teeth differ."""
+
+
+_PATCH, _EDGE = 0.15, 0.0125
+"""Half-width of the load patches and their length at an edge, modules."""
+
+
+_MOST_STEPS, _EVEN = 512, 3
+
+
+UNEVEN_PITCHES = 4
+"""Base pitches looked at beside these, those of the teeth that deviate most."""
+
+
+Both = tuple[FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class EstimatedCurve:
+    """Mean and peak-to-peak of the transmission error at each load (L,), m."""
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Slice models of one pair; what states of it have in common is assembled once."""
+
+    pair: ParallelAxes
+    _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
+    _plain: dict[tuple[bool, bool], Candidates] = field(default_factory=dict, repr=False)
+    _last: dict[tuple[object, ...], Start] = field(default_factory=dict, repr=False)
+
+    def curve(self, model: ContactModel, load: FloatArray) -> EstimatedCurve:
+        """Solve the contact of springs at normal forces (L,) in N, increasing.
+
+        Everything but the compliance is that of the contact analysis: candidates, gaps, shafts, local
+        approach.
+        """
+        problem, count = self.problem(model), _positions(model)
+        if model.tooth_gaps:
+            pitches = np.union1d(
+                spread_pitches([term.period for term in model.tooth_gaps]), _uneven_pitches(self.pair, model)
+            )
+            problem = in_pitches(self.pair, problem, model, np.repeat(pitches, count))
+        key = repr(model.gaps), problem.candidates.position.size, load.size
+        solution = solve_contact(problem, load, self._last.get(key))
+        self._last[key] = Start(problem.candidates, solution.force)
+        curve = solution.deflection  # (P, L), m; started from the last one with the same gaps
+        return EstimatedCurve(np.nanmean(curve, axis=0), np.nanmax(curve, axis=0) - np.nanmin(curve, axis=0))
+
+    def problem(self, model: ContactModel) -> ContactProblem:
+        """Return the contact problem of one base pitch with the gaps and compliances of a model."""
+        problem = with_compliances(self.pair, self._springs(model), model)
+        return with_flanks(self.pair, problem, model)
+
+    def _springs(self, model: ContactModel) -> ContactProblem:
+        """Return the springs of a model in one base pitch, flanks as plain involutes."""
+        bodies = (model.couple_teeth, model.finite_width, model.parts)
+        key = (model.corner_contact, model.across_face, *bodies)
+        if key not in self._known:
+            plain = self._candidates(model)
+            compliance = slice_compliance(self.pair, plain.slices, model)
+            modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
+            planes = half_plane(self.pair.pinion), half_plane(self.pair.wheel)
+            self._known[key] = ContactProblem(plain, compliance, modulus, *planes)
+        return self._known[key]
+
+    def _candidates(self, model: ContactModel) -> Candidates:
+        key = model.corner_contact, model.across_face
+        if key not in self._plain:
+            module, count = self.pair.pinion.normal_module, _positions(model)
+            rule = PatchRule(_PATCH * module, _EDGE * module)
+            slices = Slices.of_pair(self.pair, FACE_SLICES if model.across_face else 1)
+            self._plain[key] = contact_candidates(self.pair, model, np.arange(count) / count, rule, slices)
+        return self._plain[key]
+
+
+def spread_pitches(periods: Sequence[int]) -> IntArray:
+    """Return at most `MOST_PITCHES` base pitches of gears that repeat after so many, by equal steps.
+
+    Of all steps the one by which both gears stand most evenly at all their angles, and against each other:
+    the orders up to `_EVEN` of both, their sums and differences have the least mean.
+    """
+    whole = math.lcm(*periods)
+    if whole <= MOST_PITCHES:
+        return np.arange(whole)
+    rates = np.zeros(1)
+    for period in {*periods} - {1}:
+        rates = np.add.outer(rates, np.arange(-_EVEN, _EVEN + 1) / period).ravel()
+    rates = rates[np.abs(rates) > 1e-12]
+    step, index = np.arange(1, min(whole, _MOST_STEPS)), np.arange(MOST_PITCHES)
+    angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
+    steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
+    return np.sort(index * step[int(steadiness.argmin())] % whole)
+
+
+def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:
+    """Return the base pitches in which pair 0 deviates most from the nominal flanks."""
+    extent = model.extent(pair, np.arange(model.period))
+    reach = np.maximum(np.asarray(extent.high), -np.asarray(extent.low))
+    return np.argsort(-reach, kind="stable")[:UNEVEN_PITCHES]
+
+
+def _positions(model: ContactModel) -> int:
+    return FACE_POSITIONS if model.across_face else PLANE_POSITIONS

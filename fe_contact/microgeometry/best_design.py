@@ -1,0 +1,144 @@
+"""The best design of all searches, assessed by full analyses of it and of the design to begin with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.errors import SolveError
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
+from fe_contact.microgeometry.design_memory import DesignMemory
+from fe_contact.microgeometry.design_problem import SLACK, DesignProblem
+from fe_contact.microgeometry.design_study import DesignStudy
+from fe_contact.microgeometry.optimization import OptimizationRequest, Perturbation
+from fe_contact.microgeometry.scatter import Scatter
+from fe_contact.microgeometry.search import Search, SearchRun, search_from
+from fe_contact.microgeometry.search_methods import Cancel, SequentialLinearProgramming
+from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.options import Run
+from model_studies.stage_clock import StageClock
+from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
+
+REFINED = 4
+"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
+
+
+ROUNDS = 3
+"""How often: the full analysis of another design has positions of its own, which join those of all before."""
+
+
+STEP = 0.05
+"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Both designs in full, and the search that the better one came from: `best` is its run of `problem`."""
+
+    problem: DesignProblem
+    start: ConfirmedDesign
+    optimum: ConfirmedDesign
+    runs: tuple[SearchRun, ...]
+    best: int
+
+    @property
+    def run(self) -> SearchRun:
+        """The search that counts."""
+        return self.runs[self.best]
+
+
+def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None) -> DesignProblem:
+    """Return the problem of the search, its scale the start inside the bounds.
+
+    `memory` is a directory of designs that were assessed before. Raises `SolveError`: its contact cannot be
+    solved.
+    """
+    problem = DesignProblem(
+        study.evaluator, request.variables, request.limits, 1.0, objective=request.objective
+    )
+    if memory is not None:
+        problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
+    assessed = problem.assess(problem.place(request.own))
+    if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
+        raise SolveError("the contact of the start design cannot be solved at every position and load")
+    return replace(problem, scale=assessed.objective)
+
+
+def choose(
+    problem: DesignProblem,
+    runs: tuple[SearchRun, ...],
+    request: OptimizationRequest,
+    study: DesignStudy,
+    clock: StageClock,
+    run: Run,
+    cancel: Cancel,
+) -> Choice:
+    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all."""
+    best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
+    with clock.stage("confirmation"):
+        own = dict(zip(problem.names, request.own, strict=True))
+        designs = own, problem.values(runs[best].place)
+        seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, run.cache).cpu_seconds
+        shared = problem, study, run.cache
+        start, optimum = divided(to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
+    choice = Choice(problem, start, optimum, runs, best)
+    for _ in range(ROUNDS):
+        if choice.optimum.violation <= SLACK or choice.run.assessed.violation > SLACK or cancel():
+            break
+        choice = _refined(choice, request.search, study, clock, run, cancel)
+    return choice
+
+
+def _confirmed(
+    shared: tuple[DesignProblem, DesignStudy, Path | None], values: dict[str, float]
+) -> ConfirmedDesign:
+    """Analyze a design in full: one task."""
+    problem, study, cache = shared
+    return confirm(problem, values, study, cache)
+
+
+def _refined(
+    choice: Choice, search: Search, study: DesignStudy, clock: StageClock, run: Run, cancel: Cancel
+) -> Choice:
+    """Search on from a design that exceeds the limits between the positions of the search."""
+    shorter = replace(
+        search,
+        method=SequentialLinearProgramming(sample=0),
+        evaluations=max(1, search.evaluations // REFINED),
+    )
+    seen = choice.problem.evaluator.position, choice.optimum.harris_map.position
+    evaluator = choice.problem.evaluator.at(np.union1d(*seen))
+    problem = replace(choice.problem, evaluator=evaluator)
+    with clock.stage("search"):
+        place, workers = choice.run.place, run.workers
+        further = search_from(problem, shorter, place, search.starts, cancel=cancel, workers=workers)
+    with clock.stage("confirmation"):
+        optimum = confirm(problem, problem.values(further.place), study, run.cache)
+    return Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
+
+
+def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: DesignVariable) -> Perturbation:
+    """Take a step of one variable from the best design of a run to both sides: one task."""
+    problem, run, scatter = best
+    values = problem.values(run.place)
+    step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
+    ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
+    changes = []
+    for end in ends:
+        evaluation = problem.evaluator.evaluate(values | {variable.name: end})
+        changes.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
+    return Perturbation(variable.name, *ends, *changes)
+
+
+def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
+    """Return who does what follows a search: this process once that is cancelled."""
+    if cancel() or isinstance(workers, InProcess):
+        return InProcess()
+
+    def told(lost: WorkersLost) -> None:
+        if not cancel():
+            raise lost
+
+    return OrHere(workers, told)

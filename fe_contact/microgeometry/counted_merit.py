@@ -1,0 +1,146 @@
+"""The merit of designs as a search sees it: counted, remembered, and ended with the budget."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+import numpy as np
+
+from fe_contact.microgeometry.design_problem import SLACK, USUAL_DESIGNS, Assessed, Merit, SearchProblem
+from fe_contact.types import FloatArray
+from model_studies.workers import InProcess, Workers, divided, pays, spent
+
+Design = tuple[Assessed, FloatArray]
+
+
+class BudgetUsed(Exception):
+    """All designs that may be evaluated were."""
+
+
+class Cancelled(Exception):
+    """Somebody requested the search to end."""
+
+
+class Budget:
+    """Designs that one search may evaluate, of whatever cost.
+
+    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
+    reported.
+    """
+
+    def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
+        self.total, self.used = total, 0
+        self.cancelled, self._report = cancel, report
+
+    def take(self, most: int) -> None:
+        """Take one design, if fewer than `most` were taken; raises `BudgetUsed` or `Cancelled`."""
+        if self.cancelled():
+            raise Cancelled
+        if self.used >= min(most, self.total):
+            raise BudgetUsed
+        self.used += 1
+
+    def tell(self) -> None:
+        """Report what is used."""
+        self._report(self.used / self.total)
+
+
+class CountedMerit:
+    """Merit of a point (d,) in the unit cube.
+
+    Parameters
+    ----------
+    most : int
+        It raises `BudgetUsed` when so many designs of the budget are used.
+    workers : Workers
+        Who assesses designs, and walks, that do not wait for each other.
+
+    Attributes
+    ----------
+    designs : list of (Assessed, ndarray)
+        In their order.
+    ends : list of (Assessed, ndarray)
+        Those of them at which walks ended.
+    """
+
+    def __init__(
+        self,
+        problem: SearchProblem,
+        budget: Budget,
+        most: int,
+        workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    ) -> None:
+        self.problem, self.workers, self._seconds = problem, workers, 0.0
+        self.designs: list[Design] = []
+        self.ends: list[Design] = []
+        self._budget, self._most = budget, most
+
+    def __call__(self, point: FloatArray) -> float:
+        """Assess a design."""
+        self._budget.take(self._most)
+        return self._counted(self.problem.assess(point), point)
+
+    def linearize(self, point: FloatArray) -> tuple[float, Merit]:
+        """Assess a design, and return its merit with what is known about it to first order."""
+        self._budget.take(self._most)
+        began = spent(self.workers)
+        assessed, merit = self.problem.linearize(point, self.workers if self.divides else InProcess())
+        self._seconds = spent(self.workers) - began
+        return self._counted(assessed, point), merit
+
+    @property
+    def divides(self) -> bool:
+        """Whether it pays to give workers parts of walks, by the last design that was linearized."""
+        return pays(self.workers, self._seconds * USUAL_DESIGNS)
+
+    def each(self, points: Sequence[FloatArray]) -> Iterator[float]:
+        """Assess designs, as far as the budget reaches; those in the memory cost nothing, and stay here."""
+        results = divided(self.workers, _assess, self.problem, points[: self.left])
+        for point in points:
+            self._budget.take(self._most)
+            yield self._counted(next(results), point)
+
+    @property
+    def left(self) -> int:
+        """Designs that may still be evaluated."""
+        return max(0, min(self._most, self._budget.total) - self._budget.used)
+
+    def replay(self, designs: Iterable[Design]) -> None:
+        """Count designs that a worker assessed."""
+        for assessed, point in designs:
+            self._budget.take(self._most)
+            self._counted(assessed, point)
+
+    def _counted(self, assessed: Assessed, point: FloatArray) -> float:
+        """Count and remember a design; return its merit."""
+        self.designs.append((assessed, np.clip(point, 0.0, 1.0)))
+        self.problem.keep(point, assessed)
+        self._budget.tell()
+        return assessed.merit
+
+    def end(self, point: FloatArray) -> None:
+        """Remember the design at which a walk ended."""
+        self.ends.append(next(own for own in reversed(self.designs) if np.array_equal(own[1], point)))
+
+    @property
+    def levels(self) -> tuple[float, ...]:
+        """Objectives at which walks ended that exceed the limits by hardly more than the best of them."""
+        least = min((own.violation for own, _ in self.ends), default=0.0) + SLACK
+        return tuple(own.objective for own, _ in self.ends if own.violation <= least)
+
+    @property
+    def best(self) -> Design | None:
+        """The first of its designs by their order; None before any."""
+        return min(self.designs, key=lambda design: design[0].order, default=None)
+
+    @property
+    def spread(self) -> float:
+        """Largest less least objective of its designs that could be assessed."""
+        known = [own.objective for own, _ in self.designs if math.isfinite(own.objective)]
+        return max(known) - min(known) if known else 0.0
+
+
+def _assess(problem: SearchProblem, point: FloatArray) -> Assessed:
+    """Assess a design: one task."""
+    return problem.assess(point)

@@ -1,0 +1,99 @@
+"""Assessed designs on disk: a search that was killed, or may use more evaluations, continues."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import struct
+import zlib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from bounds import written
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.optimization import OptimizationRequest
+from fe_contact.solver_version import SOLVER_VERSION
+from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.types import FloatArray
+
+KEPT_FILES = 200
+"""Newest files that a directory keeps: about 0.1 MB for a thousand designs each."""
+
+
+_FOUND = struct.Struct("<ddQ")  # objective, violation, checksum
+
+
+_POSITIONS = 8  # bytes of their digest
+Figures = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class DesignMemory:
+    """Objective in m and violation of designs of one problem, `known` by their values and the positions."""
+
+    file: Path
+    known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, directory: Path, request: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
+        """Open the file of a problem; one that is damaged counts up to the damage."""
+        digest = hashlib.sha256()
+        contact = evaluator.contact
+        for body in contact.plane or ():
+            digest.update(body.matrix.tobytes())
+        for solid in contact.face or ():
+            digest.update(solid.blocks.tobytes())
+        content = {
+            "pair": written(request.pair),
+            "variables": [variable.name for variable in request.variables],
+            "bodies": digest.hexdigest(),
+            "effects": dict(evaluator.choices),
+            "load": evaluator.load.tolist(),
+            "misalignment": evaluator.misalignment.tolist(),
+            "scatter": request.scatter.to_json(),
+            "objective": request.objective.to_json(),
+            "limits": request.limits.to_json(),
+        }
+        key = content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)
+        memory = cls(directory / f"designs-{key}.bin")
+        with contextlib.suppress(OSError):
+            directory.mkdir(parents=True, exist_ok=True)
+            files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
+            for file in files[:-KEPT_FILES]:
+                file.unlink(missing_ok=True)
+            memory._read(_POSITIONS + 8 * len(request.variables))
+        return memory
+
+    def find(self, values: FloatArray, position: FloatArray) -> Figures | None:
+        """Return what is known of a design (d,) in m at some positions."""
+        return self.known.get(_name(values, position))
+
+    def add(self, values: FloatArray, position: FloatArray, figures: Figures) -> None:
+        """Keep a design; where the file cannot be written it is kept in this process."""
+        name = _name(values, position)
+        self.known[name] = figures
+        text = name + struct.pack("<dd", *figures)
+        record = text + struct.pack("<Q", zlib.crc32(text))
+        with contextlib.suppress(OSError), self.file.open("ab", buffering=0) as stream:
+            stream.write(record)  # one write: whole, or the last of the file
+
+    def _read(self, name_size: int) -> None:
+        """Read whole records, and cut off what a killed writer left of one."""
+        size, text = name_size + _FOUND.size, self.file.read_bytes() if self.file.exists() else b""
+        whole = 0
+        for begin in range(0, len(text) - size + 1, size):
+            record = text[begin : begin + size]
+            objective, violation, checksum = _FOUND.unpack(record[name_size:])
+            if zlib.crc32(record[: name_size + 16]) != checksum:
+                break
+            self.known[record[:name_size]] = objective, violation
+            whole = begin + size
+        if whole < len(text):
+            os.truncate(self.file, whole)
+
+
+def _name(values: FloatArray, position: FloatArray) -> bytes:
+    return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()

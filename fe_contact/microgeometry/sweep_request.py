@@ -1,0 +1,144 @@
+"""The request of a sweep: one or two axes over operating conditions and figures of the flanks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+
+from fe_contact.analysis.request.request import Checked
+from fe_contact.analysis.request.request_check import check_request
+from fe_contact.errors import InputError, increasing
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.scatter import MISALIGNMENT
+from fe_contact.microgeometry.variables import GEARS, DesignVariable, check_variables, modified
+from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
+from fe_contact.types import FloatArray
+
+TORQUE, CENTER_DISTANCE = "torque", "center_distance_change"
+
+
+CONDITIONS = (TORQUE, MISALIGNMENT, CENTER_DISTANCE)
+"""Operating conditions that a sweep can vary."""
+
+
+MOST_POINTS = 4096
+
+
+Values = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class SweepAxis:
+    """An axis of a sweep."""
+
+    name: str
+    """One of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone: of both gears alike.
+    """
+    values: tuple[float, ...]
+    """Increasing, at least two; N m, or m."""
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Figures of the flanks that it sets, ``gear.quantity``."""
+        if self.name in CONDITIONS:
+            return ()
+        return (self.name,) if "." in self.name else tuple(f"{gear}.{self.name}" for gear in GEARS)
+
+    @property
+    def largest(self) -> float:
+        """The value that acts most."""
+        return max(self.values, key=abs)
+
+
+@dataclass(frozen=True)
+class SweepRequest:
+    """A pair, and what of it is swept."""
+
+    pair: ParallelAxes
+    """Its own modifications hold where they are not swept."""
+    axes: tuple[SweepAxis, ...]
+    """One or two."""
+    point: OperatingPoint
+    """Holds where it is not swept."""
+    options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
+    """`positions`, `receipt` and `on_violation` do not count. Model and mesh are chosen once, for the values
+    that act most.
+    """
+
+    @property
+    def torques(self) -> FloatArray:
+        """Torques (L,) at which every design is solved at once, N m."""
+        axis = next((axis for axis in self.axes if axis.name == TORQUE), None)
+        point = self.point
+        own = point.torque if point.torque is not None else self.pair.torque(point.normal_force or 0.0)
+        return np.array([own] if axis is None else axis.values, dtype=np.float64)
+
+    @property
+    def designs(self) -> tuple[dict[str, float], ...]:
+        """Every combination of the values of the other axes by name, those of the first slowest."""
+        others = [axis for axis in self.axes if axis.name != TORQUE]
+        names = [axis.name for axis in others]
+        return tuple(
+            dict(zip(names, values, strict=True)) for values in product(*(axis.values for axis in others))
+        )
+
+    def flanks(self, design: Values) -> ParallelAxes:
+        """Return the pair with the flanks of a design."""
+        figures = {
+            variable: design[axis.name]
+            for axis in self.axes
+            for variable in axis.variables
+            if axis.name in design
+        }
+        return modified(self.pair, figures)
+
+    def alignment(self, design: Values) -> tuple[float, float]:
+        """Return misalignment and change of the center distance of a design, m."""
+        skew, change = self.point.misalignment, self.point.center_distance_change
+        return design.get(MISALIGNMENT, skew), design.get(CENTER_DISTANCE, change)
+
+    @cached_property
+    def checked(self) -> Checked:
+        """The request of the design that acts most: everything is checked, nothing computed.
+
+        Raises `InputError`: no axis, more than two or one twice, too many points, or a value that cannot be
+        used.
+        """
+        self._check_axes()
+        variables = [
+            DesignVariable(name, axis.values[0], axis.values[-1])
+            for axis in self.axes
+            for name in axis.variables
+        ]
+        if variables:
+            check_variables(self.pair, variables)
+        for design in self.designs:
+            self.flanks(design)
+        acting = {axis.name: axis.largest for axis in self.axes}
+        over = {axis.name: axis.values for axis in self.axes}
+        axes = TableAxes(
+            self.torques,
+            misalignments=over.get(MISALIGNMENT, (self.point.misalignment,)),
+            center_distance_changes=over.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
+        )
+        options = replace(self.options, positions=None, receipt="full", on_violation="report")
+        return check_request(self.flanks(acting), axes, options, whole_table=False, neglect=False)
+
+    def _check_axes(self) -> None:
+        names = [axis.name for axis in self.axes]
+        if not 1 <= len(names) <= 2:
+            raise InputError("axes", names, "one or two")
+        varied = [name for axis in self.axes for name in axis.variables or (axis.name,)]
+        for name in varied:
+            if varied.count(name) > 1:
+                raise InputError("axes", name, "varied by one axis")
+        for axis in self.axes:
+            if increasing(f"axes.{axis.name}", axis.values).size < 2:
+                raise InputError(f"axes.{axis.name}", list(axis.values), "at least two values")
+        points = int(np.prod([len(axis.values) for axis in self.axes]))
+        if points > MOST_POINTS:
+            raise InputError("axes", points, f"at most {MOST_POINTS} points", "Take larger steps.")

@@ -1,0 +1,79 @@
+"""Mean and peak-to-peak transmission error as expected before anything is computed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.allowed_error import RELATIVE, AllowedError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.discretization import FaceDiscretization
+from fe_contact.planning.model_error import helical_share
+from fe_contact.planning.plan import Plan
+from fe_contact.types import FloatArray
+
+_PLANE_RIPPLE, _SPUR_RIPPLE, _HELICAL_RIPPLE = 0.4, 0.4, 0.15
+"""Peak-to-peak over mean of usual pairs: in the plane, over the face of spur and of helical pairs."""
+
+
+PLANE = {"draft": (8e-4, 1.2e-3), "standard": (2.6e-4, 2.6e-4), "fine": (5.4e-5, 5e-5)}
+
+
+SPUR = {"draft": (2.2e-3, 1.1e-3), "standard": (1.1e-3, 6e-4), "fine": (4.6e-4, 4.6e-4)}
+
+
+HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 8.5e-4), "fine": (8e-4, 4e-4)}
+
+
+RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 4.5e-4), "fine": (6e-4, 2.3e-4)}
+"""Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
+of spur pairs; of helical pairs with plain and with modified profiles, whose contact lines end under less
+load."""
+
+
+HELICAL_SLICES, SPUR_SLICES, SLICES = 7e-4, 5e-5, 15
+"""Peak-to-peak at so many slices in parts of the same: of helical pairs times the overlap ratio."""
+
+
+CORRECTION = 0.03
+"""Error of the correction for a finite width over what it is expected to correct."""
+
+
+WIDTH_RIPPLE = 0.45
+"""Peak-to-peak over mean of usual spur pairs."""
+
+
+PLANE_POSITIONS, FACE_POSITIONS = 0.14, 0.55
+"""Error of peak-to-peak between positions over what their search allows."""
+
+
+@dataclass(frozen=True)
+class ExpectedCurves:
+    """Mean and peak-to-peak STE of some curves of a table."""
+
+    force: FloatArray
+    """Normal force, N. Shape (C,)."""
+    added: FloatArray
+    """Mean less that at no load, m. Shape (C,)."""
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    """`mean`, `peak_to_peak`: m. Shape (C,) each."""
+    allowed: AllowedError
+    """Says below which size errors count absolutely."""
+    absolute: bool = True
+    """Whether these are sizes of the case; False: parts of its mean, as usual pairs have them."""
+
+    @property
+    def scale(self) -> FloatArray:
+        """Sizes (2, C) of which errors of mean and peak-to-peak are parts, m."""
+        return self.allowed.scale(np.stack([self.mean, self.peak_to_peak]))
+
+
+def usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
+    """Return those of usual pairs, whose mean is 1."""
+    unity = np.ones(plan.load.size)
+    across_face = isinstance(plan.discretization, FaceDiscretization)
+    spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE
+    ripple = spur + helical_share(pair) * (_HELICAL_RIPPLE - spur)
+    return ExpectedCurves(plan.load, unity, unity, ripple * unity, RELATIVE, absolute=False)

@@ -1,0 +1,155 @@
+"""Prediction of the error that a run will state of a model, a mesh and slices."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds import engineering
+from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.planning.discretization import SLICE_ORDER, FaceDiscretization
+from fe_contact.planning.expected_curves import (
+    CORRECTION,
+    FACE_POSITIONS,
+    HELICAL,
+    HELICAL_SLICES,
+    PLANE,
+    PLANE_POSITIONS,
+    RELIEVED,
+    SLICES,
+    SPUR,
+    SPUR_SLICES,
+    WIDTH_RIPPLE,
+    ExpectedCurves,
+    usual_curves,
+)
+from fe_contact.planning.model_error import helical_share, in_small_displacements, model_errors
+from fe_contact.planning.plan import Plan
+from fe_contact.planning.plane_bias import plane_bias
+from fe_contact.ste.plane_bias import PlaneBias
+from fe_contact.types import FloatArray, Json
+
+
+@dataclass(frozen=True)
+class ExpectedError:
+    """Error of mean or peak-to-peak STE, whichever is worse, at the load where it is largest.
+
+    Parts are of the size that a tolerance counts by: of the quantity or, where that is less, of the size at
+    which the floor holds.
+    """
+
+    mesh: float
+    """Finite elements."""
+    slices: float
+    """Slices of the face; 0 in the plane."""
+    positions: float
+    """Interpolation between positions."""
+    plane: float
+    """The plane standing in for three dimensions."""
+    method: float
+    """What the method leaves out of full contact, whatever the mesh (`model_error`)."""
+    mean: float | None = None
+    peak_to_peak: float | None = None
+    """`mean`, `peak_to_peak`: The largest errors over the loads without `bias`, m; None where no size is
+    known before the run.
+    """
+    chosen: bool = False
+    """Whether the caller chose the model, so that no run of this request lowers `plane`."""
+    bias: PlaneBias | None = None
+    """What a plane leaves out where it is not corrected; `plane` is its size then."""
+
+    @property
+    def numerical(self) -> float:
+        """The part that finer meshes, more slices and positions lower."""
+        return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
+
+    @property
+    def bought(self) -> float:
+        """The part that work lowers, to which a tolerance applies: with the plane, unless it was chosen."""
+        return self.numerical if self.chosen else float(np.hypot(self.numerical, self.plane))
+
+    @property
+    def words(self) -> str:
+        """What a tolerance applies to."""
+        plane = f", with the plane {percent(self.bought)} %" if self.bought > self.numerical else ""
+        return f"{percent(self.numerical)} %{plane}"
+
+    @property
+    def total(self) -> float:
+        """Of all, which are independent of each other."""
+        return float(np.sqrt(self.numerical**2 + self.plane**2 + self.method**2))
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        names = ("mesh", "slices", "positions", "numerical", "plane", "method", "total")
+        parts: Json = {name: getattr(self, name) for name in names}
+        parts["bias"] = self.bias and self.bias.to_json()
+        return parts | {"mean_m": self.mean, "peak_to_peak_m": self.peak_to_peak}
+
+
+def expected_error(
+    pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None = None, *, bound: bool = False
+) -> ExpectedError:
+    """Say the error of a plan.
+
+    Parameters
+    ----------
+    curves : ExpectedCurves, optional
+        What is known of mean and peak-to-peak before the run; default: those of usual pairs.
+    bound : bool
+        The caller chose the model.
+    """
+    known = curves or usual_curves(pair, plan)
+    parts, values = _parts(pair, plan, known), np.stack([known.mean, known.peak_to_peak])
+    relative = np.sqrt(sum(np.square(part) for part in parts.values())) / known.scale
+    if bias := plane_bias(pair, plan.discretization):
+        bias = bias.of_curves(*values) if known.absolute and _modified(pair) else bias
+    counted = [part for name, part in parts.items() if not (bias and name == "plane")]
+    absolute = np.sqrt(sum(np.square(part) for part in counted))
+    worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
+    at_worst = {name: float((part / known.scale)[worst]) for name, part in parts.items()}
+    mean, ripple = (float(value) for value in absolute.max(axis=1)) if known.absolute else (None, None)
+    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias)
+
+
+def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
+    """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
+    if not isinstance(plan.discretization, FaceDiscretization):
+        return PLANE[plan.level]
+    helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]
+    mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(SPUR[plan.level], wound, strict=True))
+    return mean, ripple
+
+
+def _modified(pair: ParallelAxes) -> bool:
+    return any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
+
+
+def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
+    """Return the errors of mean and peak-to-peak by source, each (2, C) in m."""
+    made = plan.discretization
+    mean, ripple = known.mean, known.peak_to_peak
+    values = np.stack([mean, ripple])
+    by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
+    nothing = np.zeros_like(by_mesh)
+    slices, plane = nothing.copy(), nothing.copy()
+    if isinstance(made, FaceDiscretization):
+        part = max(HELICAL_SLICES * pair.overlap_ratio, SPUR_SLICES)
+        slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * known.added
+    elif made.corrected:
+        plane = np.outer(CORRECTION * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean)
+    elif bias := plane_bias(pair, made):
+        plane = bias.largest(mean, ripple)
+    left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
+    method = left(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
+    positions = nothing.copy()
+    over_allowed = FACE_POSITIONS if isinstance(made, FaceDiscretization) else PLANE_POSITIONS
+    positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)
+    return {"mesh": by_mesh, "slices": slices, "positions": positions, "plane": plane, "method": method}
+
+
+def percent(value: float) -> str:
+    """Write a relative error in per cent, with two digits."""
+    return engineering(100.0 * value, 2)

@@ -1,0 +1,79 @@
+"""Nominal intensities of a tooth load by closed forms: orders of magnitude before anything is solved."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.geometry.root_tangent import critical_section, tangent_angle
+from fe_contact.geometry.toothing import Toothing
+from fe_contact.hertz import contact_modulus, peak_pressure
+from fe_contact.material import STEEL
+
+SINGLE_STIFFNESS = 14e9
+"""c' in N/m per m of face width, of steel [3]_."""
+
+
+_SAMPLES = 33
+
+
+_NOTCH = (1.0, 8.0)
+"""Where the stress correction factor holds: chord over twice the root radius [2]_."""
+
+
+def _sharing_pairs(pair: ParallelAxes) -> float:
+    """Return how many pairs of teeth share the load where fewest do; of wide helical gears on average."""
+    ratio, overlap = pair.transverse_contact_ratio, min(pair.overlap_ratio, 1.0)
+    return (1.0 - overlap) * max(1.0, math.floor(ratio)) + overlap * max(1.0, ratio)
+
+
+def _line_load(pair: ParallelAxes, normal_force: float) -> float:
+    """Return the load per length of contact, N/m."""
+    return normal_force * math.cos(pair.base_helix_angle) / (pair.face_width * _sharing_pairs(pair))
+
+
+def pitch_point_pressure(pair: ParallelAxes, normal_force: float) -> float:
+    """Return the Hertz pressure with contact at the pitch point, Pa [1]_."""
+    curvature = float(pair.relative_curvature(pair.path_of_contact.pitch_point))
+    radius = 1.0 / (curvature * math.cos(pair.base_helix_angle))
+    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
+    return float(peak_pressure(_line_load(pair, normal_force), radius, modulus))
+
+
+def nominal_deflection(pair: ParallelAxes, normal_force: float) -> float:
+    """Return the deflection of the teeth along the line of action, m [3]_."""
+    moduli = [gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel)]
+    mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
+    return _line_load(pair, normal_force) / (SINGLE_STIFFNESS * mean / STEEL.youngs_modulus)
+
+
+def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[float, float]:
+    """Return the nominal root stress of pinion and wheel, Pa: load at the end of single contact [2]_.
+
+    Of spur gears that is method B without its load factors; of helical gears the transverse section stands in
+    for the virtual spur gear.
+    """
+    path, load = pair.path_of_contact, _line_load(pair, normal_force)
+    high = min(path.start + path.base_pitch, path.end)
+    low = max(path.end - path.base_pitch, path.start)
+    rolls = (high, float(pair.mating_roll_length(low)))
+    return _root_stress(pair.pinion, load, rolls[0]), _root_stress(pair.wheel, load, rolls[1])
+
+
+def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
+    """Bending by the load (N/m) at a roll length, over the section at the root, with its notch factor."""
+    profile = tooth_profile(gear)
+    at = critical_section(profile, _SAMPLES)
+    section = profile.flank(np.array([at]))[0]
+    arc = gear.sign * roll_length**2 / (2.0 * gear.base_radius)
+    point, normal = profile.flank(np.array([arc]))[0], profile.normal(np.array([arc]))[0]
+    chord = 2.0 * float(section[0])
+    lever = abs(float(point[1] - point[0] * normal[1] / normal[0] - section[1]))
+    bending = 6.0 * lever * abs(float(normal[0])) * load / chord**2
+    step = 0.01 * profile.fillet_length
+    turned = float(np.ptp(tangent_angle(profile, np.array([at - step, at + step]))))
+    sharpness = min(max(chord * turned / (4.0 * step), _NOTCH[0]), _NOTCH[1])
+    slimness = chord / max(lever, 1e-9 * chord)
+    return float(bending * (1.2 + 0.13 * slimness) * sharpness ** (1.0 / (1.21 + 2.3 / slimness)))

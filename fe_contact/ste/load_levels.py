@@ -1,0 +1,210 @@
+"""Levels between the stored loads: with the kink where a further tooth pair comes into contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.ste.facts import PairFacts
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# shared by the steps that hold a kink; with more, the position knots are what limits the table
+_INSERTED = 64
+
+
+# numbers of a quantity over positions and levels: tables of long periods have fewer inserted levels, at least
+# one in each step that holds a kink; 12 in place of 64 move curves between the loads by up to 12 nm (rms)
+_NUMBERS = 2_000_000
+
+
+# a branch stiffens with F^exponent; line contact is near 0.1, a triangle of contact 0.5
+_LARGEST_EXPONENT = 0.5
+
+
+# halvings of the interval of an exponent: to 1e-9
+_HALVINGS = 30
+
+
+# least compliance of a smooth curve over that of its step: a cubic may be flat inside
+_LEAST_COMPLIANCE = 0.1
+
+
+# power of the force in which the deflection of a smooth step is a cubic: of 0, 1/4, 1/2 and 1 the one with
+# the smallest errors over loads five times apart, chosen on the same ten drawn pairs (seed 7) whose errors
+# docs/decisions/0012 tabulates
+_POWER = 0.25
+
+
+# ratio of loads over which a cubic of the force in the deflection is close enough to that
+_CLOSE_LOADS = 1.5
+
+
+# overlap ratio from which a helical pair comes into contact gradually: that of a path along which the gap
+# beyond the path of contact grows by several deflections
+_GRADUAL_OVERLAP = 0.1
+
+
+Pair = tuple[FloatArray, FloatArray]  # deflection in m and stiffness in N/m
+
+
+SMOOTHING = 0.01
+"""Half width of the smoothed change of direction at the pitch point, base pitches."""
+
+
+@dataclass(frozen=True)
+class LoadLevels:
+    """A stack of levels: force (L,) N, deflection m and stiffness N/m (P, M, D, L)."""
+
+    force: FloatArray
+    deflection: FloatArray
+    stiffness: FloatArray
+
+
+def gradual_contact(facts: PairFacts) -> float:
+    """Return how gradually a further pair comes into contact: 0 along a whole line at once, 1 from a corner.
+
+    Along a line the stiffness jumps; from a corner the line of contact grows from nothing, and so does the
+    stiffness.
+    """
+    overlap = facts.face_width * math.tan(facts.base_helix_angle) / facts.base_pitch
+    return min(overlap / _GRADUAL_OVERLAP, 1.0)
+
+
+def refined_levels(levels: LoadLevels, pairs: IntArray, gradual: float) -> LoadLevels:
+    """Insert levels into steps that hold a kink at some position, and into wide steps.
+
+    `pairs` (P, M, D, L) counts the pairs in contact; level 0 is lift-off. At positions without a kink, and to
+    the part `gradual` at all positions, the inserted levels lie on the smooth curve.
+    """
+    secant = np.diff(levels.force) / np.diff(levels.deflection, axis=-1)
+    below, above = levels.stiffness[..., :-1], levels.stiffness[..., 1:]
+    kinked = (np.diff(pairs, axis=-1) > 0) & (below < secant) & (secant < above) & (gradual < 1.0)
+    pieces = [levels]
+    for k, count in _inserted_counts(levels, kinked).items():
+        low, high = levels.force[k : k + 2]
+        force = low * (high / low) ** (np.arange(1, count + 1) / (count + 1))
+        deflection, stiffness = _smooth(levels, k, force)
+        sharp = np.where(kinked[..., k, None], 1.0 - gradual, 0.0)
+        if sharp.any():
+            lag, stiff = _on_branches(levels, pairs, k, force)
+            deflection = deflection + sharp * (lag - deflection)
+            stiffness = 1.0 / (1.0 / stiffness + sharp * (1.0 / stiff - 1.0 / stiffness))
+        pieces.append(LoadLevels(force, deflection, stiffness))
+    return _load_refinement_merged(pieces)
+
+
+def _inserted_counts(levels: LoadLevels, kinked: BoolArray) -> dict[int, int]:
+    """Return how many levels to insert into the steps that get any.
+
+    Steps with a kink share what a table bears, and have one at least; wide steps get theirs if all fit.
+    """
+    steps = range(1, levels.force.size - 1)
+    kinks = [k for k in steps if kinked[..., k].any()]
+    bearable = _NUMBERS // levels.deflection[..., 0].size - levels.force.size
+    inserted = min(max(bearable, len(kinks)), _INSERTED) if kinks else 0
+    counts = {k: -(-inserted // len(kinks)) for k in kinks}
+    ratio = levels.force[2:] / levels.force[1:-1]
+    steps_between = np.ceil(np.log(ratio) / math.log(_CLOSE_LOADS) * (1.0 - 1e-9)).astype(int) - 1
+    wide = {k: int(steps_between[k - 1]) for k in steps if k not in counts and steps_between[k - 1] > 0}
+    return counts | wide if sum(wide.values()) + inserted <= bearable else counts
+
+
+def _smooth(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
+    """Deflection and stiffness at `force` on the smooth curve of step k, monotone.
+
+    The curve is a straight line and, for what the deflection has beyond it, a cubic in F^`_POWER`: a linear
+    law stays linear.
+    """
+    ends = levels.force[k : k + 2]
+    lag, compliance = levels.deflection[..., k : k + 2], 1.0 / levels.stiffness[..., k : k + 2]
+    straight = _straight_compliance(compliance, np.diff(lag, axis=-1) / (ends[1] - ends[0]))
+    axis = ends**_POWER
+    width = axis[1] - axis[0]
+    beyond = lag - straight * ends
+    rise = np.diff(beyond, axis=-1)
+    # d lag / d F^p = (d lag / dF) F^(1 - p) / p
+    slope = np.minimum((compliance - straight) * ends ** (1.0 - _POWER) / _POWER, 3.0 * rise / width)
+    t = (force**_POWER - axis[0]) / width
+    s = 1.0 - t
+    tangents = (s * slope[..., :1] - t * slope[..., 1:]) * width
+    deflection = beyond[..., :1] + t * t * (3.0 - 2.0 * t) * rise + t * s * tangents + straight * force
+    growth = 6.0 * t * s * rise / width
+    growth += s * (1.0 - 3.0 * t) * slope[..., :1] + t * (3.0 * t - 2.0) * slope[..., 1:]
+    softness = straight + growth * _POWER * force ** (_POWER - 1.0)
+    least = _LEAST_COMPLIANCE * np.diff(lag, axis=-1) / (ends[1] - ends[0])
+    return deflection, 1.0 / np.maximum(softness, least)
+
+
+def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArray:
+    """Return the compliance (..., 1) of the straight part of a step, m/N, >= 0.
+
+    That of the stiffer end, and less where the other end is soft: what is left rises by a third of its
+    largest slope at least, which a monotone cubic needs.
+    """
+    largest = compliance.max(axis=-1, keepdims=True)
+    part = np.minimum(compliance.min(axis=-1, keepdims=True), 1.5 * secant - 0.5 * largest)
+    return np.asarray(np.maximum(part, 0.0))
+
+
+def _on_branches(levels: LoadLevels, pairs: IntArray, k: int, force: FloatArray) -> Pair:
+    """Deflection and stiffness at `force` on the stiffer of the branches from both ends of step k.
+
+    A branch takes its curvature from the next step on its own side, or as much of it as lets it meet the
+    other branch inside the step.
+    """
+    ends = levels.force[k : k + 2]
+    start, end = levels.deflection[..., k, None], levels.deflection[..., k + 1, None]
+    before = _largest_exponent(
+        _exponent(levels, pairs, k - 1), lambda n: _branch(levels, k, n, ends[1:])[0] >= end
+    )
+    after = _largest_exponent(
+        _exponent(levels, pairs, k + 1), lambda n: _branch(levels, k + 1, n, ends[:1])[0] > start
+    )
+    (lower, soft), (upper, stiff) = _branch(levels, k, before, force), _branch(levels, k + 1, after, force)
+    return np.minimum(lower, upper), np.where(lower < upper, soft, stiff)
+
+
+def _largest_exponent(wanted: FloatArray, holds: Callable[[FloatArray], BoolArray]) -> FloatArray:
+    """Return the largest exponents up to those wanted for which a condition `holds`, as it does for 0."""
+    low, high = np.zeros_like(wanted), wanted
+    if np.all(holds(wanted)):
+        return wanted
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        inside = holds(middle)
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    return np.where(holds(wanted), wanted, low)
+
+
+def _branch(
+    levels: LoadLevels, k: int, exponent: FloatArray, force: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    ratio, stiffness = force / levels.force[k], levels.stiffness[..., k, None]
+    power = 1.0 - exponent
+    rise = levels.force[k] / (np.where(stiffness > 0.0, stiffness, np.inf) * power) * (ratio**power - 1.0)
+    return levels.deflection[..., k, None] + rise, stiffness * ratio**exponent
+
+
+def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
+    """Exponent (P, M, D, 1) of stiffness over force in step k; 0 where it is not one branch of a curve."""
+    if k == levels.force.size - 1:
+        return np.zeros((*levels.deflection.shape[:-1], 1))
+    force = levels.force[k : k + 2]
+    below, above = levels.stiffness[..., k, None], levels.stiffness[..., k + 1, None]
+    if k == 0:  # from lift-off on F ~ (d - d0)^n, so that K ~ F^(1 - 1/n)
+        straight = np.maximum(above * np.diff(levels.deflection[..., :2], axis=-1), force[1])
+        return np.asarray(np.minimum(1.0 - force[1] / straight, _LARGEST_EXPONENT))
+    branch = (pairs[..., k, None] == pairs[..., k + 1, None]) & (below > 0.0)
+    growth = np.log(np.where(branch, above / np.where(branch, below, 1.0), 1.0))
+    return np.asarray(np.clip(growth / np.log(force[1] / force[0]), 0.0, _LARGEST_EXPONENT))
+
+
+def _load_refinement_merged(pieces: list[LoadLevels]) -> LoadLevels:
+    force = np.concatenate([piece.force for piece in pieces])
+    order = np.argsort(force)
+    deflection = np.concatenate([piece.deflection for piece in pieces], axis=-1)
+    stiffness = np.concatenate([piece.stiffness for piece in pieces], axis=-1)
+    return LoadLevels(force[order], deflection[..., order], stiffness[..., order])
