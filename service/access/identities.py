@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import structlog
 from pydantic import ValidationError
 
 from lineofaction.gearbox.problems import BadInput, Unauthorised
@@ -16,7 +15,6 @@ from service.access.tokens import OidcSettings, Tokens, fault_of_error
 from service.settings import Settings
 
 Json = dict[str, Any]
-logger = structlog.get_logger(__name__)
 
 
 class Identities:

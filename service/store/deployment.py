@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import structlog
 from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
@@ -50,7 +49,6 @@ _ELSEWHERE = (
     "that this one names (LOA_RESULTS_URL)."
 )
 _WRITABLE = "Give the service the right to write there, or name another place (LOA_RESULTS_URL)."
-logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, cast
 
-import structlog
 from sqlalchemy import URL, Connection, Engine, NullPool, Table, create_engine, event, func, select, text
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import DBAPIError
@@ -86,7 +85,6 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
 }
 _CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
 _LOCKED = "55P03"  # by others, for longer than lock_timeout
-logger = structlog.get_logger(__name__)
 
 
 class _Commits(Protocol):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import logging
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -36,8 +35,6 @@ from model_studies.progress import Report, by_cost
 from service.worker.job_executor import table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES, name_of_table
-
-logger = logging.getLogger(__name__)
 
 
 class DraftedProgress:
