@@ -13,6 +13,7 @@ from fe_contact.analysis.pairs.pair_contact import pair_contact
 from fe_contact.analysis.request.model_choice import Decided, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request, checked_request
+from fe_contact.effects import compose
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.design_loads import CALLED_FOR, DesignLoads, Misalignments, misalignment_axis
@@ -83,8 +84,7 @@ class DesignSpace:
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
         checked = check_request(modified(self.pair, acting), axes, options, neglect=False)
         _refuse_off(checked, self.varied, self.scatter)
-        barest = check_request(self._with_the_least_removed(), axes, options, neglect=False)
-        return _with_effects_of(barest, checked)
+        return _with_effects_of(self._with_the_least_removed(), checked)
 
     def _with_the_least_removed(self) -> ParallelAxes:
         """Return the pair with every variable at its lower bound, less what scatters."""
@@ -94,10 +94,11 @@ class DesignSpace:
         return deviating(modified(self.pair, removed), deviation)
 
 
-def _with_effects_of(barest: Checked, checked: Checked) -> Checked:
+def _with_effects_of(barest: ParallelAxes, checked: Checked) -> Checked:
     """Turn on what only the design with the least removed calls for: tip edges that a relief keeps apart."""
-    missing = [entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on]
-    reasons = {name: CALLED_FOR for name in missing if barest.decided[name] == "on"}
+    _, ledger = compose(replace(checked.request, pair=barest).scene, checked.request.choices)
+    missing = {entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on}
+    reasons = {entry.name: CALLED_FOR for entry in ledger if entry.on and entry.name in missing}
     if not reasons:
         return checked
     turned_on = {**checked.request.turned_on, **reasons}

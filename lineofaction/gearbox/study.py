@@ -181,7 +181,7 @@ class StudyFunction(Generic[Q, T]):
     def __call__(self, subject: Subject, *, progress: Progress | None, **further: Any) -> T: ...
     @overload
     def __call__(self, subject: Subject, *, folder: Path | None, **further: Any) -> T: ...
-    def __call__(
+    def __call__(  # type: ignore[misc]  # of Q it takes at most one by its place
         self,
         subject: Subject,
         inputs: Mapping[str, Any] | None = None,

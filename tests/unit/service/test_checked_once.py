@@ -17,6 +17,7 @@ from fastapi.testclient import TestClient
 import lineofaction
 from fe_contact.analysis.request import request_check
 from lineofaction.gearbox.convert import case as conversion
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.plan import plan_of
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
@@ -152,7 +153,7 @@ def test_a_plan_checks_once(calls: Calls, file: Path) -> None:
 def test_a_tolerance_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
     """What it does not need is decided as where the request is checked at once."""
     table = CASE | {"accuracy": {"tolerance": 0.3}}
-    submitted, direct = (conversion.CheckedCase(validated(Case, table)) for _ in range(2))
+    submitted, direct = (CheckedCase(validated(Case, table)) for _ in range(2))
     assert submitted.feasible.request.neglected == {}
     assert submitted.checked.request.neglected == direct.checked.request.neglected
     assert submitted.checked.ledger == direct.checked.ledger
@@ -185,7 +186,7 @@ def test_results_at_a_point_check_once(
 
 
 def test_a_plan_goes_on_from_the_check_of_the_submission(calls: Calls) -> None:
-    case = conversion.CheckedCase(validated(Case, CASE))
+    case = CheckedCase(validated(Case, CASE))
     assert case.feasible.request.pair == plan_of(case, None, None).checked.request.pair
     assert calls.counts == (0, 1, 1)
 

@@ -9,7 +9,7 @@ from bounds.brief import brief
 from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
-from fe_contact.plausibility.pair_checks import nominal_root_stresses
+from fe_contact.plausibility.nominal_intensities import nominal_root_stresses
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.plausibility import phrased_for

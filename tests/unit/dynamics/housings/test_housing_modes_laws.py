@@ -31,7 +31,7 @@ from dynamics.housings import (
     SeatBore,
     receptance,
 )
-from dynamics.housings import assembled_housing as free_modes_module
+from dynamics.housings import free_modes as free_modes_module
 from dynamics.housings.assembled_housing import (
     AssembledHousing,
     _independent_freedoms,
