@@ -4,10 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-import lineofaction.client.client as clients
 from lineofaction import client as public
 from lineofaction.cli import kept_tables
-from lineofaction.client import JobState
+from lineofaction.client import JobState, scene_calls
 
 
 @pytest.mark.parametrize(
@@ -29,7 +28,7 @@ def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
         return nullcontext(SimpleNamespace(driver=SimpleNamespace(run=run)))
 
     monkeypatch.setattr(public, "LineOfActionClient", client)
-    monkeypatch.setattr(clients, "ServiceTables", lambda _: None)
+    monkeypatch.setattr(scene_calls, "ServiceTables", lambda _: None)
     monkeypatch.setattr(kept_tables, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
     monkeypatch.setattr(
         kept_tables, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene)
