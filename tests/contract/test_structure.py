@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
+from importlib import import_module
 from pathlib import Path
 
 import line_growth
 import pytest
 import structure
+
+from lineofaction.gearbox import schemas
 
 ROOT = Path(__file__).parents[2]
 
@@ -170,3 +173,10 @@ def test_every_house_is_on_a_floor_and_no_import_points_up() -> None:
 def test_the_picture_is_drawn_from_the_imports() -> None:
     drawn = (ROOT / "docs" / "images" / "structure.svg").read_text("utf-8")
     assert drawn == structure.drawing(), "python scripts/structure.py docs/images/structure.svg"
+
+
+def test_names_imported_on_first_use_are_there() -> None:
+    """A table says by text where each stands: no checker of types reads it."""
+    modules = {name: f"{schemas.__name__}.{module}" for name, module in schemas.HOMES.items()}
+    missing = [name for name, module in modules.items() if not hasattr(import_module(module), name)]
+    assert missing == []

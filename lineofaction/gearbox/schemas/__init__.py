@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 HOMES = {
     "Case": "case",
-    "LiveOutput": "live",
-    "OutlineBody": "plan",
+    "LiveOutput": "live_answer",
+    "OutlineBody": "outline",
     "PlanBody": "plan",
     "QueryOutput": "query",
     "SceneInput": "scene",
