@@ -32,6 +32,19 @@ from service.schemas.execute import BatchResult, BatchResults
 from service.worker.process import Registry
 
 _REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFailed, DamagedFile)
+AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
+AskedMode = Annotated[
+    Transmission | None,
+    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
+]
+AskedType = Annotated[
+    str,
+    Header(
+        alias="Accept",
+        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
+        "file. A request without it, or that takes both, gets the form of the execution.",
+    ),
+]
 
 
 def job_results_router(registry: Registry) -> APIRouter:
@@ -90,25 +103,6 @@ def problem_of(job: Job) -> ServiceError | None:
 def reference_of(job: Job) -> ResultReference:
     """Return where the result of a job is."""
     return ResultReference(href=f"{RESULTS}/{job.key}", type=NETCDF, hash=job.key)
-
-
-AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
-
-
-AskedMode = Annotated[
-    Transmission | None,
-    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
-]
-
-
-AskedType = Annotated[
-    str,
-    Header(
-        alias="Accept",
-        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
-        "file. A request without it, or that takes both, gets the form of the execution.",
-    ),
-]
 
 
 @needs(Scope.READ)
