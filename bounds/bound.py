@@ -127,9 +127,6 @@ def one_of(names: Collection[str]) -> Choice:
     return Choice(tuple(names))
 
 
-# Static ranges of declared fields, which `pydantic` checks too.
-
-
 def between(low: float, high: float) -> Interval:
     """Return the range from `low` to `high`, both accepted."""
     return Interval(ge=low, le=high)

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from bounds.types import Json
 from bounds.unit import Unit
 
-# Units in which a number may have been typed by mistake.
-
 TYPED: dict[str, tuple[Unit, ...]] = {
     "m": (Unit("meters", 1.0), Unit("millimeters", 1e-3), Unit("micrometers", 1e-6), Unit("inches", 25.4e-3)),
     "N m": (Unit("kN m", 1e3), Unit("N mm", 1e-3), Unit("N m", 1.0)),

@@ -7,8 +7,6 @@ from typing import Any, ClassVar, Literal, Protocol, Self, runtime_checkable
 
 from bounds.unit import DIGITS, Unit
 
-# Readers of messages: by which names and in which units they know the fields.
-
 
 @dataclass(frozen=True)
 class Reader:

@@ -9,21 +9,17 @@ from __future__ import annotations
 
 import ctypes
 import errno
-import os
 import signal
-import stat
 import sys
-from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from itertools import islice
 from pathlib import Path
 
 from host.extras import Unavailable
+from host.landlock import checked, landlock_version, restrict
 from host.reading_limits import READING, Limits
-from host.system_calls import NO_NEW_PRIVILEGES, filters_calls, keep_to_reading
-
-# Limits on what processes may take: POSIX systems alone have them, elsewhere each raises `Unavailable`.
+from host.system_calls import filters_calls, keep_to_reading
 
 FILES, CALLS, LIMITS = "files (Landlock)", "system calls (seccomp)", "memory and CPU time"
 _ROOT = Path(__file__).resolve().parents[1]
@@ -34,19 +30,6 @@ _LIBRARIES_MB = 1024
 """Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
 _STACK_MB = 64
 """gmsh asks for a stack without limit, and does not get it."""
-_CREATE, _ADD, _RESTRICT = 444, 445, 446
-"""Numbers of the system calls, on every processor."""
-_VERSION = 1
-_PATH_BENEATH = 1
-_WRITE_FILE, _READ_FILE, _READ_FOLDER, _REMOVE_FILE, _MAKE_FILE = (1 << bit for bit in (1, 2, 3, 5, 8))
-_TRUNCATE = 1 << 14
-_OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
-_OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
-_RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
-"""Rights to files by the version that brought them."""
-_BIND_AND_CONNECT = 0b11
-_NETWORK_SINCE, _SCOPES_SINCE = 4, 6
-_ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
 
 
 def limit_memory(size: int) -> None:
@@ -75,7 +58,7 @@ def limit_file_size(pid: int, size: int) -> None:
 def missing_protections() -> tuple[str, ...]:
     """Return the protections that this system lacks, by name."""
     present = {
-        FILES: _landlock() > 0,
+        FILES: landlock_version() > 0,
         CALLS: filters_calls(),
         LIMITS: sys.platform == "linux",
     }
@@ -95,9 +78,9 @@ def confine(folder: Path, limits: Limits = READING) -> None:
         if threads > 1:
             raise OSError(errno.EBUSY, f"{threads - 1} other threads of this process would not be confined")
         _limit(limits, addresses)
-        _checked(ctypes.CDLL(None, use_errno=True).prctl(_SIGNAL_AT_END_OF_PARENT, signal.SIGKILL))
+        checked(ctypes.CDLL(None, use_errno=True).prctl(_SIGNAL_AT_END_OF_PARENT, signal.SIGKILL))
     if FILES not in missing:
-        _restrict(_readable(), folder)
+        restrict(_readable(), folder)
     if CALLS not in missing:
         keep_to_reading()
 
@@ -171,72 +154,3 @@ def _readable() -> tuple[Path, ...]:
             places += [path.parent for path in folder.glob("*/__init__.py")]
             places += folder.glob("*.py")
     return tuple(dict.fromkeys(places))
-
-
-# Landlock, by which a process of Linux gives up files, connections and signals for good, as any user.
-
-
-class _Beneath(ctypes.Structure):
-    """What is allowed beneath an open file or folder."""
-
-    _pack_ = 1
-    _fields_ = (("rights", ctypes.c_uint64), ("descriptor", ctypes.c_int32))
-
-
-def _landlock() -> int:
-    """Return the version of Landlock that the system has, 0 if it has none."""
-    return 0 if sys.platform != "linux" else max(_call(_CREATE, None, 0, _VERSION), 0)
-
-
-def _restrict(readable: Iterable[Path], folder: Path) -> None:
-    """Leave this thread, and what it starts, some files to read and one folder to write in.
-
-    Connections by TCP, signals to other processes and sockets by name go with the files, where the system's
-    version has that. `readable`: files and folders with all beneath them; those that do not exist are passed
-    over. Raises `OSError`: the system refuses, or has no Landlock.
-    """
-    handled = _handled(_landlock())
-    rules = (ctypes.c_uint64 * len(handled))(*handled)
-    descriptor = _checked(_call(_CREATE, ctypes.byref(rules), ctypes.sizeof(rules), 0))
-    try:
-        for path in readable:
-            _allow(descriptor, path, handled[0] & (_READ_FILE | _READ_FOLDER))
-        _allow(descriptor, folder, handled[0] & _OF_FOLDER)
-        _checked(ctypes.CDLL(None, use_errno=True).prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0))
-        _checked(_call(_RESTRICT, descriptor, 0))
-    finally:
-        os.close(descriptor)
-
-
-def _handled(present: int) -> list[int]:
-    """Return the rights that a version takes: to files, to the network, to other processes."""
-    handled = [sum(right for since, right in _RIGHTS.items() if since <= present)]
-    if present >= _NETWORK_SINCE:
-        handled.append(_BIND_AND_CONNECT)
-    if present >= _SCOPES_SINCE:
-        handled.append(_ABSTRACT_SOCKETS_AND_SIGNALS)
-    return handled
-
-
-def _allow(ruleset: int, path: Path, rights: int) -> None:
-    try:
-        descriptor = os.open(path, os.O_PATH | os.O_CLOEXEC)  # type: ignore[attr-defined, unused-ignore]
-    except OSError:
-        return
-    try:
-        of_kind = rights if stat.S_ISDIR(os.fstat(descriptor).st_mode) else rights & _OF_FILES
-        beneath = _Beneath(of_kind, descriptor)
-        _checked(_call(_ADD, ruleset, _PATH_BENEATH, ctypes.byref(beneath), 0))
-    finally:
-        os.close(descriptor)
-
-
-def _call(number: int, *arguments: object) -> int:
-    return int(ctypes.CDLL(None, use_errno=True).syscall(number, *arguments))
-
-
-def _checked(outcome: int) -> int:
-    """Return the outcome of a call; raise OSError if it failed."""
-    if outcome < 0:
-        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
-    return outcome

@@ -9,9 +9,7 @@ that calls it. An inner loop is linked as it is: what Python calls is optimized 
 So is what numba itself writes in Python, as `np.zeros`.
 """
 
-# numba annotates little of what extends it
 # mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 import gc

@@ -111,9 +111,6 @@ def _checked_calls(pid: int) -> tuple[_Checked, ...]:
     )
 
 
-# The filter as a program of the kernel's packet filter (BPF), and its installation.
-
-
 class _Program(ctypes.Structure):
     """A filter: the number of its instructions, and where they are."""
 

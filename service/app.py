@@ -12,24 +12,41 @@ from fastapi import FastAPI
 
 from service.access.capacity import capacity
 from service.access.identities import open_identities
-from service.folders import DirectoryLock
+from service.directory_lock import DirectoryLock
 from service.live.kept_answers import KeptAnswers
 from service.live.live_worker import live_pool
-from service.management.figures import Metrics, process_registry
-from service.queue.scheduler import job_machinery
+from service.management.figures import process_registry
+from service.management.request_figures import Metrics
+from service.queue.machinery import job_machinery
 from service.queue.watcher import Watcher
 from service.reading.reader import reading_pool, require_confinement
-from service.routes import documents, drafts, events, health, jobs, processes, queries, results
-from service.routes.access import Access, Admission
+from service.routes import (
+    batches,
+    callbacks,
+    documents,
+    drafts,
+    events,
+    health,
+    job_results,
+    jobs,
+    processes,
+    queries,
+    result_drawings,
+    results,
+)
+from service.routes.access import Access
+from service.routes.admission import Admission
 from service.routes.context import Context
-from service.routes.middleware import API_PREFIX, Guard, install_error_handlers
+from service.routes.direct_routes import DirectRoutes
+from service.routes.middleware import API_PREFIX, Guard
 from service.routes.offers import ROUTERS
 from service.routes.openapi import ABOUT, install_description
-from service.routes.scopes import DirectRoutes
+from service.routes.problem_answers import install_error_handlers
 from service.routes.warm_up import warm_up
 from service.settings import Settings
-from service.store.deployment import Deployment, WriteCheck
+from service.store.deployment import Deployment
 from service.store.places import CACHE_DIRECTORY
+from service.store.write_check import WriteCheck
 from service.tracing import flush_spans, telemetry_options
 from service.version import solver_version
 from service.worker.process import Registry, default_registry
@@ -83,9 +100,9 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 
 def _route(app: FastAPI, offered: Registry) -> None:
     shown = (documents.router, processes.processes_router(offered), jobs.router)
-    stored = (jobs.job_results_router(offered), results.router, queries.router)
-    grouped = (queries.live_router, drafts.router, processes.router, events.router)
-    for router in (*shown, *stored, *grouped, *ROUTERS):
+    read = (job_results.job_results_router(offered), results.router, result_drawings.router)
+    grouped = (queries.router, queries.live_router, drafts.router, batches.router, events.router)
+    for router in (*shown, *read, *grouped, *ROUTERS):
         app.include_router(router, prefix=API_PREFIX)
     for router in (documents.pages_router, health.router):
         app.include_router(router)
@@ -100,7 +117,7 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
             lock.acquire()
         if context.scheduler is not None:
             context.scheduler.start()
-        deliverer = processes.deliverer_of(context)
+        deliverer = callbacks.deliverer_of(context)
         if deliverer is not None:
             deliverer.start()
         warm_up()

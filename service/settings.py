@@ -8,7 +8,7 @@ import os
 import re
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated
 from urllib.parse import urlsplit
 
 import structlog
@@ -20,17 +20,13 @@ from pydantic import (
     ValidationInfo,
     field_validator,
 )
-from pydantic.fields import FieldInfo
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict
 
 from host.directories import absolute, data_home
 from lineofaction.gearbox.problems import BadInput, Fault
 from service.origin import Origin, is_loopback
+from service.secret_files import SecretFiles
 
-# Secrets of the settings from files: ``LOA_NAME_FILE`` instead of ``LOA_NAME``.
-
-
-_LARGEST = 65_536
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
 _SIGNING = "whsec_"
@@ -42,58 +38,6 @@ _FORMER = {
 }
 """Settings that earlier versions had, and what to do with them."""
 logger = structlog.get_logger(__name__)
-
-
-def is_secret(field: FieldInfo) -> bool:
-    """Whether the value of a setting is a secret."""
-    return SecretStr in (field.annotation, *get_args(field.annotation))
-
-
-class _SecretFiles(PydanticBaseSettingsSource):
-    """Reads the files that ``LOA_NAME_FILE`` names, for every setting that is a secret.
-
-    Containers get secrets as files: unlike the environment they are not shown by `docker inspect`, and
-    workers do not inherit them.
-    """
-
-    def __init__(self, settings_class: type[BaseSettings]) -> None:
-        super().__init__(settings_class)
-        self._prefix = str(settings_class.model_config["env_prefix"])
-
-    def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[str | None, str, bool]:
-        """Return the secret of a field, None if no file is named.
-
-        Raises `BadInput`: the secret itself is in the environment too; or the file cannot be read, is empty
-        or no text.
-        """
-        name = self._prefix + field_name.upper()
-        file = os.environ.get(f"{name}_FILE") if is_secret(field) else None
-        if not file:
-            return None, field_name, False
-        if os.environ.get(name):
-            tip = f"Remove one of them, rather {name}."
-            raise BadInput.of(field_name, "(not shown)", f"in {name} or in {name}_FILE, not in both", tip)
-        return _content(Path(file), f"{name}_FILE", field_name), field_name, False
-
-    def __call__(self) -> dict[str, Any]:
-        """Return all secrets that are in files."""
-        fields = self.settings_cls.model_fields.items()
-        values = {name: self.get_field_value(field, name)[0] for name, field in fields}
-        return {name: value for name, value in values.items() if value is not None}
-
-
-def _content(file: Path, variable: str, field: str) -> str:
-    """Return what a file holds, without the end of its line."""
-    tip = f"It is named by {variable}; the user of the service must be able to read it."
-    try:
-        with file.open(encoding="utf-8") as stream:
-            content = stream.read(_LARGEST).rstrip("\r\n")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8"
-        raise BadInput.of(field, str(file), f"a file with the secret: {reason}", tip) from None
-    if not content:
-        raise BadInput.of(field, str(file), "a file with the secret: it is empty", tip)
-    return content
 
 
 class Settings(BaseSettings):
@@ -231,7 +175,7 @@ class Settings(BaseSettings):
         file_secret_settings: PydanticBaseSettingsSource,
     ) -> tuple[PydanticBaseSettingsSource, ...]:
         """Let options come before the environment, and that before files of secrets."""
-        return init_settings, env_settings, _SecretFiles(settings_cls)
+        return init_settings, env_settings, SecretFiles(settings_cls)
 
     @property
     def database_address(self) -> str | None:

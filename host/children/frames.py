@@ -58,9 +58,12 @@ class FrameBuffer:
     """Puts the pieces that come through a pipe together to frames; their sender may be led astray."""
 
     def __init__(self) -> None:
+        self._head: Head | None = None
+        """That of the frame whose body is awaited."""
         self._pieces: list[bytes] = []
-        self._missing = 0
-        """Bytes that have to come before the next frame can be complete."""
+        """What came behind it, or behind the last frame."""
+        self._waiting = 0
+        """Bytes in the pieces."""
         self.received = 0
         """Bytes so far."""
         self.broken = False
@@ -69,38 +72,52 @@ class FrameBuffer:
     @property
     def partial(self) -> bool:
         """Whether the last frame is not complete."""
-        return self.broken or any(self._pieces)
+        return self.broken or self._head is not None or self._waiting > 0
 
     def take(self, piece: bytes) -> list[Frame]:
         """Return the frames that are complete with another piece."""
         self.received += len(piece)
-        self._pieces.append(piece)
-        self._missing -= len(piece)
-        if self.broken or self._missing > 0:
-            return []
-        content, start, frames = b"".join(self._pieces), 0, []
-        while (head_end := self._head_end(content, start)) >= 0:
-            try:
-                kind, length = _head(content[start:head_end])
-            except (ValueError, TypeError, KeyError):
-                self.broken = True
-                break
-            end = head_end + 1 + length
-            self._missing = end - len(content)
-            if self._missing > 0:
-                break
-            frames.append(Frame(kind, content[head_end + 1 : end]))
-            start = end
-        self._pieces = [content[start:]] if start else [content]
+        frames: list[Frame] = []
+        if not self.broken:
+            self._pieces.append(piece)
+            self._waiting += len(piece)
+            while (frame := self._complete()) is not None:
+                frames.append(frame)
         return frames
 
-    def _head_end(self, content: bytes, start: int) -> int:
-        """Return where the line of a head ends; -1: it has not come, or there is none."""
-        end = content.find(b"\n", start, start + LONGEST_HEAD)
+    def _complete(self) -> Frame | None:
+        """Take the next frame from the pieces, if it is complete."""
+        if self._head is None and not self._take_head():
+            return None
+        assert self._head is not None
+        kind, length = self._head
+        if self._waiting < length:
+            return None
+        content = b"".join(self._pieces)
+        body = content if len(content) == length else content[:length]
+        self._leave(content[length:])
+        self._head = None
+        return Frame(kind, body)
+
+    def _take_head(self) -> bool:
+        """Take the head of the next frame from the pieces; return whether it is there."""
+        content = b"".join(self._pieces)
+        end = content.find(b"\n", 0, LONGEST_HEAD)
         if end < 0:
-            self.broken = len(content) - start >= LONGEST_HEAD
-            self._missing = 1
-        return end
+            self._leave(content)
+            self.broken = len(content) >= LONGEST_HEAD
+            return False
+        try:
+            self._head = _head(content[:end])
+        except (ValueError, TypeError, KeyError):
+            self.broken = True
+            return False
+        self._leave(content[end + 1 :])
+        return True
+
+    def _leave(self, content: bytes) -> None:
+        """Let this be what waits."""
+        self._pieces, self._waiting = [content] if content else [], len(content)
 
 
 def _head(line: bytes) -> Head:

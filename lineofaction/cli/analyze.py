@@ -12,6 +12,7 @@ from rich.console import Console
 from bounds import engineering
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
+from lineofaction.cli.kept_tables import KeptTables
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -23,7 +24,7 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.subjects import KeptTables, assessed_case
+from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json

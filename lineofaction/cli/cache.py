@@ -10,7 +10,7 @@ from bounds import engineering
 from host.directories import cache_home
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.problems import BadInput
-from service.folders import DEFAULT_BYTES, UsedFile, evict, files_in
+from service.folder_size import DEFAULT_BYTES, UsedFile, evict, files_in
 
 LIMIT = "LOA_CACHE_BYTES"
 KINDS = {

@@ -14,9 +14,9 @@ from fastapi import FastAPI
 from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
 from lineofaction.gearbox.problems import HeadTooLarge, Malformed, ServiceError, TooManyRequests, TooSlow
-from service.management.server import EventLoop, Vitals
+from service.management.vitals import EventLoop, Vitals
 from service.routes.context import Context
-from service.routes.middleware import problem_of
+from service.routes.problem_answers import problem_of
 
 MOST_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0

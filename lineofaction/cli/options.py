@@ -1,19 +1,11 @@
-"""Arguments and options that several verbs share; ``--set`` and its shorthands by one decorator."""
+"""Arguments and options that several verbs share."""
 
 from __future__ import annotations
 
-import functools
-import inspect
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Annotated, Any, TypeVar
+from dataclasses import dataclass
+from typing import Annotated, Any
 
 import typer
-from typer.models import OptionInfo
-
-from lineofaction.cli.verb_parameters import keyword, parameters_of, with_parameters
-from lineofaction.gearbox.input_file import InputFile, Override
-from lineofaction.gearbox.number_list import number_list
 
 DEFAULT_SERVICE = "http://127.0.0.1:8321"
 
@@ -39,27 +31,11 @@ Scheduler = Annotated[
 
 
 Force = Annotated[float | None, typer.Option("--force", help="Normal tooth force in N, instead of a torque.")]
-R = TypeVar("R")
-_SET = "Override a value of the file, as pair.pinion.tip_relief_um=20; repeatable; empty: remove the field."
-_LEVEL = "Short for --set accuracy.level=: draft, standard or fine, instead of a tolerance."
-_TOLERANCE = "Short for --set accuracy.tolerance=: relative, instead of a level."
-_TORQUE = "Short for --set load.torque_n_m=[...]: torques on the driving gear in N m, as 50,100."
-_SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
-    "level": ("accuracy.level", ("accuracy.tolerance", "accuracy.time_budget_s")),
-    "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
-    "torque": ("load.torque_n_m", ("load.normal_force_n",)),
-}
-"""Option to the path it sets, and those that it leaves out."""
-_OF_ONE = ("output", "json", "csv")
-"""Options that hold one file, or one object, for one case."""
 
 
 def to_file(text: str) -> Any:
     """Return the option of the file that a verb writes."""
     return typer.Option("-o", "--output", help=text)
-
-
-# What the caller of ``loa new`` says of a pair, as its options.
 
 
 @dataclass(frozen=True)
@@ -75,86 +51,3 @@ class PairWishes:
     ] = None
     helix: Annotated[float | None, typer.Option(min=-45.0, max=45.0, help="Helix angle in deg.")] = None
     width: Annotated[float | None, typer.Option(min=0.05, max=5000.0, help="Face width in mm.")] = None
-
-
-# ``--set`` and its shorthands: on every verb that takes a case or a scene, by one decorator.
-
-
-def file_argument(text: str, metavar: str) -> Any:
-    """Return the argument of a case or scene file."""
-    return typer.Argument(
-        help=f"{text} (TOML, or JSON of the same shape), or the folder that has it.",
-        parser=InputFile.named,
-        metavar=metavar,
-    )
-
-
-CaseFile = Annotated[InputFile, file_argument("Case file", "CASE")]
-SceneFile = Annotated[InputFile, file_argument("Scene file", "SCENE")]
-
-
-def _options(subject: str) -> list[inspect.Parameter]:
-    option = typer.Option("--set", metavar="PATH=VALUE", help=_SET)
-    shown = [keyword("overrides", Annotated[list[str] | None, option], None)]
-    if subject != "scene":
-        shown += [
-            keyword("level", Annotated[str | None, typer.Option(help=_LEVEL)], None),
-            keyword("tolerance", Annotated[float | None, typer.Option(help=_TOLERANCE)], None),
-            keyword("torque", Annotated[str | None, typer.Option(help=_TORQUE)], None),
-        ]
-    return shown
-
-
-def overridable(argument: str, subject: str = "case") -> Callable[[Callable[..., R]], Callable[..., R]]:
-    """Return a decorator that gives a verb ``--set`` for the files of an argument.
-
-    Of a case also the shorthands, but for those whose name the verb has for something else.
-    """
-
-    def decorate(verb: Callable[..., R]) -> Callable[..., R]:
-        own = parameters_of(verb)
-        taken = {spelling for option in own for spelling in _spellings(option)}
-        added = [option for option in _options(subject) if not taken & set(_spellings(option))]
-
-        @functools.wraps(verb)
-        def run(**options: Any) -> R:
-            typed = {option.name: options.pop(option.name, None) for option in added}
-            from lineofaction.cli.output import FOUND, console  # noqa: PLC0415 (start-up time)
-            from lineofaction.gearbox.project import files_of, only  # noqa: PLC0415 (start-up time)
-
-            named, overrides = options[argument], _overrides(typed)
-            several = isinstance(named, list)
-            files = [own for file in (named if several else [named]) for own in files_of(file, subject)]
-            read = [replace(file, overrides=overrides) for file in files]
-            if several:
-                return verb(**options | {argument: read})
-            if any(options.get(name) for name in _OF_ONE):
-                only(read, named.path, subject)
-            for file in read:  # of a folder each of its cases
-                if file.part:
-                    console().print(f"\n{file.part}", style=FOUND)
-                answer = verb(**options | {argument: file})
-            return answer
-
-        return with_parameters(run, [*own, *added])
-
-    return decorate
-
-
-def _spellings(option: inspect.Parameter) -> list[str]:
-    """Return how an option is typed; the first of its names stands where a default would."""
-    facts = [fact for fact in getattr(option.annotation, "__metadata__", ()) if isinstance(fact, OptionInfo)]
-    names = [name for fact in facts for name in (fact.default, *(fact.param_decls or ()))]
-    spelled = [name for name in names if isinstance(name, str) and name.startswith("-")]
-    return spelled or [f"--{option.name.replace('_', '-')}"]
-
-
-def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
-    """Return what was typed as overrides, shorthands first."""
-    made = []
-    for name, (path, others) in _SHORTHANDS.items():
-        value = typed.get(name)
-        if value is not None:
-            value = number_list("--torque", value) if name == "torque" else value
-            made += [Override(path, value), *(Override(other, None) for other in others)]
-    return (*made, *(Override.of(text) for text in typed["overrides"] or ()))

@@ -15,6 +15,7 @@ from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
 from lineofaction.cli.interrupts import until_interrupted
+from lineofaction.cli.kept_tables import tabled_scene
 from lineofaction.cli.output import (
     Report,
     check_writable,
@@ -27,14 +28,7 @@ from lineofaction.cli.output import (
     progress_bar,
 )
 from lineofaction.cli.study_cache import cached_workers
-from lineofaction.cli.subjects import (
-    announce_cost,
-    assessed_scene,
-    inputs_of_study,
-    study_cost,
-    tabled_scene,
-    tables_cost,
-)
+from lineofaction.cli.subjects import announce_cost, assessed_scene, inputs_of_study, study_cost, tables_cost
 from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCase

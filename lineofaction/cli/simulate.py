@@ -10,6 +10,7 @@ from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from lineofaction.cli.interrupts import until_interrupted
+from lineofaction.cli.kept_tables import tabled_scene
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -21,13 +22,7 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
-from lineofaction.cli.subjects import (
-    announce_cost,
-    assessed_scene,
-    simulation_cost,
-    tabled_scene,
-    tables_cost,
-)
+from lineofaction.cli.subjects import announce_cost, assessed_scene, simulation_cost, tables_cost
 from lineofaction.cli.verb_warnings import warnings_so_far
 from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.executor import open_executor

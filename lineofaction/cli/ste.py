@@ -50,7 +50,7 @@ def run_ste(
 
 
 def _kept_table(case: Path) -> Path:
-    from lineofaction.cli.subjects import KeptTables  # noqa: PLC0415 (the base reads tables)
+    from lineofaction.cli.kept_tables import KeptTables  # noqa: PLC0415 (the base reads tables)
 
     return KeptTables.file(read_model(Case, case))
 

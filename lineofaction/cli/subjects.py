@@ -1,37 +1,26 @@
-"""Cases and scenes of files, assessed; the tables of a scene: kept, computed here or by a service."""
+"""Cases and scenes of files, assessed, and what work on them is predicted to cost."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
-from dataclasses import dataclass
-from functools import cache, partial
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from bounds.types import Json
-from fe_contact.errors import DatabaseError
-from fe_contact.solver_version import SOLVER_VERSION, software_versions
-from fe_contact.ste import SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
-from lineofaction.cli.output import Report
+from lineofaction.cli.kept_tables import KeptTables
 from lineofaction.cli.verb_warnings import in_lines, warn
-from lineofaction.gearbox.convert.case import case_at, case_json
-from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
+from lineofaction.gearbox.convert.case import case_at
+from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.plan import costs_of
 from lineofaction.gearbox.convert.plausibility import case_warnings
-from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.input_file import InputFile
-from lineofaction.gearbox.mesh_tables import MeshTables, finished
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import inputs_in, usual_speeds
 from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.fault_lines import located
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
-from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -41,12 +30,7 @@ from lineofaction.gearbox.studies.run_cost import run_cost
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.subjects import scene_of, with_own_cases
-from lineofaction.gearbox.tabled_scene import ComputedTables
-from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
-from model_studies.kept_file import kept_in
 from model_studies.progress import ANNOUNCED
-from model_studies.workers import InProcess, Workers
-from service.version import program_tag
 
 _READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
 """CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
@@ -146,81 +130,3 @@ def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
     whole = sum(filter(None, costs), StudyCost(()))
     if None not in costs and whole.seconds > ANNOUNCED:
         sys.stderr.write(in_lines(f"loa {verb}: {whole.words}", sys.stderr) + "\n")
-
-
-# Tables of cases are kept in the cache, under the name of all that decides them: this very program included.
-
-
-@dataclass(frozen=True)
-class KeptTables:
-    """The tables of cases: those of runs before, and those that are computed now."""
-
-    compute: Callable[[Case], SteDatabase]
-
-    @staticmethod
-    def file(case: Case) -> Path:
-        """Return where the table of a case is kept, if it is."""
-        content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
-        return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
-
-    def find(self, case: Case) -> SteDatabase | None:
-        """Return the table of a case, if it is here and undamaged."""
-        try:
-            return SteDatabase.from_netcdf(self.file(case))
-        except DatabaseError:
-            return None
-
-    def table(self, case: Case) -> SteDatabase:
-        """Return the table of a case; one that is computed is kept, unless points of it failed."""
-        return kept_in(
-            self.file(case),
-            SteDatabase.from_netcdf,
-            lambda: self.compute(case),
-            SteDatabase.to_netcdf,
-            DatabaseError,
-            keeps=lambda table: not table.n_failed,
-        )
-
-
-def _analyzed(case: CheckedCase, report: Report, workers: Workers) -> SteDatabase:
-    """Compute a table, which needs what reading one does not."""
-    from lineofaction.cli.analyze import analyzed  # noqa: PLC0415 (start-up time)
-
-    return analyzed(case, report, workers)
-
-
-def tabled_scene(
-    scene: SceneInput,
-    folder: Path,
-    service: str | None,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> TabledScene:
-    """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
-    cases, source, run = CheckedCases(), None, finished
-
-    with ExitStack() as stack:
-        if service is not None:
-            from dynamics.simulation import compile_ahead  # noqa: PLC0415 (start-up time)
-            from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
-            from lineofaction.client.client import ServiceTables  # noqa: PLC0415 (start-up time)
-
-            beside = stack.enter_context(ThreadPoolExecutor(1))
-            ahead = cache(partial(beside.submit, compile_ahead))
-
-            def watch(state: JobState) -> None:
-                if state.stage:
-                    report(state.stage, state.stage_progress / 100.0)
-                if not state.ended:
-                    ahead()
-
-            client = stack.enter_context(LineOfActionClient(service, progress=watch))
-            source, run = ServiceTables(client), client.driver.run
-        here = KeptTables(lambda case: _analyzed(cases.of(case), report, workers))
-        tables = MeshTables(folder, source or ComputedTables(here.table))
-
-        def table_of(index: int, mesh: MeshInput) -> SteDatabase:
-            return run(tables.of(index, mesh))
-
-        kept = here.find if source is None else lambda _: None
-        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, kept)

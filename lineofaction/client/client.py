@@ -2,41 +2,31 @@
 
 from __future__ import annotations
 
-import base64
 import os
-import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self
 
 import httpx2
 
 from host.directories import cache_home
 from lineofaction.client.batch import AsyncBatch, Batch
 from lineofaction.client.cache import ResultCache
+from lineofaction.client.drivers import AwaitingDriver, BlockingDriver
 from lineofaction.client.exchange import Exchange
 from lineofaction.client.job import AsyncJob, Job
 from lineofaction.client.job_calls import JobCalls
-from lineofaction.client.offers import ANALYZE, libraries, offers, reader_of, subject_inputs
+from lineofaction.client.lookup_calls import LookupCalls
+from lineofaction.client.offers import offers, reader_of
 from lineofaction.client.page_address import PageCalls
-from lineofaction.client.process import AsyncProcess, Process, obtained
+from lineofaction.client.process import AsyncProcess, Process
 from lineofaction.client.result_calls import ResultCalls
+from lineofaction.client.scene_calls import SceneCalls
 from lineofaction.client.status import Watch
-from lineofaction.client.steps import Steps
-from lineofaction.client.surface import (
-    Awaiting,
-    AwaitingDriver,
-    Blocking,
-    BlockingDriver,
-    Session,
-    Surface,
-    operation,
-)
-from lineofaction.gearbox import schemas
-from lineofaction.gearbox.loading import load
+from lineofaction.client.surface import Awaiting, Blocking, Session
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import Studies
 from lineofaction.gearbox.study import F, Offered, P
@@ -45,197 +35,12 @@ from service.origin import is_loopback
 from service.version import solver_version
 
 if TYPE_CHECKING:
-    from pydantic import BaseModel
-
     from dynamics.results import RunResult
-    from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
-    from lineofaction.gearbox.schemas import Case
     from lineofaction.gearbox.schemas.figures import RunFigures, TableFigures
     from lineofaction.gearbox.subjects import CaseLike, SceneLike
-    from service.schemas.answers import EffectBody, ExampleBody, UnitBody
 
-# Scenes of dynamics on the tables of a service.
-
-T = TypeVar("T")
-M = TypeVar("M", bound="BaseModel")
 DEFAULT = "http://127.0.0.1:8321"
-
-
-class ServiceTables:
-    """A service as the source of a scene's STE databases."""
-
-    def __init__(self, client: Surface) -> None:
-        self._client = client
-
-    def by_hash(self, key: str) -> Steps[SteDatabase]:
-        """Return the database of a content hash."""
-        return ResultCalls.fetch(self._client, key)
-
-    def by_case(self, case: Case) -> Steps[SteDatabase]:
-        """Return the database of a case."""
-        return obtained(self._client, ANALYZE, subject_inputs("case", case))
-
-
-class _SceneCalls(Surface):
-    """Scenes on the tables of a service."""
-
-    @operation
-    def analysis_key(self, case: CaseLike) -> Steps[str]:
-        """Return the content hash of a case's database, after it has been computed."""
-        result = yield from JobCalls.obtain(self, ANALYZE.name, subject_inputs("case", case))
-        return result.key
-
-    @operation
-    def scene(self, scene: SceneLike) -> Steps[Scene]:
-        """Return a scene in SI on tables of the service, for a local run by `dynamics.simulation.simulate`.
-
-        Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``,
-        unless they state their ``stiffness``; those of cases are as from `analyze`, those of files are read
-        here. Housings by their solids are reduced here. Raises `BadInput` named by the fields of the scene;
-        `JobFailed`, `NotFound`, `Unreachable`, `ServiceError`.
-        """
-        # what declares the fields of a scene is loaded with the first call
-        from lineofaction.gearbox.mesh_tables import MeshTables  # noqa: PLC0415
-        from lineofaction.gearbox.subjects import scene_of  # noqa: PLC0415
-
-        inputs, folder = scene_of(scene)
-        source, tables = MeshTables(folder, ServiceTables(self)), {}
-        for index, mesh in inputs.with_database:
-            tables[mesh.name] = yield from source.of(index, mesh)
-        with libraries():
-            # keeps the import of the client light
-            from lineofaction.gearbox.convert.housings import reduced_in  # noqa: PLC0415
-            from lineofaction.gearbox.convert.scene import dynamic_scene  # noqa: PLC0415
-
-            housings = reduced_in(inputs, cache_home())
-        return dynamic_scene(inputs, tables, housings)
-
-
-# What a service says before anything is computed: plans, drawings, examples, effects, files.
-
-
-class _LookupCalls(Surface):
-    """Answers that need no job."""
-
-    @operation
-    def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[schemas.PlanBody]:
-        """Return what the analysis of a case will be, cost and be wrong by.
-
-        `time_budget_s`: CPU seconds that may be spent.
-        """
-        inputs = subject_inputs("case", case) | {"time_budget_s": time_budget_s}
-        return (yield from self._answer("/v1/plans", {"inputs": inputs}, schemas.PlanBody.model_validate))
-
-    @operation
-    def outline(self, case: CaseLike) -> Steps[schemas.OutlineBody]:
-        """Return the drawing of both gears, the path of contact and the figures of the pair."""
-        body = {"inputs": subject_inputs("case", case)}
-        return (yield from self._answer("/v1/cases/outline", body, schemas.OutlineBody.model_validate))
-
-    @operation
-    def examples(self) -> Steps[tuple[ExampleBody, ...]]:
-        """Return cases to begin with."""
-        return self._listed("/v1/examples", "ExampleBody")
-
-    @operation
-    def effects(self) -> Steps[tuple[EffectBody, ...]]:
-        """Return the optional physics, which a case switches in its table ``[effects]``."""
-        return self._listed("/v1/effects", "EffectBody")
-
-    @operation
-    def case_from_toml(self, toml: str) -> Steps[schemas.Case]:
-        """Return the case in the text of a case file; raises `BadInput` with the lines at fault."""
-        return self._validated("/v1/cases/from-toml", toml, "case", schemas.Case)
-
-    @operation
-    def case_to_toml(self, case: CaseLike) -> Steps[str]:
-        """Return a case with all defaults as the text of a case file."""
-        body = {"inputs": subject_inputs("case", case)}
-        return (yield from self._answer("/v1/cases/to-toml", body, _text))
-
-    @operation
-    def case_as_measured(
-        self, case: CaseLike, sheet: Path, gear: str, loaded: str = "right", cutoff_mm: float | None = None
-    ) -> Steps[schemas.Case]:
-        """Return a case with the pitches and traces of one gear's inspection (CSV) on its loaded flanks.
-
-        Raises `BadInput`: a line of the sheet that is none, or a trace that cannot be evaluated; warns of
-        points that are left out.
-        """
-        measured = {"csv": _read(sheet).decode(), "gear": gear, "loaded": loaded, "cutoff_mm": cutoff_mm}
-        return self._as_made(case, {"measured": measured})
-
-    @operation
-    def case_of_class(self, case: CaseLike, tolerance_class: int, seed: int = 0) -> Steps[schemas.Case]:
-        """Return a case with both gears drawn within a class of ISO 1328-1:2013; equal seeds, equal gears."""
-        return self._as_made(case, {"tolerance_class": tolerance_class, "seed": seed})
-
-    @operation
-    def scene_from_toml(self, toml: str) -> Steps[schemas.SceneInput]:
-        """Return the scene in the text of a scene file; raises `BadInput` with the lines at fault."""
-        return self._validated("/v1/scenes/from-toml", toml, "scene", schemas.SceneInput)
-
-    @operation
-    def scene_to_toml(self, scene: SceneLike) -> Steps[str]:
-        """Return a scene, its case files written out, as the text of a scene file."""
-        body = {"inputs": subject_inputs("scene", scene)}
-        return (yield from self._answer("/v1/scenes/to-toml", body, _text))
-
-    @operation
-    def open_unit(self, file: Path, assume: Sequence[str] = ()) -> Steps[UnitBody]:
-        """Return the gear unit in a REXS file (.rexs, .rexsj, .rexsz) as cases, scene and account.
-
-        Its `left_out` says what the file has and the scene has not. Raises `BadInput`: the file cannot be
-        read, is no sound REXS file, or has no such component; the message names it.
-
-        Parameters
-        ----------
-        file : Path
-        assume : sequence of str
-            Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
-        """
-        body = {"rexs_base64": base64.b64encode(_read(file)).decode(), "assume": list(assume)}
-        unit: UnitBody = yield from self._answer("/v1/units/open", body, _model("UnitBody").model_validate)
-        return unit
-
-    def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
-        return self.session.exchange.read(reader, "POST", path, json=body)
-
-    def _as_made(self, case: CaseLike, how: dict[str, Any]) -> Steps[schemas.Case]:
-        def made(answer: dict[str, Any]) -> schemas.Case:
-            for text in answer["left_out"]:
-                warnings.warn(f"left out of the case: {text}", stacklevel=2)
-            return schemas.validated(schemas.Case, answer["case"])
-
-        return self._answer("/v1/cases/as-made", {"inputs": subject_inputs("case", case), **how}, made)
-
-    def _validated(self, path: str, toml: str, name: str, model: type[M]) -> Steps[M]:
-        return self._answer(path, {"toml": toml}, lambda answer: schemas.validated(model, answer[name]))
-
-    def _listed(self, path: str, model: str) -> Steps[tuple[Any, ...]]:
-        return self.session.exchange.read(
-            lambda answer: tuple(map(_model(model).model_validate, answer)), "GET", path
-        )
-
-
-def _read(file: Path) -> bytes:
-    try:
-        return Path(file).read_bytes()
-    except OSError as error:
-        raise BadInput.of("file", str(file), f"a file that can be read ({error.strerror})") from None
-
-
-def _text(answer: dict[str, Any]) -> str:
-    return str(answer["toml"])
-
-
-def _model(name: str) -> Any:
-    """Return a model of answers; all are loaded with the first of them."""
-    return load(f"service.schemas.answers:{name}")
-
-
-# The address of a service, and how HTTP libraries are to reach it.
 
 
 def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:
@@ -266,7 +71,7 @@ def _host(base_url: str) -> str:
     return url.host
 
 
-class Client(Studies, JobCalls, ResultCalls, PageCalls, _LookupCalls, _SceneCalls):
+class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls):
     """All calls of a client.
 
     Raises `BadInput`: the address is none.

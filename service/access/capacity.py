@@ -14,7 +14,7 @@ import structlog
 
 from host import most_open_files
 from lineofaction.gearbox.problems import BadInput, TooManyHeld, TooManyRequests
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.access.quotas import Quota
 
 _AGAIN_S = 1

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import structlog
 
-from service.folders import evict
+from service.folder_size import evict
 from service.store.files import PARTIAL
 
 logger = structlog.get_logger(__name__)

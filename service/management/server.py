@@ -1,4 +1,4 @@
-"""Whether a process is alive and can work; the management port: health, readiness, metrics, without a key.
+"""The management port: health, readiness and metrics of a process, without a key.
 
 The port answers from threads of its own. So it is the same for a program with an event loop and one without,
 and it still answers when the loop of requests is stuck, which is what health is to tell.
@@ -6,12 +6,10 @@ and it still answers when the loop of requests is stuck, which is what health is
 
 from __future__ import annotations
 
-import asyncio
 import json
 import socket
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socketserver import TCPServer, ThreadingMixIn
@@ -20,66 +18,13 @@ from typing import Any, NamedTuple, Self
 from urllib.parse import urlsplit
 
 from lineofaction.gearbox.problems import BadInput
-from service.queue.scheduler import Scheduler
-from service.store.deployment import WriteCheck
-
-TURN_WITHIN_S = 120.0
-"""A scheduler whose turn takes longer is stuck: a turn may wait for locks of the database and for an object
-store, each for some 10 s."""
-_ANSWER_WITHIN_S = 0.8
-"""Supervisors wait for a second."""
+from service.management.vitals import Vitals
 
 METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 _MOST_REQUESTS = 16
 """Answered at once; a connection beyond them is closed."""
 _PATIENCE_S = 5.0
 """For the next piece of a request."""
-
-
-@dataclass
-class EventLoop:
-    """The loop that answers requests, seen from another thread.
-
-    `loop`: none before the program serves.
-    """
-
-    loop: asyncio.AbstractEventLoop | None = None
-
-    def fault(self) -> str:
-        """Return what is wrong with it, empty if it turns or has not begun."""
-        turned = threading.Event()
-        if self.loop is not None:
-            self.loop.call_soon_threadsafe(turned.set)
-            if not turned.wait(_ANSWER_WITHIN_S):
-                return f"The loop of requests has not turned for {_ANSWER_WITHIN_S:g} s."
-        return ""
-
-
-@dataclass(frozen=True)
-class Vitals:
-    """The signs of one process. A fault is a sentence; empty: there is none.
-
-    `serving`: returns the fault of what else it does: of the loop that answers requests.
-    """
-
-    scheduler: Scheduler | None
-    writes: WriteCheck
-    serving: Callable[[], str] = lambda: ""
-
-    def fault_of_health(self) -> str:
-        """Return why the process is to be started again."""
-        if self.scheduler is not None and not self.scheduler.alive:
-            return "The scheduler does not run. Restart the service."
-        if self.scheduler is not None and self.scheduler.turn_age_s > TURN_WITHIN_S:
-            return f"The scheduler has not turned for {TURN_WITHIN_S:g} s. Restart the service."
-        return self.serving()
-
-    def fault_of_readiness(self) -> str:
-        """Return why it cannot work now: what cannot be written, or its own health."""
-        return self.writes.outcome().fault or self.fault_of_health()
-
-
-# The management port.
 
 
 class _Answer(NamedTuple):

@@ -1,6 +1,6 @@
 """The scheduler's side of the job table: claim, progress, end, put back.
 
-One server owns the table (`service.store.database.Ownership`); callers dismiss meanwhile. So each step names
+One server owns the table (`service.store.ownership.Ownership`); callers dismiss meanwhile. So each step names
 its computation as one that runs: one that was dismissed stays so.
 """
 
@@ -15,10 +15,10 @@ from typing import Any
 from sqlalchemy import ColumnElement, Engine, Row, or_, select, update
 
 from service.project import COMMON, at_address
+from service.queue.batch_progress import batch_steps, end_computations
 from service.queue.tables import computations, of_batch
-from service.queue.workload import batch_steps, end_computations
 from service.store.database import instant, now, reading, writing
-from service.store.dialects import retried
+from service.store.retries import retried
 from service.version import solver_version
 
 MOST_LOST_RUNS = 10

@@ -12,14 +12,15 @@ from typing import Any
 from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
 from lineofaction.gearbox.problems import BadInput, QueueFull
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.project import COMMON, address_of
+from service.queue.batch_progress import batch_steps
+from service.queue.differences import NOT_COMPARED, differences_between, differences_column
 from service.queue.tables import BATCH, computations, jobs
-from service.queue.terms import ANYBODY, NOT_COMPARED, USUAL, Terms, differences_between, differences_column
-from service.queue.workload import batch_steps
+from service.queue.terms import ANYBODY, USUAL, Terms
 from service.schemas.answers import Differences
 from service.store.database import now, writing
-from service.store.dialects import retried
+from service.store.retries import retried
 from service.tracing import TRACEPARENT
 from service.version import solver_version
 

@@ -12,8 +12,9 @@ from sqlalchemy import ColumnElement, case, select
 
 from bounds import engineering
 from service.project import at_address
+from service.queue.differences import differences_of
 from service.queue.tables import computations, jobs
-from service.queue.terms import Delivery, Label, differences_of
+from service.queue.terms import Delivery, Label
 from service.schemas.answers import Differences
 from service.store.results import results
 

@@ -19,13 +19,13 @@ from sqlalchemy import Connection, delete, select, update
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, ServiceError, StoreUnavailable
 from lineofaction.gearbox.schemas.reading import validated
 from service.project import address_of
+from service.queue.batch_progress import end_computations
 from service.queue.claims import Claim, Claims
 from service.queue.entry import LIVE, widen_terms
 from service.queue.tables import computations, jobs
-from service.queue.workload import end_computations
 from service.store.database import now, writing
-from service.store.dialects import retried
 from service.store.results import ResultStore
+from service.store.retries import retried
 from service.worker.process import Process, Registry
 
 Json = dict[str, Any]

@@ -16,7 +16,6 @@ from service.queue.job import ENDED
 from service.queue.tables import computations, jobs, webhooks
 from service.store.database import reading, writing
 from service.store.deployment import Deployment
-from service.store.dialects import retried
 from service.store.maintenance import (
     GRACE_S,
     Leftover,
@@ -27,6 +26,7 @@ from service.store.maintenance import (
     purge_quarantine,
 )
 from service.store.results import ResultStore
+from service.store.retries import retried
 
 logger = structlog.get_logger(__name__)
 

@@ -1,6 +1,6 @@
-"""The scheduler: a thread that claims computations, minds workers, settles ends; and what it works with.
+"""The scheduler: a thread that claims computations, minds workers, settles ends.
 
-One server owns the job table (`service.store.database.Ownership`). If it loses the lock its workers go on,
+One server owns the job table (`service.store.ownership.Ownership`). If it loses the lock its workers go on,
 and it starts and notes nothing until it has the lock again; if another server has it, they are killed.
 """
 
@@ -12,24 +12,20 @@ import selectors
 import shutil
 import threading
 import time
-from dataclasses import dataclass
 
 import structlog
-from sqlalchemy import Engine
 
-from host import never_wait_at, require_sessions
+from host import never_wait_at
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, ServiceError, StoreUnavailable
-from service.queue.attempt import Attempt, Children, Crew, Ended, Run, Settlement, WorkerFigures, begun
+from service.queue.attempt import Attempt, begun
 from service.queue.claims import Claim, Claims, Reached
-from service.queue.cluster import Cluster
+from service.queue.crew import Children, Crew, Run
 from service.queue.renewal import Renewal
-from service.queue.retention import Housekeeper, Retention
-from service.queue.submissions import Submissions
+from service.queue.retention import Housekeeper
+from service.queue.settlement import Ended, Settlement
+from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
-from service.store.database import Ownership, open_database
-from service.store.deployment import Deployment
-from service.store.integrity import IntegrityCheck
-from service.store.places import DATABASE_FILE, result_store
+from service.store.ownership import Ownership
 from service.store.results import ResultStore
 from service.worker.order import Outcome
 from service.worker.process import Registry
@@ -355,65 +351,3 @@ class Scheduler:
             if running.claim.id not in held:
                 self._kill(running, "not wanted")
                 shutil.rmtree(running.workspace, ignore_errors=True)
-
-
-# Job table, store and scheduler of one process, put together from its settings.
-
-
-@dataclass(frozen=True)
-class Machinery:
-    """The parts that work on one database and one store; without a scheduler this process does no work."""
-
-    engine: Engine
-    store: ResultStore
-    submissions: Submissions
-    scheduler: Scheduler | None
-    integrity: IntegrityCheck
-
-    def close(self) -> None:
-        """Close what is open; it opens again when it is needed."""
-        if self.scheduler is not None:
-            self.scheduler.give_up()
-        self.engine.dispose()
-
-
-def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
-    """Open the database and put the parts together; a process that `works` has locked its data directory.
-
-    Raises `BadInput`: database or results are none, do not belong together, have another schema, or another
-    server owns the job table; `DatabaseUnavailable`, `StoreUnavailable`: one does not answer;
-    `DatabaseDamaged`; and `Unavailable`: the system has no sessions of processes.
-    """
-    if works:
-        require_sessions()
-    engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
-    try:
-        integrity = IntegrityCheck(engine)
-        integrity.start()
-        target = (settings.results_url, settings.results_cache_mb, settings.results_keys)
-        store = result_store(engine, settings.data_directory, *target)
-        scheduler = _scheduler(settings, registry, engine, store) if works else None
-    except BaseException:
-        engine.dispose()
-        raise
-    return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler, integrity)
-
-
-def _scheduler(settings: Settings, registry: Registry, engine: Engine, store: ResultStore) -> Scheduler:
-    """Return the scheduler of the server that owns the job table."""
-    retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
-    days = settings.retention_days
-    housekeeper = None if days is None else Housekeeper(retention, days)
-    crew = crew_of(settings, registry, Deployment(engine, store))
-    owner = Ownership(engine)
-    owner.acquire()
-    return Scheduler(settings, registry, Claims(engine), store, owner, housekeeper, crew)
-
-
-def crew_of(settings: Settings, registry: Registry, deployment: Deployment) -> Crew:
-    """Return who works; a Dask scheduler that cannot is refused by name."""
-    if settings.scheduler is None:
-        return Children(settings, registry.modules)
-    cluster = Cluster(settings.scheduler, deployment.identifier() or "")
-    cluster.check()
-    return cluster

@@ -11,17 +11,18 @@ from typing import Any
 from sqlalchemy import Engine, bindparam, exists, select, update
 
 from lineofaction.gearbox.problems import NoSuchJob
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.project import COMMON
+from service.queue.batch_progress import end_computations
 from service.queue.entry import LIVE, BatchCase, Entry
 from service.queue.job import ENDED, EVERY_JOB, Job, JobFilter, job_of, jobs_of_all_projects
 from service.queue.pages import PageQuery
 from service.queue.tables import computations, jobs, of_batch
 from service.queue.terms import ANYBODY, USUAL, Label, Terms
-from service.queue.workload import end_computations, states_of
+from service.queue.workload import states_of
 from service.store.database import BRIEF_MS, instant, now, reading, writing
-from service.store.dialects import optional, retried
 from service.store.results import USE_NOTED_EVERY_S, Mark
+from service.store.retries import optional, retried
 
 _FORMER = 200
 """Jobs of a caller, the newest first, among which one of the process is sought."""

@@ -1,17 +1,17 @@
-"""What is kept of a job beside its inputs: caller, priority, label, delivery, what sets it apart."""
+"""What is kept of a job beside its inputs: caller, priority, label, delivery."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from bounds import engineering
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import NETCDF
-from service.access.keyring import Holder
-from service.schemas.answers import Difference, Differences, Value
+from service.access.holder import Holder
+from service.queue.differences import NOT_COMPARED, differences_column
+from service.schemas.answers import Differences
 
 ANYBODY = Holder(name="")
 """The caller of a service without keys."""
@@ -22,9 +22,6 @@ LOWER_COST = (
 Response = Literal["raw", "document"]
 Transmission = Literal["value", "reference"]
 Json = dict[str, Any]
-_MOST = 12
-_LONGEST_LIST, _LONGEST_TEXT = 16, 200
-NOT_COMPARED = Differences(since=None, first=[], number=0)
 
 
 def check_priority(priority: int, caller: Holder) -> None:
@@ -111,59 +108,6 @@ def delivery(response: Response, transmission: Transmission | None, field: str) 
             )
         return Delivery(response, "reference")
     return Delivery(response, transmission or "value")
-
-
-# What sets a job apart: its inputs that differ from those of its caller's job before it.
-
-
-def differences_between(reference: Json, inputs: Json, since: str | None = None) -> Differences:
-    """Return how `inputs` differ from `reference`, those of the job `since`; None: the defaults.
-
-    Lists of tables are compared by place. The first ones are in the order of the inputs; of long lists and
-    texts they have the length in words. True is not 1.
-    """
-    before, now = dict(_leaves(reference)), dict(_leaves(inputs))
-    pairs = {path: (before.get(path), now.get(path)) for path in now | before}
-    differing = [path for path, (old, new) in pairs.items() if type(old) is not type(new) or old != new]
-    first = [
-        Difference(field=path, before=_short(pairs[path][0]), value=_short(pairs[path][1]))
-        for path in differing[:_MOST]
-    ]
-    return Differences(since=since, first=first, number=len(differing))
-
-
-def differences_column(differences: Differences) -> str:
-    """Return differences as the job table has them."""
-    return json.dumps(differences.model_dump())
-
-
-def differences_of(column: str) -> Differences:
-    """Return what `differences_column` wrote; nothing of jobs from before differences were kept."""
-    facts = json.loads(column or "{}")
-    return Differences.model_validate(
-        {"first": [], "number": 0, **facts, "since": facts.get("since") or None}
-    )
-
-
-def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield paths and values of what is no table and no list of tables."""
-    if isinstance(value, dict):
-        for name, part in value.items():
-            yield from _leaves(part, f"{path}.{name}" if path else name)
-    elif isinstance(value, list) and any(isinstance(part, dict) for part in value):
-        for index, part in enumerate(value):
-            yield from _leaves(part, f"{path}[{index}]")
-    else:
-        yield path, value
-
-
-def _short(value: Any) -> Value:
-    """Return a value, or its length in words if it is long."""
-    if isinstance(value, list) and (len(value) > _LONGEST_LIST or any(isinstance(v, list) for v in value)):
-        return f"list of {len(value)}"
-    if isinstance(value, str) and len(value) > _LONGEST_TEXT:
-        return f"text of {len(value)} characters"
-    return value  # type: ignore[no-any-return]  # of JSON
 
 
 @dataclass(frozen=True)

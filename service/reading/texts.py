@@ -16,8 +16,6 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table
 
-# The files that a caller sends together with a text: written into a folder, found there by their names.
-
 Json = dict[str, Any]
 Announce = Callable[[str], None]
 """Says which field of the inputs is read next."""

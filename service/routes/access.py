@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from functools import partial
 
 import structlog
@@ -12,14 +11,13 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
-from service.access.capacity import NOBODY, Capacity, Held, RateLimits
+from service.access.capacity import NOBODY, Held, RateLimits
+from service.access.holder import Holder
 from service.access.identities import Identities
-from service.access.keyring import Holder
 from service.access.quotas import Quota
 from service.origin import is_loopback
+from service.routes.admission import Admission
 from service.routes.media_types import for_one_caller
-
-# How many requests are answered at once, and how many bodies are awaited: of one caller and in all.
 
 _KEY = re.compile(r"loa_[A-Za-z0-9_-]+")
 _LONGEST = 200
@@ -31,71 +29,6 @@ key; the page asks its reader for one."""
 VITAL_PATHS = ("/health", "/ready")
 """Answered however many requests are under way."""
 _SCHEME = "bearer "
-
-
-class Admission:
-    """The requests of all callers of one server process.
-
-    A body that is under way holds none of the places of requests that are answered: whoever sends bodies
-    slowly takes room from slow bodies alone, and from those of others no more than a share. `share`: requests
-    of one caller, and bodies, where nothing else is said.
-    """
-
-    def __init__(self, capacity: Capacity) -> None:
-        self.share = capacity.share
-        self._answered = Held("requests under way", capacity.requests)
-        self._awaited = Held("bodies under way", capacity.requests)
-
-    def quota(self, name: str, most: int) -> Quota:
-        """Return what a caller has left of the requests that it may have answered at once."""
-        return Quota("concurrent", most, most - self._answered.number(name), unit="concurrent-requests")
-
-    @contextmanager
-    def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
-        """Hold a place among bodies until there is no more of it to come, then one among requests.
-
-        Raises `TooManyHeld`, `TooManyRequests`: the caller has as many as it may, or all together have;
-        nothing was read then.
-
-        Parameters
-        ----------
-        scope, receive : Scope, Receive
-            Of the request.
-        name : str
-            Whose it is.
-        most : int or None
-            Requests of this caller, and bodies; None: as many as of all.
-
-        Yields
-        ------
-        Receive
-            What the request is to be read with.
-        """
-        self._answered.refuse_beyond(name, most)
-        headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3
-        follows = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
-        with ExitStack() as place:
-            if not follows:
-                place.enter_context(self._answered.one(name))
-                yield receive
-                return
-            self._awaited.refuse_beyond(name, most)
-            place.enter_context(self._awaited.one(name))
-            whole = False
-
-            async def received() -> Message:
-                nonlocal whole
-                message = await receive()
-                if not whole and not message.get("more_body", False):
-                    whole = True
-                    place.close()
-                    place.enter_context(self._answered.one(name))
-                return message
-
-            yield received
-
-
-# The line of every access in the log: who did what to what, under which scope, and what came of it.
 
 
 class _Visit:
@@ -128,9 +61,6 @@ class _Visit:
             outcome=problem or "granted",
             status=self._status,
         )
-
-
-# Whether a request was meant for this machine: what protects a service without keys from pages of others.
 
 
 def _meant_for_us(scope: Scope) -> bool:

@@ -22,9 +22,9 @@ from lineofaction.gearbox.schemas.outline import OutlineBody
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-from service.access.keyring import Scope
+from service.access.holder import Scope
 from service.live.order import LiveOrder
-from service.page.files import examples
+from service.page.example_cases import examples
 from service.routes.context import Context, Ctx, asker_of
 from service.routes.media_types import JSON
 from service.routes.openapi import documented

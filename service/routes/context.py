@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from threading import Lock
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from fastapi import Depends, Request
 from sqlalchemy import Engine
 
-from lineofaction.gearbox.loading import LOADING
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.live.kept_answers import KeptAnswers
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker
@@ -21,19 +17,14 @@ from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.queue.terms import ANYBODY
 from service.queue.watcher import Watcher
+from service.routes.open_databases import OpenDatabases
 from service.settings import Settings
-from service.store.deployment import WriteCheck
 from service.store.results import ResultStore
+from service.store.write_check import WriteCheck
 from service.worker.process import Registry
 
 if TYPE_CHECKING:
-    from fe_contact.ste import SteDatabase
-    from fe_contact.ste.compiled_force import CompiledForce
-
-
-# What event streams share: their events, and a count of those open.
-
-_MOST_OPEN = 16
+    pass
 
 
 class JobEvent(NamedTuple):
@@ -69,67 +60,6 @@ class Streams:
         self._open -= 1
 
 
-# The STE databases queried last, kept open.
-
-
-@dataclass(frozen=True)
-class _OpenDatabase:
-    """A database and, once somebody asks for forces, its compiled law."""
-
-    database: SteDatabase
-
-    @property
-    def compiled(self) -> bool:
-        """Whether the law is at hand."""
-        return "law" in self.__dict__
-
-    @cached_property
-    def law(self) -> CompiledForce:
-        """The compiled force; raises as `boundary_errors` of what `CompiledForce.of` raises."""
-        with LOADING:
-            from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
-            from lineofaction.gearbox.convert.case import boundary_errors  # noqa: PLC0415
-
-        with boundary_errors():
-            return CompiledForce.of(self.database)
-
-
-class _OpenDatabases:
-    """The databases queried last, read and verified once; they never change."""
-
-    def __init__(self) -> None:
-        self._open: OrderedDict[tuple[str, str], _OpenDatabase] = OrderedDict()
-        self._lock, self._reading = Lock(), Lock()
-
-    def at_hand(self, store: ResultStore, key: str) -> _OpenDatabase | None:
-        """Return the database `key` if it is open: no file is touched, nobody is waited for."""
-        place = store.project, key
-        with self._lock:
-            if place in self._open:
-                self._open.move_to_end(place)
-            return self._open.get(place)
-
-    def get(self, store: ResultStore, key: str) -> _OpenDatabase:
-        """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""
-        opened = self.at_hand(store, key)
-        if opened is not None:
-            return opened
-        with self._reading:  # many ask for a new table at once: it is read once
-            return self.at_hand(store, key) or self._read(store, key)
-
-    def _read(self, store: ResultStore, key: str) -> _OpenDatabase:
-        """Read and verify a database; the one not requested longest is closed."""
-        with LOADING:
-            from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
-
-        opened = _OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
-        with self._lock:
-            self._open[store.project, key] = opened
-            while len(self._open) > _MOST_OPEN:
-                self._open.popitem(last=False)
-        return opened
-
-
 @dataclass(frozen=True)
 class Context:
     """Everything a handler may use, as the callers of one project see it.
@@ -148,7 +78,7 @@ class Context:
     engine: Engine
     writes: WriteCheck
     watcher: Watcher[JobEvent]
-    databases: _OpenDatabases = field(default_factory=_OpenDatabases)
+    databases: OpenDatabases = field(default_factory=OpenDatabases)
     streams: Streams = field(default_factory=Streams)
     project: str = COMMON
     _projects: dict[str, Context] = field(default_factory=dict)
@@ -201,9 +131,6 @@ def asker_of(request: Request, slider: str | None = None) -> Asker:
 def caller_of(request: Request) -> Holder:
     """Return who submits by a request."""
     return key_of(request) or ANYBODY
-
-
-# A dependency that is no coroutine costs a thread, which takes the interpreter from the loop.
 
 
 async def _caller(request: Request) -> Holder:

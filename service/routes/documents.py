@@ -9,7 +9,7 @@ from starlette.responses import Response
 
 from lineofaction.gearbox.loading import LOADING
 from lineofaction.gearbox.problems import NotFound
-from service.access.keyring import Scope
+from service.access.holder import Scope
 from service.page.files import PageFile, page_file
 from service.routes.media_types import JSON, OPENAPI, media_type, negotiated
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute, needs
@@ -81,9 +81,6 @@ def list_effects() -> list[EffectBody]:
         from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)
 
     return [EffectBody.model_validate(effect, from_attributes=True) for effect in EFFECTS]
-
-
-# The pages at / and /docs: plain files, nothing from elsewhere, and a policy that says so.
 
 
 @pages_router.get("/")

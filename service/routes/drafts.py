@@ -17,8 +17,8 @@ from starlette.responses import JSONResponse, Response
 
 from lineofaction.gearbox.problems import BadInput, ServiceError
 from service.routes import queries
-from service.routes.middleware import refusal_of
 from service.routes.offers import ROUTERS
+from service.routes.problem_answers import refusal_of
 from service.routes.scopes import ScopedRoute
 from service.schemas.answers import FaultBody
 

@@ -13,7 +13,7 @@ from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
-from service.access import keyring
+from service.access import holder
 from service.queue.job import Job
 from service.routes.context import Context, Ctx, JobEvent, Streams
 from service.routes.jobs import status_info
@@ -52,7 +52,7 @@ class _TooManyStreams(QueueFull):
         **documented(NoSuchJob, _TooManyStreams),
     },
 )
-@needs(keyring.Scope.READ, streams=True)
+@needs(holder.Scope.READ, streams=True)
 async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 

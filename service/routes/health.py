@@ -10,8 +10,9 @@ from starlette.responses import PlainTextResponse
 
 from host import missing_protections
 from lineofaction.gearbox.problems import ServiceError
-from service.access.keyring import Scope
-from service.management.server import METRICS_TYPE, Vitals
+from service.access.holder import Scope
+from service.management.server import METRICS_TYPE
+from service.management.vitals import Vitals
 from service.routes.context import Ctx
 from service.routes.media_types import NO_STORE
 from service.routes.openapi import documented

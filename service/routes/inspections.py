@@ -9,7 +9,7 @@ from pydantic import Field
 from starlette.responses import Response
 
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from service.access.keyring import Scope
+from service.access.holder import Scope
 from service.routes.cases import READING_FAILURES, CaseBody, CaseRequest, read_by
 from service.routes.context import Ctx
 from service.routes.openapi import documented

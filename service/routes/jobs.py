@@ -1,65 +1,39 @@
-"""Jobs: list, status, dismissal, results (OGC API - Processes 1.0, clauses 7.11.2, 7.12, 7.13, 11, 13)."""
+"""Jobs: list, status, names and dismissal (OGC API - Processes 1.0, clauses 7.11.2, 7.12, 11, 13)."""
 
 from __future__ import annotations
 
 import json
 from datetime import UTC, datetime
-from typing import Annotated, Any, Literal, Union
+from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Header, Query, Request
+from fastapi import APIRouter, Depends, Query, Request
 from pydantic import Field
-from starlette.responses import JSONResponse, Response
+from starlette.responses import Response
 
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import (
     BadInput,
-    DamagedFile,
-    Fault,
-    JobDismissed,
-    JobFailed,
     NoSuchJob,
-    NotFound,
-    ResultNotReady,
-    ServiceError,
 )
-from lineofaction.gearbox.registry import NETCDF, RESULTS
-from service.access.keyring import Scope
+from service.access.holder import Scope
 from service.queue.job import Job, JobFilter, subject_of
-from service.queue.terms import Delivery, Transmission, delivery
-from service.queue.terms import Response as Form
 from service.routes.context import Context, Ctx, caller_of
 from service.routes.headlines import with_headlines
+from service.routes.list_pages import Cursor, Limit, mark_of, page_links
 from service.routes.lists import LISTED, list_answer
-from service.routes.media_types import (
-    JSON,
-    OF_VERSIONS,
-    Cursor,
-    Limit,
-    answer,
-    mark_of,
-    negotiated,
-    page_links,
-)
 from service.routes.openapi import documented
-from service.routes.results import FILE, OF_RESULT, file_response, known_result
 from service.routes.scopes import ScopedRoute, needs, require
 from service.schemas.answers import (
     JobInputs,
     JobList,
     JobStatus,
     Link,
-    ProblemBody,
-    ResultReference,
     StatusInfo,
-    results_document,
 )
-from service.schemas.execute import BatchResult, BatchResults, LabelChange, Tag, Title
+from service.schemas.execute import LabelChange, Tag, Title
 from service.store.results import Mark
 from service.webhooks.calls import Calls
 from service.worker.process import Registry
-
-# Parameters by which a list of jobs is filtered (OGC API - Processes 1.0, clause 12.2).
-
 
 _DURATION: dict[str, Any] = {"ge": 0, "le": 1_000_000_000}
 
@@ -100,21 +74,7 @@ Once = Annotated[
     bool, Query(description="Of jobs with one result the newest alone; one in vain where all are")
 ]
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
-input_warnings = on_demand("service.worker.preparations:input_warnings")
-AskedForm = Annotated[Form | None, Query(description="Form of the result; overrides that of the execution")]
-AskedMode = Annotated[
-    Transmission | None,
-    Query(alias="transmissionMode", description="Transmission mode; overrides that of the execution"),
-]
-AskedType = Annotated[
-    str,
-    Header(
-        alias="Accept",
-        description=f"{JSON} for the document, which generated clients prefer by default; {NETCDF} for the "
-        "file. A request without it, or that takes both, gets the form of the execution.",
-    ),
-]
-_REFUSED = documented(NoSuchJob, ResultNotReady, NotFound, JobDismissed, JobFailed, DamagedFile)
+input_warnings = on_demand("service.worker.expectations:input_warnings")
 
 
 async def job_filter(
@@ -261,104 +221,3 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         links=links,
         warnings=list(input_warnings(job.inputs)),
     )
-
-
-# Results in the form that was requested.
-
-
-def job_results_router(registry: Registry) -> APIRouter:
-    """Return the route, whose documents are typed by the processes that make them."""
-    router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
-    documents = [results_document(process.id, process.output) for process in registry.values()]
-    answers: dict[int | str, dict[str, Any]] = {
-        200: answer(
-            "A document of where the result is by the name of its output, or its file; of a batch what came "
-            "of each of its jobs, in order",
-            *(*OF_RESULT, "Content-Digest", "Content-Location"),
-            model=Union[(*documents, BatchResults)],
-            content={JSON: {}, NETCDF: {"schema": FILE}},
-        ),
-        204: answer("The result is where the header Link says", "Link", "Vary"),
-        304: answer("Not modified", *OF_VERSIONS, "Result-Kind", "Content-Location"),
-    }
-    router.add_api_route(
-        "/{job_id}/results",
-        job_results,
-        summary="Results of a job",
-        response_class=Response,
-        responses=answers | _REFUSED,
-    )
-    return router
-
-
-@needs(Scope.READ)
-def job_results(
-    job_id: str,
-    request: Request,
-    context: Ctx,
-    response: AskedForm = None,
-    mode: AskedMode = None,
-    _accept: AskedType = JSON,  # for the description: in a request without it, any type will do
-) -> Response:
-    """Return the result as the execution requested it, or as this request does; say why there is none."""
-    job = context.submissions.find(job_id)
-    if job.children:
-        return JSONResponse(batch_results(context, job).model_dump())
-    problem = problem_of(job)
-    if problem is not None:
-        raise problem
-    process = context.registry[job.process]
-    if response is None and mode is None:
-        form = _accepted(job.delivery, request.headers.get("accept", "*/*"))
-    else:
-        form = delivery(response or job.delivery.response, mode, "transmissionMode")
-    reference = reference_of(job)
-    if form.transmission == "reference" and form.response == "raw":
-        link = f'<{reference.href}>; rel="item"; type="{NETCDF}"; title="{process.output}"'
-        return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
-    if form.transmission == "reference":
-        return JSONResponse({process.output: reference.model_dump()}, headers={"Vary": "Accept"})
-    place = {"Content-Location": reference.href}
-    return file_response(known_result(context, job.key, process.kind), request, place)
-
-
-def _accepted(ordered: Delivery, accept: str) -> Delivery:
-    """Return the form of the execution, or the other one if the caller prefers its type."""
-    offered = (JSON, NETCDF) if ordered.response == "document" else (NETCDF, JSON)
-    accepted = negotiated(accept, offered)
-    if accepted in (None, offered[0]):
-        return ordered
-    return delivery("document" if accepted == JSON else "raw", None, "transmissionMode")
-
-
-def batch_results(context: Context, batch: Job) -> BatchResults:
-    """Return what came of the jobs of a batch, in order."""
-    if not batch.ended:
-        raise ResultNotReady(f"Batch {batch.id} is {batch.status}: {batch.message}")
-    output = context.registry[batch.process].output
-    return BatchResults(jobs=[_in_batch(job, output) for job in context.submissions.children(batch.id)])
-
-
-def _in_batch(job: Job, output: str) -> BatchResult:
-    problem, results = problem_of(job), {output: reference_of(job)}
-    if problem is None:
-        return BatchResult(jobID=job.id, status="successful", results=results, problem=None)
-    status: JobStatus = job.status  # type: ignore[assignment]  # the table holds no others
-    body = ProblemBody.model_validate(problem.as_json())
-    return BatchResult(jobID=job.id, status=status, results=None, problem=body)
-
-
-def problem_of(job: Job) -> ServiceError | None:
-    """Return what says why a job has no result, None if it has one."""
-    if job.status == "failed":
-        return JobFailed(job.message, [Fault(**fault) for fault in job.faults])
-    if job.status == "dismissed":
-        return JobDismissed(f"Job {job.id} was cancelled.")
-    if job.status != "successful":
-        return ResultNotReady(f"Job {job.id} is {job.status}: {job.message}")
-    return None
-
-
-def reference_of(job: Job) -> ResultReference:
-    """Return where the result of a job is."""
-    return ResultReference(href=f"{RESULTS}/{job.key}", type=NETCDF, hash=job.key)

@@ -1,23 +1,15 @@
-"""Representations of answers: media types, caching, headers, pages of lists."""
+"""Representations of answers: media types, caching, headers."""
 
 from __future__ import annotations
 
-import base64
-import binascii
-import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from typing import Annotated, Any
-from urllib.parse import urlencode
+from typing import Any
 
-from fastapi import Query, Request
 from starlette.datastructures import MutableHeaders
 from starlette.types import Message, Send
 
-from lineofaction.gearbox.problems import BadInput
 from service.access.quotas import LIMIT, POLICY
-from service.schemas.answers import Link
-from service.store.results import Mark
 
 JSON, CBOR, RAW = "application/json", "application/cbor", "application/octet-stream"
 WAV = "audio/wav"
@@ -70,12 +62,6 @@ HEADERS: dict[str, dict[str, Any]] = {
         ("Link", "Address of the result, its type and the name of the output as title (RFC 8288)", _TEXT),
     )
 }
-_MARK = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z) ([0-9a-f-]{36}|[0-9a-f]{64})\Z")
-Cursor = Annotated[
-    str | None,
-    Query(max_length=200, description="Cursor from the link `next` of the previous page"),
-]
-Limit = Annotated[int, Query(ge=1, le=1000, description="Largest number of entries on the page")]
 
 
 def media_type(header: str) -> str:
@@ -142,39 +128,3 @@ def described_headers(*names: str) -> dict[str, Any]:
 def answer(description: str, *headers: str, **further: Any) -> dict[str, Any]:
     """Return what a route declares of an answer; `further`: its ``model`` or its ``content``."""
     return {"description": description, **further, "headers": described_headers(*headers)}
-
-
-# Cursors of pages: opaque to callers, good as long as the service, whatever becomes of what they name.
-
-
-def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:
-    """Return the links of a page: itself, and the next one behind `last` with the same parameters."""
-    parameters = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
-    links = [Link(href=_href(path, request.query_params.multi_items()), rel="self", title="This page")]
-    if last is not None:
-        cursor = base64.urlsafe_b64encode(" ".join(last).encode()).decode().rstrip("=")
-        following = _href(path, [*parameters, ("cursor", cursor)])
-        links.append(Link(href=following, rel="next", title="Next page"))
-    return links
-
-
-def _href(path: str, parameters: Sequence[tuple[str, str]]) -> str:
-    return f"{path}?{urlencode(parameters)}" if parameters else path
-
-
-def mark_of(cursor: str | None) -> Mark | None:
-    """Return the mark of a cursor, None without one.
-
-    Raises `BadInput`: it is no cursor of this service.
-    """
-    if cursor is None:
-        return None
-    try:
-        text = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
-    except (binascii.Error, ValueError):
-        text = ""
-    match = _MARK.match(text)
-    if match is None:
-        advice = "Follow the link next of a page, or leave it out for the first page."
-        raise BadInput.of("cursor", cursor, "taken from a page of this list", advice)
-    return Mark(*match.groups())

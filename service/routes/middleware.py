@@ -1,43 +1,31 @@
-"""Around every request: identifier, body limit, log line, figures; errors leave as problems (RFC 9457)."""
+"""Around every request: identifier, limits of its body, log line, figures."""
 
 from __future__ import annotations
 
 import asyncio
-import json
 import re
 import time
 import uuid
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
-from http import HTTPStatus
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import structlog
-from fastapi import FastAPI, Request
-from fastapi.exceptions import RequestValidationError
-from pydantic import BaseModel
-from starlette.exceptions import HTTPException
-from starlette.responses import Response
-from starlette.routing import compile_path
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
 from lineofaction.gearbox.problems import (
-    BadInput,
-    Fault,
     ServiceError,
     TooLarge,
     TooSlow,
     Unexpected,
     UnsupportedMediaType,
 )
-from lineofaction.gearbox.schemas.faults import fault_of, innermost, model_in
 from service.access.quotas import quota_fields
-from service.management.figures import Metrics
-from service.routes.media_types import CBOR, EVENT_STREAM, JSON, NO_STORE, PROBLEM, RAW, media_type
+from service.management.request_figures import Metrics
+from service.routes.media_types import CBOR, EVENT_STREAM, RAW, media_type
+from service.routes.problem_answers import problem_of
 from service.tracing import TRACEPARENT, current_traceparent, trace_facts, valid_traceparent
-
-# Every error leaves as problem+json, in one shape.
 
 _MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
 """Largest number of what each sign begins, in JSON or in the TOML that it carries.
@@ -51,92 +39,6 @@ PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
 """A body is to be there after so long, and longer by what has come at this rate."""
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
-
-
-def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
-    """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
-    body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
-    fields = {"Cache-Control": NO_STORE, **(headers or {})}
-    return Response(body, int(facts["status"]), fields, media_type=PROBLEM)
-
-
-def problem_of(error: ServiceError) -> Response:
-    """Return the response to an error raised on purpose."""
-    headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
-    if error.challenge is not None:
-        headers["WWW-Authenticate"] = error.challenge
-    if error.accept_post is not None:
-        headers["Accept-Post"] = error.accept_post
-    return _problem_response(error.as_json(), headers)
-
-
-def install_error_handlers(app: FastAPI) -> None:
-    """Let `app` answer every error with a problem."""
-    app.add_exception_handler(ServiceError, _raised_on_purpose)
-    app.add_exception_handler(RequestValidationError, _invalid_request)
-    app.add_exception_handler(HTTPException, _refused_by_framework)
-
-
-def _raised_on_purpose(request: Request, error: Exception) -> Response:
-    assert isinstance(error, ServiceError)
-    request.state.problem = error.kind
-    return problem_of(error)
-
-
-def _invalid_request(request: Request, error: Exception) -> Response:
-    assert isinstance(error, RequestValidationError)
-    return _raised_on_purpose(request, refusal_of(request, error))
-
-
-def refusal_of(request: Request, error: RequestValidationError) -> ServiceError:
-    """Return the refusal of a request that the framework could not read: its faults, or its media type."""
-    sent = media_type(request.headers.get("content-type", ""))
-    unread = any(item["loc"][0] == "body" and item["type"] != "missing" for item in error.errors())
-    as_json = sent == JSON or (sent.startswith("application/") and sent.endswith("+json"))
-    if unread and not as_json:
-        return UnsupportedMediaType.of(sent, JSON)
-    model = getattr(request.scope.get("endpoint"), "body_model", None)
-    return BadInput(_request_fault(item, model) for item in innermost(error.errors()))
-
-
-def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
-    """One fault, named as in the case or scene file where it lies inside one."""
-    part, *loc = item["loc"]
-    if part != "body":
-        return fault_of(item, None, loc)
-    if item["type"] == "json_invalid":
-        return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
-    inside = len(loc) > 2 or (len(loc) == 2 and item["type"] == "refused")
-    if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and inside and model is not None:
-        inner = model_in(model.model_fields["inputs"].annotation)
-        named = None if inner is None else inner.model_fields.get(loc[1])
-        if named is not None:
-            return fault_of(item, model_in(named.annotation), loc[2:])
-    return fault_of(item, model, loc if loc or item["type"] == "refused" else ["body"])
-
-
-def _refused_by_framework(request: Request, error: Exception) -> Response:
-    """Answer what routing refuses: unknown path, wrong method, unreadable body."""
-    assert isinstance(error, HTTPException)
-    phrase = HTTPStatus(error.status_code).phrase
-    request.state.problem = phrase.lower().replace(" ", "-")
-    facts = {
-        "type": "about:blank",
-        "title": phrase,
-        "status": error.status_code,
-        "detail": str(error.detail),
-        "errors": [],
-    }
-    headers = dict(error.headers or {})
-    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        # whichever routes hold them: the framework names those of one route only
-        paths = request.app.openapi()["paths"]
-        matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
-        headers["Allow"] = ", ".join(sorted({name.upper() for path in matching for name in paths[path]}))
-    return _problem_response(facts, headers)
-
-
-# Event streams as they are sent: how many are open, and how many events went out.
 
 
 class _StreamFigures:
@@ -160,9 +62,6 @@ class _StreamFigures:
     def end(self) -> None:
         if self.route:
             self._metrics.streams(self.route, -1)
-
-
-# Limits of a body before it is read: the cost of reading depends on its parts, not on its bytes.
 
 
 class _Extent:

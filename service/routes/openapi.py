@@ -37,7 +37,7 @@ from lineofaction.gearbox.problems import (
 from lineofaction.gearbox.schemas.named_parts import with_named
 from lineofaction.gearbox.schemas.plan import InputWarning
 from lineofaction.gearbox.schemas.query import QueryInput
-from service.access.keyring import MEANINGS
+from service.access.holder import MEANINGS
 from service.routes.access import OPEN_PATHS
 from service.routes.media_types import (
     CBOR,
@@ -51,11 +51,9 @@ from service.routes.media_types import (
 )
 from service.routes.middleware import API_PREFIX
 from service.routes.scopes import KEY_SCHEME
+from service.schemas.answer_examples import answer_example, problem_example
 from service.schemas.answers import ProblemBody, ReportSection
-from service.schemas.examples import answer_example, problem_example, request_example
-
-# The refusals of every request: by status, each status said once.
-
+from service.schemas.examples import request_example
 
 Json = dict[str, Any]
 Kinds = dict[int, dict[str, str]]

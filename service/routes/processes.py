@@ -1,11 +1,9 @@
-"""Processes, executions, batches and webhooks (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
+"""Processes and their executions (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
 
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Iterator
 from functools import cache
 from typing import Annotated, Any, cast
 
@@ -15,35 +13,24 @@ from pydantic import BaseModel, create_model
 
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import (
-    BadInput,
-    Fault,
     LiveUnavailable,
     NoSuchProcess,
     QueueFull,
     TooManyHeld,
 )
 from lineofaction.gearbox.registry import NETCDF
-from lineofaction.gearbox.schemas.model import MOST_FAULTS, BoundaryModel
-from lineofaction.gearbox.schemas.reading import validated
+from lineofaction.gearbox.schemas.model import BoundaryModel
 from service.access.capacity import NOBODY
-from service.access.keyring import Holder, Scope
+from service.access.holder import Holder, Scope
 from service.live.order import LiveOrder
 from service.live.turns import Asker
-from service.origin import Origin
-from service.queue.entry import BatchCase
-from service.queue.terms import (
-    ANYBODY,
-    Label,
-    Terms,
-    check_priority,
-    cost_limit,
-    delivery,
-    differences_between,
-    refuse_beyond,
-)
+from service.queue.differences import differences_between
+from service.queue.terms import ANYBODY, Label, Terms, check_priority, cost_limit, delivery, refuse_beyond
+from service.routes.callbacks import checked_uris, enter_calls
 from service.routes.context import Context, Ctx, From
-from service.routes.jobs import batch_results, problem_of, reference_of, status_info
-from service.routes.media_types import Limit, answer
+from service.routes.jobs import status_info
+from service.routes.list_pages import Limit
+from service.routes.media_types import answer
 from service.routes.openapi import documented
 from service.routes.scopes import ScopedRoute, needs
 from service.schemas.answers import (
@@ -54,17 +41,11 @@ from service.schemas.answers import (
     ProcessList,
     ProcessSummary,
     StatusInfo,
-    Subscriber,
     ValueDescription,
 )
-from service.schemas.execute import BatchRequest, execute_model
-from service.settings import Settings
+from service.schemas.execute import execute_model
 from service.store.database import now
-from service.webhooks.calls import Calls
-from service.webhooks.deliverer import Deliverer, Outbox
 from service.worker.process import Process, Registry
-
-# Whom a request may have called, and what is told.
 
 logger = structlog.get_logger(__name__)
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
@@ -81,60 +62,7 @@ IdempotencyKey = Annotated[
 ]
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
 Json = dict[str, Any]
-_PREDICTING_S = 1.0
-"""CPU time for the predicted costs of one batch: 6 ms a case in the plane, 0.1 s over the face."""
-router = APIRouter(prefix="/batches", tags=["jobs"], route_class=ScopedRoute)
-predicted_seconds = on_demand("service.worker.preparations:predicted_seconds")
-
-
-def _checked_uris(settings: Settings, subscriber: Subscriber | None) -> dict[str, str]:
-    """Return the addresses to call, by event; raises `BadInput` for any that is not listed."""
-    if subscriber is None:
-        return {}
-    listed = settings.origins
-    if not listed:
-        bound = "left out: this service sends no requests to addresses that its callers name"
-        raise BadInput.of("subscriber", None, bound, "Follow /v1/jobs/{id}/events.")
-    for event, uri in subscriber.uris.items():
-        with suppress(ValueError):
-            if Origin.of(uri) in listed:
-                continue
-        bound = f"an address at {' or '.join(map(str, sorted(listed, key=str)))}"
-        raise BadInput.of(f"subscriber.{event}Uri", uri, bound)
-    return subscriber.uris
-
-
-def _enter_calls(context: Context, job: str, uris: dict[str, str]) -> None:
-    if uris:
-        Calls(context.engine).enter(job, uris)
-
-
-def deliverer_of(context: Context) -> Deliverer | None:
-    """Return what makes the calls, None where none are allowed."""
-    settings = context.settings
-    if not settings.origins:
-        return None
-    calls = Calls(context.engine)
-    outbox = Outbox(
-        calls,
-        settings.origins,
-        settings.webhook_key,
-        lambda job, event: _message(context.within(calls.project_of(job)), job, event),
-    )
-    return Deliverer(outbox)
-
-
-def _message(context: Context, identifier: str, event: str) -> Any:
-    """Return what is told: the status, the document of the results, or the problem."""
-    job = context.submissions.find(identifier)
-    problem = problem_of(job)
-    if event == "inProgress":
-        return status_info(job, context.registry).model_dump()
-    if event == "failed" and problem is not None:
-        return problem.as_json()
-    if job.children:
-        return batch_results(context, job).model_dump()
-    return {context.registry[job.process].output: reference_of(job).model_dump()}
+predicted_seconds = on_demand("service.worker.expectations:predicted_seconds")
 
 
 def processes_router(registry: Registry) -> APIRouter:
@@ -188,7 +116,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         output = getattr(request.outputs, process.output)
         field = f"outputs.{process.output}.transmissionMode"
         form = delivery(request.response, output and output.transmissionMode, field)
-        uris = _checked_uris(context.settings, request.subscriber)
+        uris = checked_uris(context.settings, request.subscriber)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
         former = context.submissions.newest(caller, process.id)
         if former is None:
@@ -203,7 +131,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         label = Label.of(request.title, request.tags)
         terms = Terms(form, label, since, request.priority, limit, kept, request.reuse)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
-        _enter_calls(context, status.jobID, uris)
+        enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [item.partition(";")[0].strip().lower() for item in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
@@ -317,99 +245,3 @@ def _description(process: Process) -> ProcessDescription:
         process.output: ValueDescription(title=process.output, description=process.title, schema=output)
     }
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)
-
-
-# Batches: one request, many jobs of one process, all entered or none.
-
-
-@router.post(
-    "",
-    summary="Submit a batch",
-    status_code=201,
-    responses=documented(QueueFull) | {201: answer("The batch, a job like others", "Location")},
-)
-@needs(Scope.SUBMIT, body=BatchRequest)
-def submit_batch(
-    request: BatchRequest,
-    response: Response,
-    context: Ctx,
-    caller: From,
-    idempotency_key: IdempotencyKey = None,
-) -> StatusInfo:
-    """Check the inputs of all jobs and enter them with the batch they are in, all or none.
-
-    The batch is a job: its status, events and dismissal are those of all jobs in it.
-    """
-    if request.process not in context.registry:
-        raise BadInput.of("process", request.process, f"one of {', '.join(context.registry)}")
-    process = context.registry[request.process]
-    check_priority(request.priority, caller)
-    terms = Terms(
-        label=Label.of(request.title, request.tags),
-        priority=request.priority,
-        max_cost_s=cost_limit(request.max_cost_s, caller),
-    )
-    uris = _checked_uris(context.settings, request.subscriber)
-    looked = now()
-    cases = _cases(context, process, _checked_inputs(context, process, request))
-    entry = context.submissions.entry(caller, terms)
-    identifier = entry.batch(process.id, cases, looked, idempotency_key)
-    _enter_calls(context, identifier, uris)
-    logger.info("batch entered", job=identifier, process=process.id, jobs=len(cases))
-    context.wake()
-    response.headers["Location"] = f"/v1/jobs/{identifier}"
-    return status_info(context.submissions.find(identifier), context.registry)
-
-
-def _checked_inputs(context: Context, process: Process, request: BatchRequest) -> list[Json]:
-    """Return the normalized inputs of all jobs.
-
-    Raises `BadInput`: with the faults of all, by their index; if they are too many with the first of each
-    job.
-    """
-    inputs, faults = [], []
-    for index in range(len(request.jobs)):
-        try:
-            model = validated(process.inputs, request.inputs_of(index))
-            inputs.append(process.prepare(model, context.store))
-        except BadInput as error:
-            faults.append(_of_job(index, error))
-    if sum(map(len, faults)) > MOST_FAULTS:
-        faults = [of_job[:1] for of_job in faults]
-    if faults:
-        raise BadInput(fault for of_job in faults for fault in of_job)
-    return inputs
-
-
-def _of_job(index: int, error: BadInput) -> list[Fault]:
-    """Return the faults of one job, named as in its case or scene file."""
-    faults = []
-    for fault in error.faults:
-        name = fault.field.removeprefix("case.").removeprefix("scene.")
-        faults.append(Fault(f"jobs[{index}].{name}", fault.value, fault.bound, fault.suggestion))
-    return faults
-
-
-def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:
-    """Return the jobs of a batch: which results are there, and what the others cost beside each other."""
-    keys = [process.key(one) for one in inputs]
-    stored = {key: context.store.find(key, process.kind) is not None for key in set(keys)}
-    new = {key: one for key, one in zip(keys, inputs, strict=True) if not stored[key]}
-    costs = _costs(new)
-    known = [cost for cost in costs.values() if cost is not None]
-    usual = sum(known) / len(known) if known else 1.0
-    return [
-        BatchCase(key, one, stored[key], costs.get(key) or usual)
-        for key, one in zip(keys, inputs, strict=True)
-    ]
-
-
-def _costs(inputs: dict[str, Json]) -> dict[str, float | None]:
-    """Predict what jobs cost, as many as there is time for: the others cost as much as these do."""
-    costs: dict[str, float | None] = {}
-    end = time.thread_time() + _PREDICTING_S
-    for key, one in inputs.items():
-        costs[key] = predicted_seconds(one)
-        if time.thread_time() > end:
-            break
-    return costs

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from fastapi.routing import APIRoute
 from pydantic import BaseModel
-from starlette import types
 from starlette.responses import Response
 
 from lineofaction.gearbox.problems import MissingScope
-from service.access.keyring import Scope
+from service.access.holder import Scope
 from service.routes.context import key_of
 
 Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
@@ -81,59 +80,3 @@ def require(request: Request, scope: Scope) -> None:
     key = key_of(request)
     if key is not None and scope not in key.scopes:
         raise MissingScope.of(key.name, scope, key.scopes)
-
-
-# Routes that take the request as it is: no dependencies, no validation by the framework.
-
-
-def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Let a coroutine of the request answer for an endpoint, whose signature is what OpenAPI documents."""
-
-    def attach(endpoint: Callable[..., None]) -> Callable[..., None]:
-        endpoint.direct = handler  # type: ignore[attr-defined]
-        return endpoint
-
-    return attach
-
-
-class DirectRoute(ScopedRoute):
-    """A route whose endpoint is `answered_by` a coroutine.
-
-    For queries that come thousands of times a second: solving dependencies costs more there than the answer.
-    """
-
-    def answering(self) -> Callable[[Request], Any]:
-        """Return the coroutine itself."""
-        handler: Handler = self.endpoint.direct  # type: ignore[attr-defined]
-        return handler
-
-
-class DirectRoutes:
-    """In front of the framework's router, which compares a path with every route it has.
-
-    Parameters
-    ----------
-    app : ASGIApp
-        What serves all other requests, and those that a direct route refuses by their method.
-    router : APIRouter
-        Its direct routes are answered here.
-    prefix : str
-        Under which the router is included.
-    """
-
-    def __init__(self, app: types.ASGIApp, router: APIRouter, prefix: str) -> None:
-        self._app, self._prefix = app, prefix
-        self._routes = [route for route in router.routes if isinstance(route, DirectRoute)]
-
-    async def __call__(self, scope: types.Scope, receive: types.Receive, send: types.Send) -> None:
-        """Serve one request."""
-        for route in self._routes:
-            if scope["type"] == "http" and scope["method"] in (route.methods or ()):
-                path = scope["path"]
-                match = route.path_regex.match(path.removeprefix(self._prefix))
-                if match is not None and path.startswith(self._prefix):
-                    scope.update(route=route, endpoint=route.endpoint, path_params=match.groupdict())
-                    response = await route.get_route_handler()(Request(scope, receive, send))
-                    await response(scope, receive, send)
-                    return
-        await self._app(scope, receive, send)

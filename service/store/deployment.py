@@ -7,26 +7,21 @@ the two differ nothing is served and nothing is removed. Whether both can be wri
 from __future__ import annotations
 
 import json
-import math
-import threading
-import time
 import uuid
 from collections.abc import Callable
-from concurrent.futures import Future
-from concurrent.futures import TimeoutError as NotDone
 from dataclasses import dataclass
 from pathlib import Path
 
-import structlog
 from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
-from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable, NoSpace, ServiceError
+from lineofaction.gearbox.problems import BadInput, NoSpace
 from service.store.database import metadata, now, reading, shown, writing
-from service.store.dialects import dialect_of, outage_of, retried, shortage
+from service.store.dialects import dialect_of
 from service.store.files import ResultName
-from service.store.integrity import IntegrityCheck
 from service.store.results import ResultStore
+from service.store.retries import outage_of, retried
+from service.store.shortages import shortage
 
 NOTE = "deployment.json"
 """Name of the note beside the files."""
@@ -54,14 +49,6 @@ _ELSEWHERE = (
     "that this one names (LOA_RESULTS_URL)."
 )
 _WRITABLE = "Give the service the right to write there, or name another place (LOA_RESULTS_URL)."
-KEPT_S = 1.0
-"""For so long an outcome is good: what was written then need not be tried now."""
-PATIENCE_S = 0.8
-"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
-LATE_S = 10.0
-"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
-how long a submission waits for its turn."""
-logger = structlog.get_logger(__name__)
 
 
 @dataclass(frozen=True)
@@ -232,87 +219,3 @@ class _Comparison:
         index = "names other files" if self.named else "is empty"
         bound = f": there are files (such as {self.file}) and the index {index}"
         raise refusal(bound, _ELSEWHERE if self.named else _REINDEX)
-
-
-# Whether a service can write: tried when somebody wants to know, in a thread of its own.
-
-
-@dataclass(frozen=True)
-class _Writable:
-    """Faults of writing by part, empty if there is none.
-
-    `late`: the database did not answer in time, or others held it; nothing is known to be broken.
-    """
-
-    database: str = ""
-    results: str = ""
-    late: bool = False
-
-    @property
-    def fault(self) -> str:
-        """The first fault, in a sentence."""
-        return self.database or self.results
-
-
-class WriteCheck:
-    """Writes to database and place of results, at most once in `KEPT_S`, whoever asks.
-
-    What a look through the database finds damaged counts as not written.
-    """
-
-    def __init__(self, deployment: Deployment, integrity: IntegrityCheck | None = None) -> None:
-        self._deployment, self._integrity = deployment, integrity
-        self._lock = threading.Lock()
-        self._outcome: Future[_Writable] | None = None
-        self._begun = 0.0
-        self._succeeded = -math.inf
-
-    def outcome(self) -> _Writable:
-        """Return what can be written, within `PATIENCE_S`."""
-        with self._lock:
-            old = time.monotonic() - self._begun > KEPT_S
-            if self._outcome is None or (old and self._outcome.done()):
-                self._begun, self._outcome = time.monotonic(), Future()
-                threading.Thread(target=self._try, args=(self._outcome,), daemon=True).start()
-            outcome = self._outcome
-        try:
-            written = outcome.result(timeout=PATIENCE_S)
-        except NotDone:
-            text = f"What is written to the database and the results is not there after {PATIENCE_S:g} s."
-            written = _Writable(text, text, late=True)
-        waits = written.late and time.monotonic() - self._succeeded < LATE_S
-        return _Writable() if waits else written
-
-    def _try(self, outcome: Future[_Writable]) -> None:
-        begun = time.monotonic()
-        results, _ = self._fault("results", self._deployment.write_place)
-        database, late = self._fault("database", self._write_database)
-        written = _Writable(database, results, late=late and not results)
-        if not written.fault:
-            self._succeeded = begun
-        outcome.set_result(written)
-
-    def _write_database(self) -> None:
-        if self._integrity is not None:
-            self._integrity.confirm()
-        self._deployment.write_database()
-
-    @staticmethod
-    def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:
-        """Return what went wrong, and whether it may be late only; names of files are for the log."""
-        try:
-            step()
-        except BadInput as error:
-            logger.warning("cannot be written", part=part, error=str(error))
-            return (
-                "The place of results belongs to another deployment or refuses writing. The log says more.",
-                False,
-            )
-        except ServiceError as error:
-            return str(error), type(error) is DatabaseUnavailable
-        except OSError as error:
-            return f"The place of results cannot be written: {error.strerror}.", False
-        except Exception:
-            logger.exception("write check failed", part=part)
-            return f"An unexpected failure occurred while the {part} was written. The log says more.", False
-        return "", False

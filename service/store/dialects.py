@@ -1,44 +1,26 @@
-"""All that differs between SQLite and PostgreSQL; steps that outlast a lost connection."""
+"""All that differs between SQLite and PostgreSQL."""
 
 from __future__ import annotations
 
-import errno
-import functools
 import math
 import os
-import shutil
 import sqlite3
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Concatenate, ParamSpec, Protocol, TypeVar, cast
+from typing import Any, Protocol, cast
 
-import structlog
 from sqlalchemy import URL, Connection, Engine, NullPool, Table, create_engine, event, func, select, text
 from sqlalchemy.dialects import postgresql, sqlite
-from sqlalchemy.exc import DBAPIError, SQLAlchemyError
-from sqlalchemy.exc import TimeoutError as PoolTimeout
-from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
-from tenacity.wait import wait_exponential, wait_random
+from sqlalchemy.exc import DBAPIError
 
 from lineofaction.gearbox.problems import (
     BadInput,
-    Busy,
-    DatabaseDamaged,
-    DatabaseUnavailable,
-    NoSpace,
-    OutOfFiles,
 )
-from service.store.writers import TurnTimeout, writers_of
-
-# Space on the disks that are written to, and files that this process may still open.
-
-
-LEAST_FREE = 16_000_000
-"""Bytes below which a folder counts as full: four times the longest body of a submission, which the database
-writes more than once."""
+from service.store.shortages import out_of_files, shortage
+from service.store.writers import writers_of
 
 CHANNEL = "loa_jobs"
 """What PostgreSQL notifies on when a job changed; the triggers of schema 0011 do."""
@@ -103,42 +85,6 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
 }
 _CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
 _LOCKED = "55P03"  # by others, for longer than lock_timeout
-_ATTEMPTS = 6
-_PATIENCE_S = 5.0
-"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
-_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
-_KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
-    ROOM: ("no space", NoSpace),
-    FILES: ("out of files", OutOfFiles),
-}
-"""Event of the log and error by what is to be done, where the database itself is sound."""
-P = ParamSpec("P")
-R = TypeVar("R")
-logger = structlog.get_logger(__name__)
-
-
-def shortage(folder: Path | None) -> str:
-    """Return that there is no space left in a folder, in a sentence without its name; empty if there is."""
-    with suppress(OSError):  # what cannot be looked at is told by who writes there
-        free = LEAST_FREE if folder is None else shutil.disk_usage(folder).free
-        if free < LEAST_FREE:
-            state = (
-                f"{free / 1e6:.3g} MB are free where the service writes, and it needs {LEAST_FREE / 1e6:g} MB"
-            )
-            return f"There is no space left: {state}. Make room on its disk."
-    return ""
-
-
-def out_of_files() -> bool:
-    """Whether neither this process nor the system opens one more file."""
-    try:
-        os.close(os.open(os.devnull, os.O_RDONLY))
-    except OSError as error:
-        return error.errno in (errno.EMFILE, errno.ENFILE)
-    return False
-
-
-# News that something was committed to a database, by whichever process, without a question for rows.
 
 
 class _Commits(Protocol):
@@ -433,117 +379,3 @@ def dialect_of(database: Engine | Connection | URL) -> _Dialect:
     if isinstance(database, URL):
         return _DIALECTS[database.get_backend_name()]
     return _DIALECTS[database.dialect.name]
-
-
-def _is_lost(error: BaseException, database: Engine) -> bool:
-    """Whether `error` says that the database cannot be reached or asks to try again."""
-    if not isinstance(error, DBAPIError) or _remedy_of(error, database) is not None:
-        return False
-    return dialect_of(database).lost(error)
-
-
-def _is_busy(error: BaseException, database: Engine) -> bool:
-    """Whether `error` says that others have had the database, or all connections to it, for too long."""
-    if isinstance(error, DBAPIError):
-        return dialect_of(database).busy(error)
-    return isinstance(error, PoolTimeout | TurnTimeout)
-
-
-def _remedy_of(error: BaseException, database: Engine) -> str | None:
-    """Return what a person has to do if `error` says that the database cannot be used as it is."""
-    return dialect_of(database).remedy(error, database.url) if isinstance(error, DBAPIError) else None
-
-
-# Steps that outlast a lost connection: tried again for a while, then refused for the caller to try later.
-
-
-class _OnDatabase(Protocol):
-    """An object that works on a database."""
-
-    _engine: Engine
-
-
-S = TypeVar("S", bound=_OnDatabase)
-
-
-def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
-    """Let a method outlast a lost connection.
-
-    The method may be run again after its transaction was committed, when the answer to that was lost: a
-    second run must change nothing.
-
-    Raises
-    ------
-    DatabaseUnavailable
-        The database has not come back after about two seconds.
-    Busy
-        Others hold what is needed for too long.
-    DatabaseDamaged
-        It has to be mended first: damaged, read-only. Not tried again.
-    NoSpace, OutOfFiles
-        Its disk is full, or this process may open no more files. Not tried again.
-    """
-
-    @functools.wraps(step)
-    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> R:
-        engine = self._engine
-        attempts = Retrying(
-            retry=retry_if_exception(lambda error: _is_lost(error, engine) or _is_busy(error, engine)),
-            stop=stop_after_attempt(_ATTEMPTS) | stop_after_delay(_PATIENCE_S),
-            wait=wait_exponential(_FIRST_WAIT_S, _LONGEST_WAIT_S) + wait_random(0.0, _FIRST_WAIT_S),
-            before_sleep=_note,
-            reraise=True,
-        )
-        try:
-            return attempts(step, self, *args, **kwargs)
-        except SQLAlchemyError as error:
-            outage = outage_of(error, engine)
-            if outage is None:
-                raise
-            raise outage from error
-
-    return cast(Callable[Concatenate[S, P], R], run)
-
-
-def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
-    """Return the message about an error of the database itself; None: it is the statement's."""
-    if _is_busy(error, engine):
-        return Busy("Others write, and have not ended in time. Nothing was changed. Try again later.")
-    if _is_lost(error, engine):
-        return DatabaseUnavailable("The database cannot be reached. Try again later.")
-    if isinstance(error, DBAPIError) and dialect_of(engine).late(error):
-        text = "The database has not answered in time. Ask for less of a list, or try again later."
-        return DatabaseUnavailable(text)
-    remedy = _remedy_of(error, engine)
-    return None if remedy is None else unusable(engine, str(getattr(error, "orig", error)), remedy)
-
-
-def unusable(engine: Engine, fault: str, remedy: str) -> DatabaseUnavailable:
-    """Return the error of a database that somebody has to see to; the log alone says where it is."""
-    where = engine.url.render_as_string(hide_password=True)
-    event, kind = _KINDS.get(remedy, ("database damaged", DatabaseDamaged))
-    logger.error(event, database=where, error=fault, remedy=remedy)
-    error = kind(f"{kind.title}: {fault}.")
-    error.add_note(f"{where}: {remedy}")
-    return error
-
-
-def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
-    """Let a method pass without effect when the database is lost or busy: its caller goes on without."""
-
-    @functools.wraps(step)
-    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> None:
-        try:
-            step(self, *args, **kwargs)
-        except SQLAlchemyError as error:
-            away = _is_lost(error, self._engine) or _is_busy(error, self._engine)
-            if not away and _remedy_of(error, self._engine) is None:
-                raise
-
-    return cast(Callable[Concatenate[S, P], None], run)
-
-
-def _note(state: RetryCallState) -> None:
-    outcome = state.outcome
-    error = outcome.exception() if outcome is not None else None
-    logger.warning("database lost", attempt=state.attempt_number, error=type(error).__name__)

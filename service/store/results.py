@@ -32,10 +32,9 @@ from fe_contact.cache_reads import CacheReads
 from lineofaction.gearbox.problems import DamagedFile, NotFound
 from service.project import COMMON, address_of, at_address
 from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
-from service.store.dialects import dialect_of, optional, retried
+from service.store.dialects import dialect_of
 from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of, new_name
-
-# Places in lists that are read page by page, the newest first.
+from service.store.retries import optional, retried
 
 USE_NOTED_EVERY_S = 3600.0
 """A result that is read all the time is noted as used this often."""

@@ -17,7 +17,8 @@ from service.queue.job import ENDED, job_state
 from service.queue.tables import computations, jobs, webhooks
 from service.schemas.answers import WebhookState
 from service.store.database import now, reading, writing
-from service.store.dialects import dialect_of, retried
+from service.store.dialects import dialect_of
+from service.store.retries import retried
 
 LEASE_S = 30.0
 MOST_ATTEMPTS = 8

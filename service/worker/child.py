@@ -34,7 +34,7 @@ _NICENESS = 10
 _SHORTEST_INTERVAL_S = 0.1
 stamp = on_demand("lineofaction.gearbox.result_files:stamp")
 translated = on_demand("lineofaction.gearbox.convert.errors:translated")
-warnings_of_case = on_demand("service.worker.preparations:warnings_of_case")
+warnings_of_case = on_demand("service.worker.expectations:warnings_of_case")
 
 
 def work(descriptor: int) -> None:

@@ -1,26 +1,20 @@
-"""What is prepared before a job runs: inputs checked, what is implausible about them, the predicted cost."""
+"""Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on."""
 
 from __future__ import annotations
 
 import json
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, NoReturn
 
-from pydantic import ValidationError
-
-from fe_contact.analysis.request.model_choice import decide
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
-from lineofaction.gearbox.convert.case import boundary_errors, case_json
+from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCases
-from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.schemas.execute import AnalyzeInputs, SimulateInputs
 from service.store.results import ResultStore
@@ -30,8 +24,6 @@ CASES = CheckedCases()
 are of one check, and so are a result and the warnings in its file."""
 
 Json = dict[str, Any]
-
-# Checks of a request beyond its schema, and the normalized inputs that are hashed and worked on.
 
 
 def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
@@ -116,57 +108,3 @@ def prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     assert isinstance(inputs, SimulateInputs)
     check_scene_inputs(inputs.scene, store)
     return inputs.model_dump(mode="json")
-
-
-# What is implausible about normalized inputs, and what they are predicted to cost.
-
-
-@lru_cache(maxsize=256)
-def input_warnings(inputs: str) -> tuple[Json, ...]:
-    """Return the warnings of normalized inputs, given as JSON.
-
-    There are none of what has neither case nor scene, and of an older job whose inputs are refused today.
-    """
-    facts = json.loads(inputs)
-    try:
-        if facts.get("scene") is not None:
-            return tuple(_of_scene(SceneInput.model_validate_json(json.dumps(facts["scene"]))))
-        return () if facts.get("case") is None else tuple(warnings_of_case(facts["case"]))
-    except (BadInput, ValidationError):
-        return ()
-
-
-def warnings_of_case(case: Json) -> list[Json]:
-    """Assess a normalized case."""
-    return case_warnings(CASES.of_json(case))
-
-
-def _of_scene(scene: SceneInput) -> list[Json]:
-    """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
-    cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
-    warnings = left_out_warnings(scene.left_out) + [
-        within(warning, f"meshes[{index}]")
-        for index, mesh in enumerate(scene.meshes)
-        if mesh.case is not None
-        for warning in case_warnings(CASES.of(mesh.case))
-    ]
-    if len(cases) < len(scene.with_database):
-        return warnings
-    moving = check_scene(scene, {name: PairFacts.of(CASES.of(case).pair) for name, case in cases.items()})
-    return unique([*warnings, *scene_warnings(scene, moving)])
-
-
-def predicted_seconds(inputs: Json) -> float | None:
-    """Return the CPU seconds of the table of a case, its studies in proportion; None of what has no case.
-
-    The progress of a batch is weighted by them.
-    """
-    if inputs.get("case") is None:
-        return None
-    case = CASES.of_json(inputs["case"])
-    try:
-        checked = case.checked
-        with boundary_errors():
-            return decide(checked).predicted(None).cpu_seconds
-    except BadInput:  # of a wish that no mesh meets: the job will say so
-        return None

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from service.store.results import ResultStore
 
 
-# Names of results: the hash of what decides them.
-
 Json = dict[str, Any]
 Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
 _HOUSING = Stage("housing", 0.3)

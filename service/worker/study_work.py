@@ -14,9 +14,10 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from service.store.results import ResultStore
+from service.worker.job_executor import cluster_of, table_workers
 from service.worker.order import Product, Progress, WorkOrder
 from service.worker.preparations import CASES, check_run, check_scene_inputs
-from service.worker.simulation_work import cluster_of, housed_scene, ordered_scene, table_workers
+from service.worker.simulation_work import housed_scene, ordered_scene
 
 Json = dict[str, Any]
 Work = Callable[[WorkOrder, Progress], tuple[Product, ...]]

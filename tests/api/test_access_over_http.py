@@ -20,7 +20,7 @@ from service_fakes import EXECUTION, REGISTRY, bearing
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import RateExceeded, TooManyHeld, TooManyRequests, Unauthorised
 from service.access.capacity import Held
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -12,7 +12,7 @@ from fastapi.testclient import TestClient
 from running_service import until
 from service_fakes import EXECUTION, REGISTRY
 
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

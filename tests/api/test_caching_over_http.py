@@ -16,7 +16,7 @@ from running_service import until
 from served_app import served
 
 from lineofaction.gearbox.registry import NETCDF, RESULT_KINDS
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

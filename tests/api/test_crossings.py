@@ -18,7 +18,8 @@ from service_fakes import EXECUTION, REGISTRY
 from small_table import small_table
 
 from lineofaction.gearbox.problems import KeyExpired, MissingScope, NotFound, Unauthorised
-from service.access.keyring import KeyFile, Scope
+from service.access.holder import Scope
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.routes.access import OPEN_FOLDER, OPEN_PATHS
 from service.routes.scopes import OPEN_TO_ALL, ScopedRoute

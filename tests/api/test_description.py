@@ -19,7 +19,18 @@ from fastapi.routing import APIRoute
 from lineofaction.gearbox import problems
 from lineofaction.gearbox.problems import ServiceError
 from lineofaction.gearbox.registry import STUDIES
-from service.routes import cases, drafts, events, health, jobs, processes, results
+from service.routes import (
+    batches,
+    cases,
+    drafts,
+    events,
+    health,
+    job_results,
+    jobs,
+    processes,
+    result_drawings,
+    results,
+)
 from service.routes.media_types import OF_STATUS
 from service.schemas.answers import class_name
 from service.worker.process import default_registry
@@ -190,8 +201,12 @@ def test_no_operation_needs_a_thread_for_what_it_depends_on() -> None:
             yield dependency.call
             yield from calls(dependency)
 
-    routers = [processes.processes_router(default_registry()), jobs.job_results_router(default_registry())]
-    routers += [part.router for part in (cases, drafts, events, health, jobs, processes, results)]
+    routers = [
+        processes.processes_router(default_registry()),
+        job_results.job_results_router(default_registry()),
+    ]
+    parts = (batches, cases, drafts, events, health, jobs, result_drawings, results)
+    routers += [part.router for part in parts]
     routes = [route for router in routers for route in router.routes if isinstance(route, APIRoute)]
     named = {call for route in routes for call in calls(route.dependant)}
     assert len(routes) > 40 and len(named) >= 4

@@ -17,7 +17,7 @@ from served_app import served
 from whole_service import CASE
 
 import service.routes.queries
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.live.question_pool import QuestionPool
 from service.settings import Settings

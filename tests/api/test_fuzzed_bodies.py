@@ -23,7 +23,8 @@ from small_table import small_table
 from whole_service import whole_service
 
 from service.app import create_app
-from service.schemas.examples import BODIES, HASH, INPUTS, QUERY
+from service.schemas.answer_examples import HASH
+from service.schemas.examples import BODIES, INPUTS, QUERY
 from service.settings import Settings
 
 QUERIES, RENAMED = "/v1/databases/{key}/query", "/v1/jobs/{job_id}"

@@ -18,7 +18,7 @@ from small_table import small_table
 from lineofaction.gearbox.problems import BadInput, DatabaseUnavailable
 from lineofaction.gearbox.schemas.toml import toml_table
 from service.access.capacity import Capacity
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.schemas.examples import CASE, SCENE
 from service.settings import Settings, load_settings

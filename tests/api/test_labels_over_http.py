@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from lineofaction.cli.commands import app as command
 from lineofaction.client import LineOfActionClient
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
@@ -124,9 +124,9 @@ def test_the_client_labels_what_it_submits(client: TestClient, tmp_path: Path) -
 
 def test_the_verb_labels_what_it_submits(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     plain = LineOfActionClient("http://testserver", transport=client._transport)
-    monkeypatch.setattr("lineofaction.cli.remote.LineOfActionClient", lambda _: plain)
+    monkeypatch.setattr("lineofaction.cli.submit.LineOfActionClient", lambda _: plain)
     monkeypatch.setattr(
-        "lineofaction.cli.remote._submitted", lambda client, *_: client.submit("fake", {"wish": {}})
+        "lineofaction.cli.submit._submitted", lambda client, *_: client.submit("fake", {"wish": {}})
     )
     labels = ("--title", "Study 7", "--tag", "EV-3", "--tag", "draft")
     result = CliRunner().invoke(command, ["submit", "examples/palermo_spur_20_20.toml", *labels, "--json"])

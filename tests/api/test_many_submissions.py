@@ -25,7 +25,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, REFERENCES, until
 from service_fakes import EXECUTION, REGISTRY
 
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -25,8 +25,9 @@ from service_fakes import EXECUTION, REGISTRY
 
 from lineofaction.gearbox.problems import BadInput, IssuerUnavailable, KeyExpired, MissingScope, Unauthorised
 from service.access import identities as issuer_module
-from service.access.identities import FRESH_S, PAUSE_S, STALE_S, open_identities
-from service.access.keyring import KeyFile
+from service.access.identities import open_identities
+from service.access.issuer import FRESH_S, PAUSE_S, STALE_S
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

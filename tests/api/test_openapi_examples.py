@@ -19,7 +19,8 @@ from named_run import put_named_run
 from small_table import small_table
 
 from service.app import create_app
-from service.schemas.examples import HASH, request_example
+from service.schemas.answer_examples import HASH
+from service.schemas.examples import request_example
 from service.settings import Settings
 
 BINARY = ("application/x-netcdf", "application/octet-stream", "audio/wav")

@@ -23,8 +23,8 @@ from own_process import children, command, python
 from running_service import PATIENCE_S, lives, until
 from whole_service import CASE
 
-from lineofaction.cli import serve as serving_processes
-from lineofaction.cli.serve import ServingProcesses
+from lineofaction.cli import serving_processes
+from lineofaction.cli.serving_processes import ServingProcesses
 
 NUMBER, CALLERS = 3, 6
 

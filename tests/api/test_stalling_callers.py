@@ -16,7 +16,7 @@ from served_app import served
 from service_fakes import EXECUTION, REGISTRY
 
 from service.access.capacity import Capacity
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -44,7 +44,7 @@ def address(tmp_path: Path, database_url: str | None, monkeypatch: pytest.Monkey
     """A database on which nobody waits for long."""
     monkeypatch.setattr("service.store.dialects.PATIENCE_MS", 1000)
     monkeypatch.setattr("service.store.dialects._STALLED", "-c lock_timeout=1s")
-    monkeypatch.setattr("service.store.dialects._PATIENCE_S", 0.5)
+    monkeypatch.setattr("service.store.retries._PATIENCE_S", 0.5)
     return database_url or f"sqlite:///{tmp_path / 'service.sqlite3'}"
 
 

@@ -29,7 +29,7 @@ from service_fakes import EXECUTION, REGISTRY
 from lineofaction.cli.serve import log_to_standard_error
 from lineofaction.client import LineOfActionClient
 from service.app import create_app
-from service.queue.attempt import WorkerFigures
+from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.tracing import begun_span, current_traceparent, flush_spans, span_provider
 

@@ -23,7 +23,7 @@ from service_fakes import EXECUTION, REGISTRY
 
 from service.app import create_app
 from service.settings import Settings
-from service.webhooks import calls, deliverer
+from service.webhooks import calls, deliverer, requests
 
 KEY = bytes(range(32))
 SECRET = "whsec_" + base64.b64encode(KEY).decode()
@@ -118,7 +118,7 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MOST_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
-    monkeypatch.setattr(deliverer, "WHOLE_S", 1.0)
+    monkeypatch.setattr(requests, "WHOLE_S", 1.0)
 
 
 @pytest.fixture

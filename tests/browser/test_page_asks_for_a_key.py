@@ -10,7 +10,7 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, expect
 
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 
 
 @pytest.fixture

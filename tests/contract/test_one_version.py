@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from packaging.version import Version
 
-from service.schemas.examples import ANSWERS
+from service.schemas.answer_examples import ANSWERS
 from service.version import solver_version
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,7 +15,8 @@ from service.queue.job import Job
 from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.settings import Settings
-from service.store.database import Ownership, open_database
+from service.store.database import open_database
+from service.store.ownership import Ownership
 from service.store.places import result_store
 from service.store.results import ResultStore
 from service.worker.process import Registry

@@ -28,7 +28,7 @@ def workers_find_fakes(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(autouse=True)
 def unhurried_readiness(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a busy machine write late without being called not ready for it."""
-    monkeypatch.setattr("service.store.deployment.PATIENCE_S", 60.0)
+    monkeypatch.setattr("service.store.write_check.PATIENCE_S", 60.0)
 
 
 @pytest.fixture(autouse=True)

@@ -89,7 +89,7 @@ class StudyRuns:
         run = {} if self.run is None else {"run": self.run}
         with self.at_home() as patch, warnings.catch_warnings(record=True):
             patch.setattr(self.study.run, "compute", self._noted)
-            result = STUDIES[self.study.name](
+            result = STUDIES[self.study.name].function(
                 self.subject, self.inputs, progress=lambda *step: seen.append(step), **run
             )
         figures = json.loads(json.dumps(self.study.run.figures(result), allow_nan=False))

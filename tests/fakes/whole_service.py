@@ -14,7 +14,7 @@ from fastapi import FastAPI
 from fastapi.testclient import TestClient
 from running_service import REFERENCES, until
 
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 

@@ -13,7 +13,7 @@ from named_run import put_named_run
 from served_app import served
 from service_surroundings import FAKES
 
-from service.access.keyring import KeyFile
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 from service.store.places import stored_results

@@ -15,7 +15,7 @@ import pytest
 from condensed_once import find_condensed
 from running_service import PATIENCE_S, until
 
-from service.page.files import examples
+from service.page.example_cases import examples
 
 RESTS_ON = ("examples",)
 ROOT = Path(__file__).parents[2]

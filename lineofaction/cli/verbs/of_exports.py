@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lineofaction.cli.guard import computing
-from lineofaction.cli.options import AsJson, Force, file_argument, overridable, to_file
+from lineofaction.cli.options import AsJson, Force, to_file
+from lineofaction.cli.overrides import file_argument, overridable
 from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile

@@ -8,27 +8,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from lineofaction.cli.guard import computing, guarded
-from lineofaction.cli.options import (
-    AsJson,
-    CaseFile,
-    Force,
-    PairWishes,
-    SceneFile,
-    Scheduler,
-    TableService,
-    TaskWorkers,
-    overridable,
-    to_file,
-)
+from lineofaction.cli.options import AsJson, Force, PairWishes, Scheduler, TableService, TaskWorkers, to_file
+from lineofaction.cli.overrides import CaseFile, SceneFile, overridable
 from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 
 if TYPE_CHECKING:
-    from lineofaction.cli import analyze, new, pages, plan, simulate, status, ste
+    from lineofaction.cli import analyze, data_sheet, new, plan, simulate, status, ste
 else:
-    analyze, new, pages, plan, simulate, status, ste = map(
+    analyze, data_sheet, new, plan, simulate, status, ste = map(
         Later,
-        ("cli.analyze", "cli.new", "cli.pages", "cli.plan", "cli.simulate", "cli.status", "cli.ste"),
+        ("cli.analyze", "cli.data_sheet", "cli.new", "cli.plan", "cli.simulate", "cli.status", "cli.ste"),
     )
 
 verbs = typer.Typer()
@@ -54,9 +44,6 @@ def _new(
     """Write a first case or scene file; rules set all data that are not given."""
     kinds = {"spur": spur, "helical": helical, "internal": internal, "planetary": planetary, "scene": scene}
     new.run_new(kinds, wanted, output)
-
-
-# Verbs on one gear pair: its table, curves, and files for other programs.
 
 
 @verbs.command("status", rich_help_panel="start", epilog="Example: loa status gearbox")
@@ -103,7 +90,7 @@ def _geometry(
     json: AsJson = False,
 ) -> None:
     """Print the data sheet of a pair (ISO 21771-1), and draw its mesh and its flank modifications."""
-    pages.run_geometry(case, output, as_json=json)
+    data_sheet.run_geometry(case, output, as_json=json)
 
 
 @verbs.command("ste", rich_help_panel="pair", epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")

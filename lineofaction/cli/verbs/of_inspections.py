@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from lineofaction.cli.guard import computing
-from lineofaction.cli.options import AsJson, CaseFile, overridable, to_file
+from lineofaction.cli.options import AsJson, to_file
+from lineofaction.cli.overrides import CaseFile, overridable
 from lineofaction.cli.verbs import Later
 
 if TYPE_CHECKING:

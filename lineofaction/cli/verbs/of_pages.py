@@ -15,11 +15,11 @@ from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.number_list import number_list
 
 if TYPE_CHECKING:
-    from lineofaction.cli import pages
+    from lineofaction.cli import compare, pages
     from lineofaction.report.comparison import recorded as recordings
     from lineofaction.report.run import view as views
 else:
-    pages = Later("cli.pages")
+    compare, pages = Later("cli.compare"), Later("cli.pages")
     views = Later("report.run.view")
     recordings = Later("report.comparison.recorded")
 
@@ -155,9 +155,9 @@ class _ChangeOptions:
         float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")
     ] = None
 
-    def question(self, scene: Path, mesh: str) -> pages.FlankQuestion:
+    def question(self, scene: Path, mesh: str) -> compare.FlankQuestion:
         """Return the question of a change of flanks of a mesh in a scene."""
-        return pages.FlankQuestion(
+        return compare.FlankQuestion(
             scene, mesh or None, self.tolerances, self.load_cases, self.speed_rpm, self.requirement_db
         )
 
@@ -192,7 +192,7 @@ def _compare(
 ) -> None:
     """Compare two tables, two runs, two flanks in a scene, or one with a measurement: differences."""
     if change.scene is not None:
-        pages.run_compare_flanks(files, change.question(change.scene, view.mesh), output, as_json=json)
+        compare.run_compare_flanks(files, change.question(change.scene, view.mesh), output, as_json=json)
         return
     measurement = recordings.Measurement(**asdict(recorded))
-    pages.run_compare(files, output, view.view, (torque, measurement), as_json=json)
+    compare.run_compare(files, output, view.view, (torque, measurement), as_json=json)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from lineofaction.cli.guard import computing, guarded
-from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, file_argument, overridable, to_file
+from lineofaction.cli.options import DEFAULT_SERVICE, AsJson, Service, to_file
+from lineofaction.cli.overrides import file_argument, overridable
 from lineofaction.cli.verb_parameters import grouped
 from lineofaction.cli.verbs import Later
 from lineofaction.gearbox.input_file import InputFile
@@ -17,9 +18,10 @@ from lineofaction.gearbox.registry import studies_of
 
 if TYPE_CHECKING:
     from lineofaction.cli import cache as kept
-    from lineofaction.cli import remote, serve, upkeep
+    from lineofaction.cli import job_tables, keys, remote, serve, stored_results, submit
 else:
-    kept, remote, serve, upkeep = map(Later, ("cli.cache", "cli.remote", "cli.serve", "cli.upkeep"))
+    kept, remote, serve, submit = map(Later, ("cli.cache", "cli.remote", "cli.serve", "cli.submit"))
+    job_tables, keys, stored_results = map(Later, ("cli.job_tables", "cli.keys", "cli.stored_results"))
 
 verbs = typer.Typer()
 
@@ -109,7 +111,7 @@ def _submit(
 ) -> None:
     """Submit a case or a scene to a service."""
     job = process, inputs, terms.as_sent
-    remote.run_submit(file, service, *job, wait=wait, output=output, as_json=json)
+    submit.run_submit(file, service, *job, wait=wait, output=output, as_json=json)
 
 
 @verbs.command(
@@ -141,10 +143,7 @@ def _fetch(
     json: AsJson = False,
 ) -> None:
     """Fetch a result by its job or hash, or the case or result that an address of the page shows."""
-    remote.run_fetch(name, output, service, wait=wait, as_json=json)
-
-
-# Verbs of the jobs of a service.
+    submit.run_fetch(name, output, service, wait=wait, as_json=json)
 
 
 @verbs.command("jobs", rich_help_panel="service", epilog="Example: loa jobs --status running")
@@ -174,9 +173,6 @@ def _dismiss(
 ) -> None:
     """Cancel a job of a service; its work ends unless other jobs share it."""
     remote.run_dismiss(job, service, as_json=json)
-
-
-# Verbs of access keys: ``loa keys add``, ``rotate``, ``list`` and ``remove``.
 
 
 @dataclass(frozen=True)
@@ -216,7 +212,7 @@ def _add(
 ) -> None:
     """Create a key, print it once, and store its hash."""
     rights = {"scopes": scopes, "expires": expires, "project": project, **asdict(limits)}
-    upkeep.Keys(file, as_json=json).add(name, **rights)
+    keys.Keys(file, as_json=json).add(name, **rights)
 
 
 @access_keys.command("rotate", epilog="Example: loa keys rotate test-bench-3 --overlap 7d")
@@ -229,45 +225,42 @@ def _rotate(
     json: AsJson = False,
 ) -> None:
     """Create the next key of a name, with the rights of the old one, which ends after the overlap."""
-    upkeep.Keys(file, as_json=json).rotate(name, overlap, expires)
+    keys.Keys(file, as_json=json).rotate(name, overlap, expires)
 
 
 @access_keys.command("list")
 @guarded
 def _list_keys(file: KeysFile = None, json: AsJson = False) -> None:
     """Print names, projects, scopes, ends and limits of all keys."""
-    upkeep.Keys(file, as_json=json).show()
+    keys.Keys(file, as_json=json).show()
 
 
 @access_keys.command("remove", epilog="Example: loa keys remove test-bench-3")
 @guarded
 def _remove(name: Name, file: KeysFile = None) -> None:
     """Remove a key; running services refuse it from the next request on."""
-    upkeep.Keys(file).remove(name)
-
-
-# Verbs of the database and the store of a service.
+    keys.Keys(file).remove(name)
 
 
 @database.command("upgrade", epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa database upgrade")
 @guarded
 def _upgrade(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Upgrade the tables, or create them; no data are lost."""
-    upkeep.JobTables(data_directory, as_json=json).upgrade()
+    job_tables.JobTables(data_directory, as_json=json).upgrade()
 
 
 @database.command("status", epilog="Example: loa database status --json")
 @guarded
 def _status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Print the schema of the database and of this program; exit code 1 if they differ."""
-    upkeep.JobTables(data_directory, as_json=json).status()
+    job_tables.JobTables(data_directory, as_json=json).status()
 
 
 @store.command("verify", epilog="Example: loa store verify --json")
 @guarded
 def _verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     """Compare files with their digests, set damaged ones aside; exit code 1 if one is damaged or missing."""
-    upkeep.Results(data_directory, as_json=json).verify()
+    stored_results.Results(data_directory, as_json=json).verify()
 
 
 @store.command("gc", epilog="Example: loa store gc --dry-run --older-than 90")
@@ -288,7 +281,7 @@ def _gc(
 
     Files of results go to quarantine, for LOA_QUARANTINE_DAYS.
     """
-    upkeep.Results(data_directory, as_json=json).collect(dry_run=dry_run, older_than=older_than)
+    stored_results.Results(data_directory, as_json=json).collect(dry_run=dry_run, older_than=older_than)
 
 
 @store.command("reindex", epilog="Example: loa store reindex --json")
@@ -305,7 +298,7 @@ def _reindex(
     The files become those of this database: a service that had them removes none of them any more, and is
     refused at its next start. Exit code 3 if a file is damaged.
     """
-    upkeep.Results(data_directory, as_json=json).reindex(quarantined=quarantined)
+    stored_results.Results(data_directory, as_json=json).reindex(quarantined=quarantined)
 
 
 @cache.command("list", epilog="Example: loa cache list --json")

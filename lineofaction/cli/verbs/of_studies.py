@@ -11,15 +11,8 @@ import typer
 from typer.core import TyperGroup
 
 from lineofaction.cli.guard import computing
-from lineofaction.cli.options import (
-    AsCsv,
-    AsJson,
-    Scheduler,
-    TableService,
-    TaskWorkers,
-    file_argument,
-    overridable,
-)
+from lineofaction.cli.options import AsCsv, AsJson, Scheduler, TableService, TaskWorkers
+from lineofaction.cli.overrides import file_argument, overridable
 from lineofaction.cli.verb_parameters import keyword
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import STUDIES

@@ -18,7 +18,8 @@ from host import kill, processes_in
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.hardcases.scene import TIME_LIMIT
 from service.queue.job import Job
-from service.queue.scheduler import Scheduler, job_machinery
+from service.queue.machinery import job_machinery
+from service.queue.scheduler import Scheduler
 from service.queue.submissions import Submissions
 from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings

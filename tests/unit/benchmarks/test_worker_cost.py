@@ -8,7 +8,7 @@ from pathlib import Path
 from named_run import RUN, put_named_run
 
 from benchmarks.worker_cost import orders
-from service.queue.scheduler import job_machinery
+from service.queue.machinery import job_machinery
 from service.settings import Settings
 from service.worker.process import default_registry
 

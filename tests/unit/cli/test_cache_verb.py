@@ -13,7 +13,7 @@ from command_line import loa
 
 from fe_contact.compliance.cache import read_compliance
 from fe_contact.compliance.flank import FlankCompliance
-from service.folders import evict, files_in
+from service.folder_size import evict, files_in
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 HOUR = 3600.0

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from command_line import loa
 
-from lineofaction.cli import pages, run_study
+from lineofaction.cli import compare, run_study
 from lineofaction.gearbox.problems import EXIT_BAD_INPUT
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.studies.change.result import ALL, DesignLevels, FlankChange
@@ -23,7 +23,7 @@ def called(*options: object) -> str:
 
 def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     seen = {}
-    monkeypatch.setattr(pages, "run_study", lambda study, options: seen.update(options))
+    monkeypatch.setattr(compare, "run_study", lambda study, options: seen.update(options))
     tolerances = tmp_path / "tolerances.toml"
     tolerances.write_text("# tolerances.toml\nsamples = 16\n", encoding="utf-8")
     cases = tmp_path / "cases.toml"
@@ -40,7 +40,7 @@ def test_what_is_typed_reaches_the_study(monkeypatch: pytest.MonkeyPatch, tmp_pa
 
 def test_one_file_is_the_flanks_after_and_three_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = {}
-    monkeypatch.setattr(pages, "run_study", lambda study, options: seen.update(options))
+    monkeypatch.setattr(compare, "run_study", lambda study, options: seen.update(options))
     loa("compare", SPUR, "--scene", SCENE, "--speed-rpm", "500,600")
     assert seen["study"].before is None
     assert seen["study"].after.pair.pinion.teeth == 20

@@ -171,7 +171,7 @@ def unit(rotor: Path) -> Path:
 
 VERBS = {
     "plan": ("plan.run_plan", ["first.toml", "second.toml"]),
-    "geometry": ("pages.run_geometry", ["first.toml", "second.toml"]),
+    "geometry": ("data_sheet.run_geometry", ["first.toml", "second.toml"]),
     "analyze": ("analyze.run_analyze", ["first.toml", "second.toml"]),
     "simulate": ("simulate.run_simulate", ["jeffcott.toml"]),
     "measured --gear pinion --loaded left": ("measured.run_measured", ["first.toml", "second.toml"]),

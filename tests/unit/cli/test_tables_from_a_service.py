@@ -4,10 +4,9 @@ from types import SimpleNamespace
 
 import pytest
 
-import lineofaction.client.client as clients
 from lineofaction import client as public
-from lineofaction.cli import subjects
-from lineofaction.client import JobState
+from lineofaction.cli import kept_tables
+from lineofaction.client import JobState, scene_calls
 
 
 @pytest.mark.parametrize(
@@ -29,9 +28,11 @@ def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
         return nullcontext(SimpleNamespace(driver=SimpleNamespace(run=run)))
 
     monkeypatch.setattr(public, "LineOfActionClient", client)
-    monkeypatch.setattr(clients, "ServiceTables", lambda _: None)
-    monkeypatch.setattr(subjects, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
-    monkeypatch.setattr(subjects, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene))
+    monkeypatch.setattr(scene_calls, "ServiceTables", lambda _: None)
+    monkeypatch.setattr(kept_tables, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
+    monkeypatch.setattr(
+        kept_tables, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene)
+    )
     monkeypatch.setattr("dynamics.simulation.compile_ahead", lambda: compiled.append(1))
-    assert subjects.tabled_scene(None, Path(), "http://127.0.0.1:9", print) == "table"
+    assert kept_tables.tabled_scene(None, Path(), "http://127.0.0.1:9", print) == "table"
     assert len(compiled) == times

@@ -15,8 +15,8 @@ from command_line import loa, printed
 from small_table import small_table
 from stored_jobs import ADDRESS, against, case
 
+from lineofaction.client.drivers import BlockingDriver
 from lineofaction.client.page_address import LONGEST_WORD, PageAddress
-from lineofaction.client.surface import BlockingDriver
 from lineofaction.gearbox.problems import BadInput, NotFound
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.reading import read_model

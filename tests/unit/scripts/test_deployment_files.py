@@ -21,7 +21,8 @@ from postgres_server import PostgresServer, migrated, postgres
 from typer.main import get_command
 
 from lineofaction.cli.commands import app
-from service.settings import Settings, is_secret
+from service.secret_files import is_secret
+from service.settings import Settings
 
 __all__ = ["postgres"]
 ROOT = Path(__file__).resolve().parents[3]

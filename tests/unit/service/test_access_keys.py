@@ -14,8 +14,10 @@ from command_line import loa
 
 from lineofaction.gearbox.problems import BadInput
 from service.access.capacity import RateLimits
+from service.access.holder import Scope
 from service.access.identities import open_identities
-from service.access.keyring import AccessKey, KeyFile, Keyring, Scope
+from service.access.key_file import AccessKey, KeyFile
+from service.access.keyring import Keyring
 from service.settings import Settings
 
 

@@ -24,11 +24,11 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.studies import scene_before_tables
 from service.app import create_app
-from service.page.files import examples
+from service.page.example_cases import examples
 from service.schemas.execute import AnalyzeInputs
 from service.settings import Settings
 from service.store.places import stored_results
-from service.worker import preparations
+from service.worker import expectations, preparations
 from service.worker.child import stamp_products
 from service.worker.order import WorkOrder
 from service.worker.preparations import name_database, prepare_analyze
@@ -124,7 +124,7 @@ def test_a_submission_with_a_cost_limit_checks_once_in_the_server(
         assert status.status_code == 201, status.text
         assert client.get(f"/v1/jobs/{status.json()['jobID']}").json()["warnings"] == []
     assert calls.counts == (0, 1, 1)
-    assert preparations.predicted_seconds({"case": validated(Case, CASE).model_dump(mode="json")})
+    assert expectations.predicted_seconds({"case": validated(Case, CASE).model_dump(mode="json")})
     assert calls.counts == (0, 1, 1)
 
 

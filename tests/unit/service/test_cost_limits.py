@@ -14,7 +14,8 @@ from service_fakes import REGISTRY
 
 from host import family_cpu_seconds
 from lineofaction.gearbox.problems import BadInput
-from service.access.keyring import Holder, KeyFile
+from service.access.holder import Holder
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms, cost_limit, refuse_beyond

@@ -29,10 +29,12 @@ from lineofaction.gearbox.problems import (
 )
 from service.app import create_app
 from service.settings import Settings
-from service.store import deployment
+from service.store import write_check
 from service.store.database import Schema, database_engine
-from service.store.deployment import NOTE, WriteCheck
-from service.store.dialects import out_of_files, outage_of
+from service.store.deployment import NOTE
+from service.store.retries import outage_of
+from service.store.shortages import out_of_files
+from service.store.write_check import WriteCheck
 
 PAGE = 4096
 
@@ -55,7 +57,7 @@ def directory(tmp_path: Path, sound: Path) -> Path:
 @pytest.fixture
 def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
     """A client of an app on it, which tries at each question whether it can write."""
-    monkeypatch.setattr("service.store.deployment.KEPT_S", 0.0)
+    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
         yield found
 
@@ -114,7 +116,7 @@ def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(
 
     monkeypatch.setattr(Schema, "check", late)
     monkeypatch.setattr("service.store.integrity.PATIENCE_S", 0.01)
-    monkeypatch.setattr("service.store.deployment.KEPT_S", 0.0)
+    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         assert client.get("/ready").status_code == 200
         found.set()
@@ -269,7 +271,7 @@ def failing(error: Exception) -> Callable[[], None]:
 
 @pytest.fixture
 def place(monkeypatch: pytest.MonkeyPatch) -> Place:
-    monkeypatch.setattr(deployment, "KEPT_S", -1.0)
+    monkeypatch.setattr(write_check, "KEPT_S", -1.0)
     return Place()
 
 
@@ -285,7 +287,7 @@ def test_one_that_waits_for_its_turn_is_ready_until_it_has_waited_too_long(
     assert fault(check) == ""
     place.database = failing(DatabaseUnavailable("Others hold it."))
     assert fault(check) == ""
-    monkeypatch.setattr(deployment, "LATE_S", -1.0)
+    monkeypatch.setattr(write_check, "LATE_S", -1.0)
     assert fault(check) == "Others hold it."
 
 

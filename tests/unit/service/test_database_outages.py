@@ -146,7 +146,7 @@ def test_a_file_that_another_holds_is_waited_for_and_then_refused(
     with pytest.raises(Busy):
         machine.submit(text="refused")
     # let go at the first refusal
-    monkeypatch.setattr("service.store.dialects._note", lambda _state: holder.rollback())
+    monkeypatch.setattr("service.store.retries._note", lambda _state: holder.rollback())
     assert machine.submit(text="waits").status == "accepted"
     holder.close()
 

@@ -27,7 +27,8 @@ from service.settings import Settings
 from service.store.database import open_database, writing
 from service.store.deployment import NOTE, Deployment, deployments
 from service.store.files import DirectoryFiles
-from service.store.maintenance import reindex, verify_store
+from service.store.maintenance import verify_store
+from service.store.reindex import reindex
 from service.store.results import ResultStore, results
 
 LONG_AGO = "2016-01-01T00:00:00.000000Z"

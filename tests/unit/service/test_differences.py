@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from service.queue.differences import differences_between, differences_column, differences_of
 from service.queue.job import subject_of
-from service.queue.terms import differences_between, differences_column, differences_of
 from service.schemas.answers import Difference
 from service.schemas.examples import CASE, SCENE
 

@@ -16,7 +16,7 @@ from service_fakes import REGISTRY
 from sqlalchemy import event
 
 from lineofaction.gearbox.problems import NoSuchJob, QueueFull
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.queue.claims import Claims
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms

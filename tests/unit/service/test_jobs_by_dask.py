@@ -24,10 +24,10 @@ from service_fakes import REGISTRY
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from model_studies.workers import dask_cluster
-from service.queue import attempt, cluster
+from service.queue import cluster, settlement
 from service.queue.claims import Claims
 from service.queue.job import Job
-from service.queue.scheduler import crew_of
+from service.queue.machinery import crew_of
 from service.settings import Settings
 from service.store.deployment import Deployment
 from service.version import solver_version
@@ -149,7 +149,7 @@ def test_progress_ends_and_reasons_are_those_of_a_child_here(dask: DaskProcesses
 def test_a_child_over_its_memory_or_killed_ends_alone(
     dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(attempt, "MOST_LOST_RUNS", 1)
+    monkeypatch.setattr(settlement, "MOST_LOST_RUNS", 1)
     machine, workers = server(memory_limit_mb=256, attempts=1), sorted(dask.pids())
     assert "256 MB (LOA_MEMORY_LIMIT_MB)" in machine.ended(machine.submit(mode="hog")).message
     hangs = machine.submit(mode="hang")
@@ -213,7 +213,7 @@ def test_work_whose_worker_is_killed_is_begun_again_by_another(
 def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(
     dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(attempt, "MOST_LOST_RUNS", 2)
+    monkeypatch.setattr(settlement, "MOST_LOST_RUNS", 2)
     machine = server()
     hangs = machine.submit(mode="hang")
     os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)

@@ -20,10 +20,12 @@ from running_service import PATIENCE_S, bench, until
 from service_fakes import REGISTRY
 
 from lineofaction.gearbox.problems import BadInput
-from service.access.keyring import KeyFile
-from service.management import server
-from service.management.server import EventLoop, ManagementServer, Vitals
-from service.store.deployment import Deployment, WriteCheck
+from service.access.key_file import KeyFile
+from service.management import vitals
+from service.management.server import ManagementServer
+from service.management.vitals import EventLoop, Vitals
+from service.store.deployment import Deployment
+from service.store.write_check import WriteCheck
 
 
 @contextmanager
@@ -88,7 +90,7 @@ def test_a_scheduler_that_ended_or_hangs_is_not_healthy(
     found, _ = signs
     assert found.fault_of_health() == found.fault_of_readiness() == ""
     hangs = threading.Event()
-    monkeypatch.setattr(server, "TURN_WITHIN_S", 1.5)
+    monkeypatch.setattr(vitals, "TURN_WITHIN_S", 1.5)
     monkeypatch.setattr(type(found.scheduler), "_turn", lambda _self: hangs.wait())
     until(lambda: "has not turned" in found.fault_of_health())
     hangs.set()

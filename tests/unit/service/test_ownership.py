@@ -18,7 +18,7 @@ from service_fakes import REGISTRY
 from sqlalchemy import text
 
 from lineofaction.gearbox.problems import BadInput
-from service.queue.scheduler import job_machinery
+from service.queue.machinery import job_machinery
 from service.settings import Settings
 from service.store.database import reading
 

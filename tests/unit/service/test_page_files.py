@@ -23,7 +23,8 @@ from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 from service.app import create_app
-from service.page.files import examples, page_file
+from service.page.example_cases import examples
+from service.page.files import page_file
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[3]

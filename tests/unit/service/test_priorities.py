@@ -8,7 +8,8 @@ import pytest
 from running_service import Bench
 
 from lineofaction.gearbox.problems import BadInput
-from service.access.keyring import Holder, KeyFile
+from service.access.holder import Holder
+from service.access.key_file import KeyFile
 from service.queue.job import Job
 from service.queue.terms import ANYBODY, Terms, check_priority
 

@@ -17,16 +17,18 @@ from sqlalchemy import text
 from lineofaction.gearbox.problems import NoSuchJob, NotFound
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from service.access.keyring import Holder
+from service.access.holder import Holder
 from service.project import COMMON, PROJECT, address_of, at_address
-from service.queue.attempt import WorkerFigures, begun
+from service.queue.attempt import begun
 from service.queue.claims import Claim
 from service.queue.job import Job
+from service.queue.worker_figures import WorkerFigures
 from service.schemas.examples import SCENE
 from service.store.database import writing
 from service.store.deployment import Deployment
 from service.store.files import ResultName, new_name
-from service.store.maintenance import reindex, verify_store
+from service.store.maintenance import verify_store
+from service.store.reindex import reindex
 from service.store.results import Mark
 from service.worker.order import WorkOrder
 from service.worker.process import SIMULATE

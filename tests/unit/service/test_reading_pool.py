@@ -208,7 +208,7 @@ def test_a_reader_sees_no_file_of_the_service(pool: QuestionPool, tmp_path: Path
 
 
 def test_a_system_that_confines_nothing_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("host.confinement._landlock", lambda: 0)
+    monkeypatch.setattr("host.confinement.landlock_version", lambda: 0)
     with capture_logs() as log, TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as http:
         ready = http.get("/ready", headers={"Host": "localhost"})
     assert ready.json()["missing_protections"] == ["files (Landlock)"]
@@ -222,7 +222,7 @@ def test_a_service_that_requires_confinement_does_not_start_without(
     settings = load_settings(data_directory=tmp_path)
     create_app(settings, REGISTRY)
     monkeypatch.setattr("host.confinement.filters_calls", lambda: False)
-    monkeypatch.setattr("host.confinement._landlock", lambda: 0)
+    monkeypatch.setattr("host.confinement.landlock_version", lambda: 0)
     with pytest.raises(BadInput) as refused:
         run_serve(data_directory=tmp_path / "other")
     (fault,) = refused.value.faults

@@ -13,12 +13,13 @@ from s3_server import Objects
 from sqlalchemy import event
 
 from lineofaction.gearbox.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
-from service.folders import DirectoryLock
+from service.directory_lock import DirectoryLock
 from service.settings import Settings, load_settings
 from service.store.database import open_database, reading, writing
 from service.store.deployment import NOTE
 from service.store.files import DirectoryFiles
-from service.store.places import ObjectFiles, object_files, result_files, result_store, stored_results
+from service.store.object_files import ObjectFiles, object_files
+from service.store.places import result_files, result_store, stored_results
 from service.store.results import ResultStore
 
 KEY = hashlib.sha256(b"input").hexdigest()
@@ -184,7 +185,7 @@ def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_u
 def test_a_store_that_does_not_answer_is_said(
     tmp_path: Path, s3_objects: Objects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.store.places.RETRIES", {"max_retries": 1})
+    monkeypatch.setattr("service.store.object_files.RETRIES", {"max_retries": 1})
     store = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path, "s3://bucket/prefix")
     put(store, tmp_path, b"table")
     s3_objects.down = True

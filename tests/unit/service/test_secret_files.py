@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from lineofaction.gearbox.problems import BadInput
-from service.settings import Settings, is_secret, load_settings
+from service.secret_files import is_secret
+from service.settings import Settings, load_settings
 
 SECRETS = [name for name, field in Settings.model_fields.items() if is_secret(field)]
 URL = "postgresql://loa:geheim@database/loa"

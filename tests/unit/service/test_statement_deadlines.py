@@ -14,7 +14,7 @@ from sqlalchemy import Engine, text
 from lineofaction.gearbox.problems import DatabaseUnavailable
 from service.store import dialects
 from service.store.database import database_engine, open_database
-from service.store.dialects import retried
+from service.store.retries import retried
 
 ENDLESS = text("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n) SELECT count(*) FROM n")
 LONG = text(

@@ -22,7 +22,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
 from model_studies.workers import RunCost, dask_cluster, executor
 from service.settings import Settings, load_settings
-from service.worker import simulation_work as cluster
+from service.worker import job_executor as cluster
 from service.worker.order import WorkOrder
 from service.worker.process import ANALYZE, Process, default_registry
 

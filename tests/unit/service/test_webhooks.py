@@ -13,7 +13,7 @@ from running_service import Bench
 from lineofaction.gearbox.problems import BadInput
 from service.origin import Origin
 from service.settings import Settings, load_settings, secret_bytes
-from service.webhooks import calls, deliverer
+from service.webhooks import calls, requests
 from service.webhooks.calls import Calls
 from service.webhooks.deliverer import signed_headers
 
@@ -108,16 +108,16 @@ PRIVATE = [
 
 @pytest.mark.parametrize("address", PRIVATE)
 def test_no_name_leads_to_a_private_address(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
-    assert not deliverer.is_public(address)
+    assert not requests.is_public(address)
     entry = (socket.AF_INET, socket.SOCK_STREAM, 0, "", (address, 80))
     monkeypatch.setattr(socket, "getaddrinfo", lambda *_args, **_more: [entry])
-    with pytest.raises(deliverer.NotCalled, match="no public address"):
-        deliverer.send("http://hooks.example.com/", b"", {})
+    with pytest.raises(requests.NotCalled, match="no public address"):
+        requests.send("http://hooks.example.com/", b"", {})
 
 
 @pytest.mark.parametrize("address", ["93.184.216.34", "2606:2800:220:1::1", "::ffff:93.184.216.34"])
 def test_public_addresses_are_called(address: str) -> None:
-    assert deliverer.is_public(address)
+    assert requests.is_public(address)
 
 
 def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -135,8 +135,8 @@ def test_the_address_that_was_looked_at_is_the_one_connected_to(monkeypatch: pyt
 
     monkeypatch.setattr(socket, "getaddrinfo", resolved)
     monkeypatch.setattr(socket, "socket", Recorded)
-    with pytest.raises(deliverer.NotCalled, match="ConnectionRefusedError"):
-        deliverer.send("http://hooks.example.com/", b"", {})
+    with pytest.raises(requests.NotCalled, match="ConnectionRefusedError"):
+        requests.send("http://hooks.example.com/", b"", {})
     assert connected == [("93.184.216.34", 80)]
     assert next(answers) == "127.0.0.1"
 

@@ -14,7 +14,7 @@ from sqlalchemy import Engine, event
 from lineofaction.gearbox.problems import Busy
 from service.queue.tables import jobs
 from service.store.database import open_database, writing
-from service.store.dialects import retried
+from service.store.retries import retried
 from service.store.writers import TurnTimeout, WriterQueue, writers_of
 
 WRITERS = 24

@@ -1,8 +1,7 @@
-"""``loa keys``, ``loa database`` and ``loa store``: who may use a service, and what it keeps."""
+"""``loa store``: check and clean the store of results of a service."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import asdict
@@ -14,112 +13,16 @@ import typer
 from host.directories import keep_private
 from lineofaction.cli.output import console, print_json, table
 from lineofaction.gearbox.problems import EXIT_FAILED
-from service.access.keyring import AccessKey, KeyFile
+from service.queue.machinery import job_machinery
 from service.queue.retention import Retention
-from service.queue.scheduler import job_machinery
 from service.settings import load_settings
-from service.store.database import Schema, database_engine, open_database, shown
+from service.store.database import open_database
 from service.store.deployment import Deployment
-from service.store.maintenance import Leftover, Quarantine, reindex, verify_store
-from service.store.migrations import REVISIONS
+from service.store.maintenance import Leftover, Quarantine, verify_store
 from service.store.places import DATABASE_FILE, result_files
+from service.store.reindex import reindex
 from service.store.results import ResultStore
 from service.worker.process import Registry
-
-Json = dict[str, Any]
-
-
-class Keys:
-    """The access keys in the file named on the command line, or in that of the settings."""
-
-    def __init__(self, path: Path | None, *, as_json: bool = False) -> None:
-        self._file, self._as_json = KeyFile(path or load_settings().key_file), as_json
-
-    def add(self, name: str, *, scopes: str | None, expires: str | None, **rights: Any) -> None:
-        """Make a key and print it, once."""
-        named = None if scopes is None else [scope.strip() for scope in scopes.split(",")]
-        self._show_once(name, self._file.add(name, expires=expires, scopes=named, **rights))
-
-    def rotate(self, name: str, overlap: str, expires: str | None) -> None:
-        """Make the next key of a name and print it, once."""
-        self._show_once(name, self._file.rotate(name, overlap=overlap, expires=expires))
-
-    def _show_once(self, name: str, secret: str) -> None:
-        path = self._file.path
-        if self._as_json:
-            print_json({"name": name, "key": secret, "file": str(path)})
-            return
-        sys.stdout.write(f"{secret}\n")
-        sys.stderr.write(f"Key {name!r} is in {path}. It is shown only once: only its hash is stored.\n")
-
-    def show(self) -> None:
-        """Print names, rights, limits and ends."""
-        keys = self._file.read()
-        if self._as_json:
-            facts = [{k: v for k, v in asdict(key).items() if k != "sha256"} for key in keys]
-            print_json({"file": str(self._file.path), "keys": facts})
-            return
-        titles = ["name", "project", "scopes", "created", "expires", "limits"]
-        console().print(table(titles, [_row(key) for key in keys], f"Keys in {self._file.path}"))
-
-    def remove(self, name: str) -> None:
-        """Take a key back; a service that runs heeds it at the next request."""
-        self._file.remove(name)
-
-
-def _row(key: AccessKey) -> list[str]:
-    expires = "never" if key.expires is None else f"{key.expires}{' (expired)' if key.expired else ''}"
-    limits = [f"{value} {name.replace('_', ' ')}" for name, value in key.limits.items() if value is not None]
-    return [
-        key.name,
-        key.project or "common",
-        ", ".join(key.scopes),
-        key.created,
-        expires,
-        ", ".join(limits) or "none",
-    ]
-
-
-# ``loa database``.
-
-
-class JobTables:
-    """The tables of jobs in the database of the settings."""
-
-    def __init__(self, data_directory: Path | None, *, as_json: bool) -> None:
-        settings = load_settings(data_directory=data_directory)
-        keep_private()
-        engine = database_engine(
-            settings.database_address or settings.data_directory / DATABASE_FILE, pooled=False
-        )
-        self._schema, self._name, self._as_json = Schema(engine), shown(engine), as_json
-
-    def upgrade(self) -> None:
-        """Upgrade, and tell from which schema to which."""
-        before = self._schema.revision()
-        self._schema.upgrade()
-        facts: Json = {"database": self._name, "before": before, "schema": REVISIONS[-1]}
-        self._tell(facts, f"{before or 'no tables'} -> {REVISIONS[-1]}")
-
-    def status(self) -> None:
-        """Tell both schemas; fail if this program cannot use that of the database."""
-        numbers, current = self._schema.numbers(), REVISIONS[-1]
-        facts: Json = {"database": self._name, "schema": numbers.newest, "program": current}
-        facts |= {"up_to_date": numbers.ours, "usable": numbers.usable}
-        newer = f"newer, but this program ({current}) can use it"
-        needed = newer if numbers.usable else f"this program needs {current}"
-        self._tell(facts, f"{numbers.newest or 'no tables'}, {'up to date' if numbers.ours else needed}")
-        if not numbers.usable:
-            raise typer.Exit(EXIT_FAILED)
-
-    def _tell(self, facts: Json, state: str) -> None:
-        if self._as_json:
-            print_json(facts)
-        else:
-            typer.echo(f"{self._name}: {state}")
-
-
-# ``loa store``.
 
 
 class Results:

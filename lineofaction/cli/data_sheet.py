@@ -1,0 +1,79 @@
+"""``loa geometry``: the data sheet of a gear pair."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fe_contact.geometry import ParallelAxes
+from fe_contact.ste import PairFacts
+from lineofaction.cli.output import FOUND, check_writable, console, print_json, table
+from lineofaction.cli.subjects import assessed_case
+from lineofaction.cli.verb_warnings import messages, warn
+from lineofaction.gearbox.input_file import InputFile
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.gearbox.units import UM
+from lineofaction.report.document import write_whole
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.drawing.image import png, svg
+from lineofaction.report.drawing.page import Page
+from lineofaction.report.pair import (
+    data_sheet,
+    data_sheet_json,
+    data_sheet_section,
+    pair_drawing,
+    pair_lead,
+    pair_remarks,
+    pair_title,
+)
+
+_ENDINGS = (".html", ".png", ".svg")
+_WORDS = ("quantity", "symbol", "unit", "point")
+
+
+def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
+    """Print the data sheet of a case; draw it if requested."""
+    checked = assessed_case(file)
+    pair = checked.pair
+    implausible = messages()
+    warn(pair_remarks(pair))
+    if output is not None:
+        _write_sheet(pair, checked.case.errors.misalignment_class, output, implausible)
+    if as_json:
+        written = {} if output is None else {"written": str(output)}
+        print_json(written | data_sheet_json(pair))
+    else:
+        _show_sheet(pair, output)
+
+
+def _write_sheet(
+    pair: ParallelAxes, tolerance_class: int | None, output: Path, implausible: list[str]
+) -> None:
+    if output.suffix not in _ENDINGS:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
+    check_writable(output)
+    if output.suffix == ".html":
+        facts = PairFacts.of(pair)
+        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair, tolerance_class),))
+        write_whole(page, output, warnings=implausible)
+    else:
+        output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair, tolerance_class)))
+
+
+def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
+    out = console()
+    title, ratios = _summary(pair)
+    out.print(title, soft_wrap=True, style=FOUND)
+    out.print(ratios, soft_wrap=True)
+    for part in data_sheet(pair):
+        out.print()
+        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
+    if output is not None:
+        out.print(f"written to {output}", soft_wrap=True)
+
+
+def _summary(pair: ParallelAxes) -> tuple[str, str]:
+    facts = PairFacts.of(pair)
+    transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
+    ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
+    backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} µm"
+    return f"{pair_title(facts)}: {pair_lead(facts)}", f"{ratios}; {backlash}"

@@ -1,0 +1,49 @@
+"""Size of a folder of files that can be made again: what was not used for longest goes first."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+IN_USE_S = 600.0
+"""A file that was used so recently stays: somebody may be reading it."""
+DEFAULT_BYTES = 2_000_000_000
+
+
+@dataclass(frozen=True, order=True)
+class UsedFile:
+    """A file by its last use, s since the epoch; reading it sets the time of its last change."""
+
+    used: float
+    size: int
+    path: Path
+
+
+def files_in(folder: Path) -> list[UsedFile]:
+    """Return the files below a folder, the one that was not used for longest first."""
+    return sorted(_files(folder))
+
+
+def evict(folder: Path, most_bytes: int, in_use_s: float = IN_USE_S) -> list[UsedFile]:
+    """Remove what was not used for longest until the rest fits, and return it; what is in use stays."""
+    files = files_in(folder)
+    excess = sum(file.size for file in files) - most_bytes
+    removed = []
+    for file in files:
+        if excess <= 0 or time.time() - file.used < in_use_s:
+            break
+        file.path.unlink(missing_ok=True)
+        excess -= file.size
+        removed.append(file)
+    return removed
+
+
+def _files(folder: Path) -> Iterator[UsedFile]:
+    for path in folder.rglob("*"):
+        with contextlib.suppress(FileNotFoundError):  # another process was quicker
+            if path.is_file():
+                facts = path.stat()
+                yield UsedFile(facts.st_mtime, facts.st_size, path)

@@ -1,0 +1,108 @@
+"""Batches: how far one is follows from the jobs in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Row, Update, case, func, select, update
+
+from service.queue.job import ENDED, job_state
+from service.queue.tables import computations, durations, jobs, of_batch
+from service.queue.workload import bound_of
+from service.store.database import now
+from service.store.dialects import dialect_of
+
+
+@dataclass(frozen=True)
+class Family:
+    """The jobs of a batch: how many are in each state, and the share of their cost that is done."""
+
+    states: dict[str, int]
+    fraction: float
+
+    @property
+    def number(self) -> int:
+        """Return how many jobs there are."""
+        return sum(self.states.values())
+
+    @property
+    def ended(self) -> int:
+        """Return how many have ended."""
+        return sum(self.states.get(state, 0) for state in ENDED)
+
+    def values(self) -> dict[str, Any]:
+        """Return what the row of the batch is to hold."""
+        failed, dismissed = self.states.get("failed", 0), self.states.get("dismissed", 0)
+        text = f"{self.ended} of {self.number} jobs have ended"
+        text += f", {failed} failed" if failed else ""
+        text += f", {dismissed} dismissed" if dismissed else ""
+        share = self.ended / max(self.number, 1)
+        values = {"stage": "jobs", "stage_fraction": share, "message": f"{text}.", "fraction": self.fraction}
+        if self.ended == self.number:
+            state = "dismissed" if dismissed else "failed" if failed else "successful"
+            values |= {"state": state, "finished": now()}
+        return values
+
+
+NOBODY = Family({}, 1.0)
+
+
+def batch_steps(connection: Connection) -> list[Update]:
+    """Return the changes of those batches that go on and whose jobs have moved."""
+    facts = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
+    held = (computations.c.state == "running") & of_batch
+    rows = connection.execute(
+        select(jobs.c.id, *facts).select_from(jobs.join(computations)).where(held)
+    ).all()
+    families = _families(connection, [row.id for row in rows]) if rows else {}
+    steps = []
+    for row in rows:
+        values = families.get(row.id, NOBODY).values()
+        values["fraction"] = max(values["fraction"], row.fraction)
+        if "state" in values or (values["message"], values["fraction"]) != (row.message, row.fraction):
+            mine = (computations.c.id == row.row) & held
+            steps.append(update(computations).where(mine).values(updated=now(), **values))
+    return steps
+
+
+def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
+    """Count the jobs of batches by state, and add up what they cost."""
+    state = job_state()
+    done = case((state.in_(ENDED), 1.0), else_=computations.c.fraction)
+    sums = (func.count(), func.sum(jobs.c.weight), func.sum(jobs.c.weight * done))
+    statement = select(jobs.c.parent, state, *sums).select_from(jobs.join(computations))
+    found: dict[str, list[Any]] = {}
+    grouped = statement.where(jobs.c.parent.in_(parents)).group_by(jobs.c.parent, state)
+    for row in connection.execute(grouped).all():
+        found.setdefault(row[0], []).append(row)
+    families = {}
+    for parent, rows in found.items():
+        weight = sum(row[3] for row in rows)
+        fraction = sum(row[4] for row in rows) / weight if weight else 1.0
+        families[parent] = Family({row[1]: row[2] for row in rows}, fraction)
+    return families
+
+
+def end_computations(connection: Connection, which: ColumnElement[bool], values: dict[str, Any]) -> None:
+    """End computations with the state in `values`, and count those that had begun.
+
+    A step that is repeated after its transaction was committed must find none of them with `which`.
+    """
+    instant = now()
+    ended = update(computations).where(which).values(finished=instant, updated=instant, **values)
+    facts = [computations.c[name] for name in ("process", "state", "started", "finished", "attempts")]
+    for row in connection.execute(ended.returning(*facts)).all():
+        if row.started is not None:
+            _count(connection, row)
+
+
+def _count(connection: Connection, row: Row[Any]) -> None:
+    span = datetime.fromisoformat(row.finished) - datetime.fromisoformat(row.started)
+    seconds = max(span.total_seconds(), 0.0)  # a clock was set
+    key = {"process": row.process, "outcome": row.state, "le": bound_of(seconds)}
+    added = {"number": 1, "seconds": seconds, "attempts": row.attempts}
+    statement = dialect_of(connection).insert(durations).values(**key, **added)
+    more = {name: durations.c[name] + value for name, value in added.items()}
+    connection.execute(statement.on_conflict_do_update(index_elements=list(key), set_=more))

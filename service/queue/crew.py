@@ -1,0 +1,53 @@
+"""Who works on jobs: children of this machine, or tasks of a Dask scheduler."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeAlias
+
+import structlog
+
+from host.children.launcher import Launcher
+from service.queue.cluster import Cluster, Task
+from service.settings import LEAST_MEMORY_MB, Settings
+from service.worker.order import WorkOrder
+from service.worker.usage import machine_memory_mb
+from service.worker.worker import WORK, Worker
+
+logger = structlog.get_logger(__name__)
+Run: TypeAlias = Worker | Task
+"""Work on one order."""
+
+
+class Children:
+    """Child processes of this one, `settings.workers` at a time."""
+
+    keeps = False
+
+    def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
+        self.most = settings.workers
+        self._memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+        log = settings.data_directory / "log" / "warm.log"
+        self._launcher = Launcher(WORK, modules, log, logger.warning)
+
+    def start(self, _heard: Callable[[], None]) -> None:
+        """Do nothing: the first child starts the warm process."""
+
+    def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:
+        """Start a child, or fork one; raises OSError: the system does neither."""
+        memory_mb = order.memory_limit_mb or self._memory_mb
+        return Worker(replace(order, memory_limit_mb=memory_mb), log, self._launcher.launch)
+
+    def hurry(self) -> None:
+        """Begin what is being begun at once: it is to stop."""
+        self._launcher.hurry()
+
+    def close(self) -> None:
+        """End the warm process."""
+        self._launcher.close()
+
+
+Crew: TypeAlias = Children | Cluster
+"""Who begins work on orders; what one runs that `keeps` outlives the server and is found again by name."""
