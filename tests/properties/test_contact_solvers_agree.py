@@ -246,7 +246,7 @@ def test_rigid_offset_is_added(problem, load, offset):
 
 @given(problem=problems, load=loads, scale=st.floats(0.01, 100.0))
 def test_lengths_scale_and_forces_scale_with_their_square(problem, load, scale):
-    names, here = ("gap", "width", "length"), problem.gap_about
+    names, here = ("gap", "width", "length", "reference_length"), problem.gap_about
     larger = replace(
         problem,
         compliance=problem.compliance / scale,
