@@ -28,7 +28,12 @@ from fe_contact.types import Json
 
 ROOT = Path(__file__).parents[2]
 PRODUCT = ("dynamics", "fe_contact", "model_studies", "lineofaction", "service")
-EXAMPLES = ("lineofaction/hardcases/", "service/page/files.py", "service/schemas/examples.py")
+EXAMPLES = (
+    "lineofaction/hardcases/",
+    "service/page/example_cases.py",
+    "service/schemas/answer_examples.py",
+    "service/schemas/examples.py",
+)
 WORDS = {"axial", "backlash", "friction", "lateral", "misalignment", "tilt"}
 """Effects whose names are directions or quantities too: refused where an effect is chosen or looked up."""
 REMAINS = {
