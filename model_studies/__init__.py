@@ -12,17 +12,16 @@ from model_studies.frontier import (
     Fidelity,
     FidelityResult,
     Frontier,
-    LeftOut,
     Outcome,
     against_finest,
     front_of,
     knee_above,
     knee_of,
     run_fidelities,
-    run_variants,
 )
 from model_studies.progress import Progress, silent
 from model_studies.record import NOT_STORED, in_unit
+from model_studies.variants import LeftOut, run_variants
 
 __all__ = [
     "NOT_STORED",

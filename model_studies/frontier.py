@@ -11,73 +11,13 @@ import numpy as np
 from bounds.brief import brief
 from host import cpu_seconds
 from model_studies.progress import Progress
-from model_studies.workers import InProcess, Workers, divided
+from model_studies.variants import run_variants
 
-# Variants of a model, each by itself; those that cannot be computed are left out with their reason.
-
-V = TypeVar("V")
 R = TypeVar("R")
 Q = TypeVar("Q")
 Q_contra = TypeVar("Q_contra", contravariant=True)
 Errors = Mapping[str, float]
 """Relative errors by the name of the figure; NaN: not known."""
-
-
-class LeftOut(Exception):
-    """A variant is not valid here, and why."""
-
-
-def run_variants(
-    stage: str,
-    variants: Mapping[str, V],
-    compute: Callable[[V], R],
-    failures: tuple[type[Exception], ...],
-    progress: Progress,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    seconds: float | None = None,
-) -> tuple[dict[str, R], dict[str, str]]:
-    """Compute every variant; one that fails does not end the study.
-
-    Parameters
-    ----------
-    compute : callable
-        For workers a function of a module, or a `partial` of one with what all variants share.
-    seconds : float, optional
-        Predicted CPU seconds of all, as of `divided`.
-
-    Returns
-    -------
-    results : dict
-        By name, in the order of the variants.
-    left_out : dict of str to str
-        Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
-    """
-    results, left_out = {}, {}
-    outcomes = divided(workers, _attempted, (compute, failures), list(variants.values()), seconds)
-    for count, name in enumerate(variants):
-        progress(stage, count / len(variants))
-        result, reason = next(outcomes)
-        if reason is None:
-            results[name] = result
-        else:
-            left_out[name] = reason
-    progress(stage, 1.0)
-    return results, left_out
-
-
-def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:
-    """Return the result of a variant and None, or None and the reason why it has none: one task."""
-    compute, failures = shared
-    known: tuple[type[Exception], ...] = (LeftOut, *failures)
-    try:
-        return compute(variant), None
-    except known as error:
-        return None, str(error)
-    except MemoryError:
-        return None, "out of memory"
-
-
-# Fidelities of a model: each run and timed by itself, and measured against the finest.
 
 
 class Fidelity(Protocol[Q_contra]):

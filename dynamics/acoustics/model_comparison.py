@@ -24,8 +24,8 @@ from dynamics.errors import DynamicsError
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from host import MissingExtra
-from model_studies.frontier import run_variants
 from model_studies.progress import Progress, silent
+from model_studies.variants import run_variants
 from model_studies.workers import InProcess
 
 BLOCK = 512  # panels whose mutual resistances are held at a time

@@ -17,8 +17,8 @@ from dynamics.noise.sound_band import GUESSES, SoundModel, forced_power, largest
 from dynamics.noise.transferred_quantities import SoundPower
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
-from model_studies.frontier import run_variants
 from model_studies.progress import Progress
+from model_studies.variants import run_variants
 
 STEPS = {"housing_frequency": 0.02}
 STEP = 0.1
