@@ -23,7 +23,7 @@ from dynamics.types import FloatArray
 
 SUBJECT = "stated step errors of runs against a ten thousandth of the tolerance"
 FINER = 1e-4
-LEAST, MOST, COVERED = 0.3, 3.0, 11.0 / 12.0
+MIN, MAX, COVERED = 0.3, 3.0, 11.0 / 12.0
 """True over stated errors, and the share of the scenes with errors that accumulate that are to be covered."""
 
 
@@ -104,4 +104,4 @@ def figures() -> list[Figure]:
 
 def _ratio(run: StatedRun) -> Figure:
     of = "level" if run.chaotic else "trace"
-    return Figure(SUBJECT, f"{run.name}: true over stated, {of}", run.ratio, "-", MOST)
+    return Figure(SUBJECT, f"{run.name}: true over stated, {of}", run.ratio, "-", MAX)

@@ -31,7 +31,7 @@ FLANKS = (
 NAMES = tuple(f"{gear}.{name}" for gear in ("pinion", "wheel") for name in FLANKS)
 TURNS = 9
 STEP = 1e-9
-MOST = 1.5
+MAX = 1.5
 """Of the CPU time of the curve alone."""
 
 
@@ -48,7 +48,7 @@ def figures() -> list[Figure]:
     found = curve_derivatives(bodies, pair, TORQUES, NAMES).by
     off = [difference(bodies, name, by) for name, by in zip(NAMES, found, strict=True)]
     return [
-        Figure(SUBJECT, "curve and derivatives over the curve alone", min(more) / min(alone), "times", MOST),
+        Figure(SUBJECT, "curve and derivatives over the curve alone", min(more) / min(alone), "times", MAX),
         Figure(SUBJECT, "curve alone", 1e3 * min(alone), "ms", None),
         Figure(SUBJECT, "off central differences, median of the worst", max(off), "of the largest", None),
     ]

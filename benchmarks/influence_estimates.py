@@ -72,21 +72,21 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
         made = ablate(case.pair, *case.request(level="draft"), Run(cache=folder))
         checked = check_request(case.pair, *case.request(level="draft"))
         names = [entry.name for entry in made.effects]
-        estimates = estimate_influences(checked.request.scene, checked.decided, names)
+        estimates = estimate_influences(checked.request.scene, checked.decision, names)
         wishes = {
             tol: check_request(case.pair, *case.request(tolerance=AllowedError(tol))) for tol in TOLERANCES
         }
-        decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
+        decision = {tol: decide(wish, folder).checked.decision for tol, wish in wishes.items()}
         for entry in made.effects:
-            off_at = tuple(tol for tol in TOLERANCES if is_neglected(decided[tol], entry.name))
+            off_at = tuple(tol for tol in TOLERANCES if is_neglected(decision[tol], entry.name))
             found += _assessed(case, entry, estimates[entry.name], off_at)
     return found
 
 
-def is_neglected(decided: Mapping[str, str], name: str) -> bool:
+def is_neglected(decision: Mapping[str, str], name: str) -> bool:
     """Whether an effect is off; three dimensions hold the finite width by themselves."""
-    held = name == FiniteWidth.name and decided[FaceLoadDistribution.name] == "on"
-    return decided[name] == "off" and not held
+    held = name == FiniteWidth.name and decision[FaceLoadDistribution.name] == "on"
+    return decision[name] == "off" and not held
 
 
 def _assessed(

@@ -108,8 +108,8 @@ def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
 
 def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
     """Compute mean and peak-to-peak, m."""
-    decided = decide(checked, folder).in_slices(SLICES)
-    table = compute_database(checked, checked.request.to_json(), Run(cache=folder), decided)
+    decision = decide(checked, folder).in_slices(SLICES)
+    table = compute_database(checked, checked.request.to_json(), Run(cache=folder), decision)
     curve = table.curve(force=float(table.force[-1]), misalignment=checked.request.scene.largest_misalignment)
     return float(curve.mean.value), float(curve.peak_to_peak.value)
 

@@ -10,7 +10,7 @@ from annotated_types import Interval
 
 from bounds.bound import (
     LIMIT_SLACK,
-    MOST_BYTES,
+    MAX_BYTES,
     Bound,
     Choice,
     above,
@@ -44,7 +44,7 @@ from bounds.unit import Unit, engineering, leftover
 __all__ = [
     "DEPTHS",
     "LIMIT_SLACK",
-    "MOST_BYTES",
+    "MAX_BYTES",
     "Bound",
     "Check",
     "Checklist",

@@ -11,7 +11,7 @@ from bounds.text import NOTHING, Reader, Text, Words
 
 LIMIT_SLACK = 1e-12
 """Relative rounding of a computed limit, which its printed form does not show."""
-MOST_BYTES = 8e9
+MAX_BYTES = 8e9
 """Of the arrays that a computation holds at once; what would take more is refused before it begins."""
 
 

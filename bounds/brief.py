@@ -17,7 +17,7 @@ import numpy as np
 
 from bounds.unit import engineering
 
-MOST_LINES = 12
+MAX_LINES = 12
 """Lines of a record, its title among them."""
 WIDTH = 100
 """Characters of a line, at most."""
@@ -44,7 +44,7 @@ def brief(kind: type[Record]) -> type[Record]:
 
 
 def text_of(record: object) -> str:
-    """Return a record as text of at most `MOST_LINES` lines."""
+    """Return a record as text of at most `MAX_LINES` lines."""
     title, rows = _content(record)
     width = max((len(name) for name, _ in rows), default=0)
     lines = [title, *(f"  {name:<{width}}  {text}".rstrip() for name, text in rows)]
@@ -68,10 +68,10 @@ def _content(record: object) -> tuple[str, list[Row]]:
     else:
         title, rows = type(record).__name__, list(_field_rows(record))
     rows = [(name, " ".join(text.split())) for name, text in rows]
-    most = MOST_LINES - 1
-    if len(rows) > most:
-        names = ", ".join(name for name, _ in rows[most - 1 :])
-        rows = [*rows[: most - 1], ("and", f"{len(rows) - most + 1} more: {names}")]
+    maximum = MAX_LINES - 1
+    if len(rows) > maximum:
+        names = ", ".join(name for name, _ in rows[maximum - 1 :])
+        rows = [*rows[: maximum - 1], ("and", f"{len(rows) - maximum + 1} more: {names}")]
     return title, rows
 
 

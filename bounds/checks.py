@@ -146,7 +146,7 @@ class Checks:
             elif limits is not None and limits.integer:
                 self.integer(field, value, int(limits.low or 0), int(limits.high or 0))
             elif limits is not None:
-                self.in_bound(field, value, limits, fact.advice if fact.unit else "")
+                self.in_bound(field, value, limits, fact.remedy if fact.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""
@@ -156,6 +156,6 @@ class Checks:
         if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
             raise self.refused(field, values, "a non-empty list of finite numbers", suggestion)
         if np.any(np.diff(array) <= 0.0):
-            advice = suggestion or "Sort the list and drop repeats."
-            raise self.refused(field, values, "strictly increasing", advice)
+            remedy = suggestion or "Sort the list and drop repeats."
+            raise self.refused(field, values, "strictly increasing", remedy)
         return array

@@ -96,7 +96,7 @@ class Declared:
     """Whether the field came after results had been stored. At its default it is not written out, so that
     what says nothing of it keeps the address of its result.
     """
-    most: int = 100
+    maximum: int = 100
     """Number of parts of a list, at most."""
     with_unit: bool = False
     """Whether a message has the unit behind the ends of the range."""
@@ -110,7 +110,7 @@ class Declared:
         return Bound.of(self.bound, integer=self.kind is Kind.COUNT, unit=unit)
 
     @cached_property
-    def advice(self) -> SiNote:
+    def remedy(self) -> SiNote:
         """What to try where a value is refused."""
         return SiNote(f"In {self.unit}, for example {self.example}.")
 

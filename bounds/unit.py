@@ -8,7 +8,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 DIGITS = 7
 """Digits of a number in a message, unless it says otherwise."""
-LEAST_LEFTOVER = 1e-12
+MIN_LEFTOVER = 1e-12
 """Residual from which on its digits are written."""
 
 
@@ -46,7 +46,7 @@ class Unit:
 
 
 def leftover(value: float, digits: int = 1) -> str:
-    """Write what should be zero, a residual or an imbalance: below `LEAST_LEFTOVER` only that it is.
+    """Write what should be zero, a residual or an imbalance: below `MIN_LEFTOVER` only that it is.
 
     Rounding decides smaller numbers; their digits say nothing.
 
@@ -57,7 +57,7 @@ def leftover(value: float, digits: int = 1) -> str:
     digits : int
         Significant digits of a number that is large enough.
     """
-    return f"below {LEAST_LEFTOVER:g}" if abs(value) < LEAST_LEFTOVER else engineering(abs(value), digits)
+    return f"below {MIN_LEFTOVER:g}" if abs(value) < MIN_LEFTOVER else engineering(abs(value), digits)
 
 
 def engineering(value: float, digits: int = 3, sign: str = "") -> str:

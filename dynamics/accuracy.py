@@ -29,9 +29,9 @@ from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
-MOST_BLOCKS, ORDERS = 6, 5
-LEAST_SAMPLES = 32
-LEAST_PITCHES = 2.0
+MAX_BLOCKS, ORDERS = 6, 5
+MIN_SAMPLES = 32
+MIN_PITCHES = 2.0
 BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
 IN_PLANE = (*BY_TORSION, "x", "y")
 ORDER_MATCH = 1e-6
@@ -41,7 +41,7 @@ NAN = float("nan")
 WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
 HALF, TABLE_REST = "table_half", 1.0 / 3.0
 """The fidelity of every second position node, and what of its error the whole table leaves: second order."""
-LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+MIN_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
 STEPS = 0.2
 """Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 
@@ -76,7 +76,7 @@ class BlockGrid:
     def of(cls, system: System) -> BlockGrid:
         """Cut the run of `system` into blocks of equal time.
 
-        Raises `InputError`: the run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples
+        Raises `InputError`: the run turns its first mesh by less than `MIN_PITCHES`, or has too few samples
         a period.
         """
         rate, scene = system.sampling.rate, system.scene
@@ -84,15 +84,15 @@ class BlockGrid:
         time = np.arange(samples) / rate
         rest = np.zeros((samples, system.arrays.mass.shape[0]))
         position = unwrapped(observe(system.arrays, time, rest, rest).position[: len(scene.meshes)])
-        ends = np.linspace(0, samples, MOST_BLOCKS + 1).astype(np.int64)
+        ends = np.linspace(0, samples, MAX_BLOCKS + 1).astype(np.int64)
         bounds = np.stack([ends[:-1], ends[1:]], axis=1)
         turned = [abs(position[0, stop - 1] - position[0, first]) for first, stop in bounds]
-        long = np.diff(bounds, axis=1)[:, 0] >= LEAST_SAMPLES
-        bounds = bounds[(np.array(turned) >= LEAST_PITCHES) & long]
+        long = np.diff(bounds, axis=1)[:, 0] >= MIN_SAMPLES
+        bounds = bounds[(np.array(turned) >= MIN_PITCHES) & long]
         if bounds.size == 0:
             bounds = np.array([[0, samples]])
-            if samples < LEAST_SAMPLES or abs(position[0, -1] - position[0, 0]) < LEAST_PITCHES:
-                bound = f"long enough for {LEAST_PITCHES:g} base pitches and {LEAST_SAMPLES} samples"
+            if samples < MIN_SAMPLES or abs(position[0, -1] - position[0, 0]) < MIN_PITCHES:
+                bound = f"long enough for {MIN_PITCHES:g} base pitches and {MIN_SAMPLES} samples"
                 raise InputError("duration", scene.duration, bound, "Lengthen the run or raise its speed.")
         orders = min(orders_seen(line[bounds[0, 0] :], ORDERS) for line in position)
         if orders < 1:
@@ -152,7 +152,7 @@ class TimeIntegration:
             return "the scene has a fixed step"
         if self.additions is None:
             return None
-        here, there = _decided(scene), _decided(self.as_run(scene))
+        here, there = _decision(scene), _decision(self.as_run(scene))
         return "the scene has no more effects than these" if here == there else None
 
     def as_run(self, scene: Scene) -> Scene:
@@ -180,7 +180,7 @@ class TimeIntegration:
         return _vibration_of(blocks, *_series(system, trajectory))
 
 
-def _decided(scene: Scene) -> set[tuple[str, str]]:
+def _decision(scene: Scene) -> set[tuple[str, str]]:
     return {(entry.effect, entry.part) for entry in assemble(scene).ledger.entries if entry.on}
 
 
@@ -443,7 +443,7 @@ def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) 
     (_, far), (_, near) = coarser[-2:]
     rate = {name: far[name] / near[name] if near[name] > 0.0 else NAN for name in FIGURES}
     return {
-        name: near[name] / (rate[name] - 1.0) if rate[name] > LEAST_RATE else near[name] for name in FIGURES
+        name: near[name] / (rate[name] - 1.0) if rate[name] > MIN_RATE else near[name] for name in FIGURES
     }
 
 

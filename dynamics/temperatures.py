@@ -56,8 +56,8 @@ class Temperatures:
     def __post_init__(self) -> None:
         declared_fields(self)
         if self.housing_material.thermal_expansion is None:
-            advice = "Give it, or a material by its name."
-            raise InputError("housing_material.thermal_expansion", None, "given", advice)
+            remedy = "Give it, or a material by its name."
+            raise InputError("housing_material.thermal_expansion", None, "given", remedy)
 
     def strain(self, expansion: float, temperature: float | None) -> float:
         """Return the thermal strain of a part of this expansion (1/K); None: as the housing is warm."""

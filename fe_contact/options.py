@@ -55,8 +55,8 @@ class TableAxes:
         if (self.torques is None) == (self.normal_forces is None):
             bound = "given, or normal_forces instead"
             raise InputError("torques", self.torques, bound, "Give exactly one of the two.")
-        advice = "Loads start above zero; the no-load curve is always in the table."
-        positive(f"{self.loads_as}[0]", float(self._levels[0]), advice)
+        remedy = "Loads start above zero; the no-load curve is always in the table."
+        positive(f"{self.loads_as}[0]", float(self._levels[0]), remedy)
         for name in ("misalignments", "center_distance_changes"):
             for i, value in enumerate(increasing(name, getattr(self, name))):
                 ends = -LARGEST_DEVIATION, LARGEST_DEVIATION
@@ -182,8 +182,8 @@ class AnalysisOptions:
             if (value := getattr(self, name)) not in choices:
                 raise InputError(name, value, f"one of {', '.join(filter(None, choices))}")
         if self.positions is not None:
-            advice = "64 resolve a spur pair; leave it out for adaptive nodes."
-            integer("positions", self.positions, 8, 4096, advice)
+            remedy = "64 resolve a spur pair; leave it out for adaptive nodes."
+            integer("positions", self.positions, 8, 4096, remedy)
 
     @property
     def allowed(self) -> AllowedError:

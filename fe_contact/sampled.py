@@ -28,9 +28,9 @@ def some_positions(count: int) -> IntArray:
     return np.arange(0, count, max(count // FEWEST_POSITIONS, 1))
 
 
-def sample_of(count: int, most: int) -> IntArray:
-    """Return the nodes of an axis of `count` that are solved: at most `most`, both ends among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+def sample_of(count: int, maximum: int) -> IntArray:
+    """Return the nodes of an axis of `count` that are solved: at most `maximum`, both ends among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, maximum)).round().astype(np.int64))
 
 
 def spread_around(knots: FloatArray, period: int, sample: IntArray, values: FloatArray) -> FloatArray:

@@ -47,8 +47,8 @@ class Shaft:
 
     def __post_init__(self) -> None:
         declared_fields(self)
-        advice = SiNote("In m from the bearing of smaller z; a gear may overhang by one length.")
-        within("position", self.position, -self.length, 2.0 * self.length, advice)
+        remedy = SiNote("In m from the bearing of smaller z; a gear may overhang by one length.")
+        within("position", self.position, -self.length, 2.0 * self.length, remedy)
 
 
 Shafts = tuple[Shaft | None, Shaft | None]

@@ -42,8 +42,8 @@ def limit_memory(size: int) -> None:
     import resource  # noqa: PLC0415 (POSIX alone)
 
     _, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    most = size if hard == resource.RLIM_INFINITY else min(size, hard)
-    resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
+    maximum = size if hard == resource.RLIM_INFINITY else min(size, hard)
+    resource.setrlimit(resource.RLIMIT_DATA, (maximum, hard))
 
 
 def limit_file_size(pid: int, size: int) -> None:
@@ -103,7 +103,7 @@ def _limit(limits: Limits, addresses: int) -> None:
         raise Unavailable("Limits of processes")
     import resource  # noqa: PLC0415 (POSIX alone)
 
-    most = {
+    maximum = {
         resource.RLIMIT_CPU: (limits.cpu_seconds, limits.cpu_seconds + 1),  # the first says why
         resource.RLIMIT_FSIZE: (limits.file_bytes, limits.file_bytes),
         resource.RLIMIT_NOFILE: (limits.open_files, limits.open_files),
@@ -115,8 +115,8 @@ def _limit(limits: Limits, addresses: int) -> None:
         limit_memory(limits.memory_mb * _MB)
     if limits.memory_mb is not None and addresses:
         most_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
-        most[resource.RLIMIT_AS] = (most_addresses, most_addresses)
-    for kind, values in most.items():
+        maximum[resource.RLIMIT_AS] = (most_addresses, most_addresses)
+    for kind, values in maximum.items():
         _, hard = resource.getrlimit(kind)
         soft, last = values if hard == resource.RLIM_INFINITY else (min(value, hard) for value in values)
         resource.setrlimit(kind, (soft, last))

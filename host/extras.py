@@ -6,7 +6,7 @@ import sys
 from importlib.util import find_spec
 from typing import Any
 
-_ADVICE = "Use Linux, or macOS, or on Windows WSL or a container."
+_REMEDY = "Use Linux, or macOS, or on Windows WSL or a container."
 MODULES = {
     "dask": ("distributed",),
     "analysis": (
@@ -42,21 +42,21 @@ class Unavailable(OSError):
     `what`: what it does not offer, in the plural: "limits on memory".
     """
 
-    def __init__(self, what: str, advice: str = _ADVICE) -> None:
-        super().__init__(f"{what} are not available on {sys.platform}. {advice}")
-        self.what, self.advice = what, advice
+    def __init__(self, what: str, remedy: str = _REMEDY) -> None:
+        super().__init__(f"{what} are not available on {sys.platform}. {remedy}")
+        self.what, self.remedy = what, remedy
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle by what it is made of."""
-        return type(self), (self.what, self.advice)
+        return type(self), (self.what, self.remedy)
 
 
 class MissingExtra(ModuleNotFoundError):
     """A module of an extra is asked for that is not installed."""
 
     def __init__(self, module: str, extra: str) -> None:
-        advice = f"pip install 'lineofaction[{extra}]'"
-        super().__init__(f"{module} is not installed. It comes with the extra {extra}: {advice}", name=module)
+        remedy = f"pip install 'lineofaction[{extra}]'"
+        super().__init__(f"{module} is not installed. It comes with the extra {extra}: {remedy}", name=module)
         self.extra = extra
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -17,9 +17,9 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray
 
-MOST_VARIABLES = 4096
-MOST_ATTRIBUTES = 256
-MOST_ENTRIES = 32
+MAX_VARIABLES = 4096
+MAX_ATTRIBUTES = 256
+MAX_ENTRIES = 32
 """Of an attribute of texts or lists, as of dimensions in HDF5: all may point to one long text."""
 FREE_BYTES = 2**30
 """Of values and texts, which any file may unpack to."""
@@ -77,13 +77,13 @@ def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
         return xarray.load_dataset(H5NetCDFStore(file), **decoding)
 
 
-def _check(file: Any, most: int) -> None:
+def _check(file: Any, maximum: int) -> None:
     """Refuse what is no variable of the file itself, and more than so many bytes of values and texts."""
     total = 0
     for size in _sizes(file):
         total += size
-        if total > most:
-            raise UnreadableFile(f"unpacks to more than {most} bytes")
+        if total > maximum:
+            raise UnreadableFile(f"unpacks to more than {maximum} bytes")
 
 
 def _sizes(file: Any) -> Iterator[int]:
@@ -108,8 +108,8 @@ def _names(root: Any) -> list[bytes]:
     """Return the names of what a group holds; links to other places are refused."""
     from h5py import h5l  # noqa: PLC0415 - needed for files only
 
-    if root.get_num_objs() > MOST_VARIABLES:
-        raise UnreadableFile(f"holds more than {MOST_VARIABLES} variables")
+    if root.get_num_objs() > MAX_VARIABLES:
+        raise UnreadableFile(f"holds more than {MAX_VARIABLES} variables")
     kinds: dict[bytes, int] = {}
     root.links.iterate(lambda name, link: kinds.update({name: link.type}), info=True)
     if any(kind != h5l.TYPE_HARD for kind in kinds.values()):
@@ -141,16 +141,16 @@ def _attribute_sizes(owner: Any) -> Iterator[int]:
     from h5py import h5a, h5t, string_dtype  # noqa: PLC0415 - needed for files only
 
     count = h5a.get_num_attrs(owner)
-    if count > MOST_ATTRIBUTES:
-        raise UnreadableFile(f"has more than {MOST_ATTRIBUTES} attributes in one place")
+    if count > MAX_ATTRIBUTES:
+        raise UnreadableFile(f"has more than {MAX_ATTRIBUTES} attributes in one place")
     for index in range(count):
         attribute = h5a.open(owner, index=index)
         kind, size = attribute.get_type(), attribute.get_storage_size()
         entries = size // kind.get_size()
         if not _is_plain(kind) and not all(part.equal(h5t.STD_REF_OBJ) for part in _parts(kind)):
             raise UnreadableFile("has attributes that are neither numbers, texts nor dimensions")
-        if entries > MOST_ENTRIES and (_is_text(kind) or kind.get_class() == h5t.VLEN):
-            raise UnreadableFile(f"has more than {MOST_ENTRIES} texts in an attribute")
+        if entries > MAX_ENTRIES and (_is_text(kind) or kind.get_class() == h5t.VLEN):
+            raise UnreadableFile(f"has more than {MAX_ENTRIES} texts in an attribute")
         if _is_text(kind):
             texts = np.empty(attribute.shape, dtype=string_dtype())
             attribute.read(texts)

@@ -72,8 +72,8 @@ def _own(entry: str, fields: set[str]) -> bool:
 def _usual(declared: tuple[Figure, ...]) -> dict[str, str]:
     """Return by the end of a name what at least USUAL fields with it accept and are by default."""
     counts = Counter((_end(figure), f"{accepted(figure)}; {default(figure)}") for figure in declared)
-    most = {end: max(n for (own, _), n in counts.items() if own == end) for end, _ in counts}
-    return {end: text for (end, text), count in counts.items() if count >= USUAL and count == most[end]}
+    maximum = {end: max(n for (own, _), n in counts.items() if own == end) for end, _ in counts}
+    return {end: text for (end, text), count in counts.items() if count >= USUAL and count == maximum[end]}
 
 
 def _end(figure: Figure) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import structure
 
-LEAST = 100
+MIN = 100
 """Lines of change of a subject that is printed."""
 
 
@@ -52,7 +52,7 @@ def table(lines: Counter[str], changes: Iterator[tuple[str, int, int]]) -> str:
         went[subject] += less
     rows = [f"{sum(lines.values()):7d} lines, +{came.total()} -{went.total()}"]
     for subject in sorted(set(came) | set(went), key=lambda subject: went[subject] - came[subject]):
-        if came[subject] + went[subject] >= LEAST:
+        if came[subject] + went[subject] >= MIN:
             rows.append(f"{lines[subject]:7d} {subject}  +{came[subject]} -{went[subject]}")
     return "\n".join(rows)
 

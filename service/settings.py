@@ -27,7 +27,7 @@ from lineofaction.gearbox.problems import BadInput, Fault
 from service.origin import Origin, is_loopback
 from service.secret_files import SecretFiles
 
-LEAST_MEMORY_MB = 256
+MIN_MEMORY_MB = 256
 """What a worker needs to load the program."""
 _SIGNING = "whsec_"
 _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
@@ -81,7 +81,7 @@ class Settings(BaseSettings):
     """Bytes of a request body; beyond it 413."""
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
     """Longest run of one computation."""
-    memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
+    memory_limit_mb: int | None = Field(None, ge=MIN_MEMORY_MB, le=1_000_000_000)
     """Memory that one computation may have, MB; None: the machine's over the number of workers."""
     attempts: int = Field(2, ge=1, le=10)
     """How often a computation whose worker died is started."""

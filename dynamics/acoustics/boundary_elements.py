@@ -36,7 +36,7 @@ EDGES = 2.6
 """Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
 RESIDUAL = 1e-8
 """Greatest relative residual of the dense solve."""
-MOST_PANELS = 8000
+MAX_PANELS = 8000
 """So many take 7 GB at the peak."""
 SHARES = {"operators": 0.98, "pressure": 0.02}
 """Usual shares in the time."""
@@ -130,7 +130,7 @@ def surface_pressure(
     Raises
     ------
     InputError
-        The hull is open, has more than `MOST_PANELS` panels, or does not resolve the wavelength.
+        The hull is open, has more than `MAX_PANELS` panels, or does not resolve the wavelength.
     MissingExtra
         NGSolve is not installed.
     SolveError
@@ -139,8 +139,8 @@ def surface_pressure(
     wavenumber = 2.0 * np.pi * frequency / air.sound_speed
     hull.require_closed()
     hull.require_resolved(wavenumber, air.sound_speed, EDGES)
-    if len(hull.triangles) > MOST_PANELS:
-        raise InputError("triangles", len(hull.triangles), f"at most {MOST_PANELS}", "Coarsen the hull.")
+    if len(hull.triangles) > MAX_PANELS:
+        raise InputError("triangles", len(hull.triangles), f"at most {MAX_PANELS}", "Coarsen the hull.")
     panels = LinearPanels(hull)
     slope = 1j * wavenumber * air.impedance * shapes.conj()  # dp/dn of e^{-i omega t}, as the kernel has it
     parts = by_cost(lambda fraction: progress(STAGE, fraction), SHARES)

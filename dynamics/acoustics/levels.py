@@ -48,8 +48,8 @@ def sound_power_level(power: ArrayLike) -> FloatArray:
 
 def mean_square_level(square: FloatArray) -> FloatArray:
     """Return the sound pressure level of mean squares in Pa^2 re 20 uPa, dB, at least `FLOOR`."""
-    least = 10.0 ** (FLOOR / 10.0)
-    return np.asarray(10.0 * np.log10(np.maximum(square / REFERENCE_PRESSURE**2, least)))
+    minimum = 10.0 ** (FLOOR / 10.0)
+    return np.asarray(10.0 * np.log10(np.maximum(square / REFERENCE_PRESSURE**2, minimum)))
 
 
 def a_weighting(frequency: ArrayLike) -> FloatArray:

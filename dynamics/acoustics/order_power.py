@@ -190,8 +190,8 @@ class OrderPower:
         if self.floor is None:
             return None
         total = self.total_weighted_power
-        least = np.maximum(total - self.weighted_error, self.weighted_power.sum(axis=0))
-        return self.total_weighted_level - sound_power_level(least)
+        minimum = np.maximum(total - self.weighted_error, self.weighted_power.sum(axis=0))
+        return self.total_weighted_level - sound_power_level(minimum)
 
     @property
     def total_level(self) -> FloatArray:

@@ -180,8 +180,8 @@ def outer_hull(housing: ReducedHousing) -> OuterHull:
     `InputError`: the housing has no surface, or no face of it sees the sky.
     """
     if housing.surface is None:
-        advice = "Reduce its mesh or STEP file: matrices alone do not say what the air touches."
-        raise InputError("surface", "none", "a housing with a surface", advice)
+        remedy = "Reduce its mesh or STEP file: matrices alone do not say what the air touches."
+        raise InputError("surface", "none", "a housing with a surface", remedy)
     points, triangles = housing.surface.points, housing.surface.triangles
     outer = _outside(points, triangles)
     nodes, panels = np.unique(triangles[outer][:, QUARTERS].reshape(-1, 3), return_inverse=True)

@@ -201,8 +201,8 @@ def force_recording(
     or as `series_recording`.
     """
     if not run.bearing_force.shape[0]:
-        advice = "Run with outputs.bearing_forces = true."
-        raise InputError("bearing", bearing, "one of a run that holds forces on bearings", advice)
+        remedy = "Run with outputs.bearing_forces = true."
+        raise InputError("bearing", bearing, "one of a run that holds forces on bearings", remedy)
     one_of("bearing", bearing, run.bearing)
     force = run.bearing_force[run.bearing.index(bearing)]
     axis = principal_direction(force, run.sample_rate)[0] if direction is None else unit_vector(direction)

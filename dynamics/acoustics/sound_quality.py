@@ -88,8 +88,8 @@ def _metrics(recording: Recording) -> Any:
     if recording.unit != "Pa":
         raise InputError("unit", recording.unit, "Pa", "Loudness is that of a sound pressure.")
     if recording.sample_rate != SAMPLE_RATE:
-        advice = f"Use recording.resampled({SAMPLE_RATE})."
-        raise InputError("sample_rate", recording.sample_rate, exactly(SAMPLE_RATE, " Hz"), advice)
+        remedy = f"Use recording.resampled({SAMPLE_RATE})."
+        raise InputError("sample_rate", recording.sample_rate, exactly(SAMPLE_RATE, " Hz"), remedy)
     if recording.samples.size < SHORTEST * SAMPLE_RATE:
         raise InputError("duration", recording.samples.size / SAMPLE_RATE, at_least(SHORTEST, "s"))
     try:

@@ -9,14 +9,14 @@ import numpy as np
 from dynamics.kernels.compiled import inner, inner_sums
 from dynamics.types import FloatArray, IntArray
 
-LEAST = 16
+MIN = 16
 """Freedoms from which on a dense block is faster than entries one by one."""
 TOGETHER = 4
 """Rows of a product taken at a time: amplitudes and forces on them are read a fourth as often."""
 
 
 class ModalFreedoms(NamedTuple):
-    """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `LEAST`."""
+    """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `MIN`."""
 
     first: int
     """Freedoms before them."""
@@ -42,7 +42,7 @@ def modal_freedoms_of(
     joined = entries & ~np.eye(size, dtype=bool)
     bound = np.any(joined, axis=1) | np.any(others != 0.0, axis=0)
     first = int(np.max(np.flatnonzero(bound), initial=-1)) + 1
-    if size - first < LEAST:
+    if size - first < MIN:
         first = size
     block = direction[:, first:]
     row = np.flatnonzero(np.any(block != 0.0, axis=1))

@@ -87,8 +87,8 @@ def unbalance_elements(model: Model) -> tuple[tuple[Element, ...], UnbalanceLaws
         shaft = scene.shaft_index(part.shaft)
         if rotors[shaft].frame is not None:
             bound = "a shaft described in the fixed frame"
-            advice = "On a member of a planetary set use a force by speed that turns with it."
-            raise InputError(f"unbalances[{entry}].shaft", part.shaft, bound, advice)
+            remedy = "On a member of a planetary set use a force by speed that turns with it."
+            raise InputError(f"unbalances[{entry}].shaft", part.shaft, bound, remedy)
         moves = section_rows(rotors, shaft, rotors[shaft].shaft.origin[2] + part.position)
         rows = np.array([moves[0], moves[1], lever * moves[ROTATION]])
         elements.append(Element(Law.UNBALANCE, entry, -1, rows, np.zeros(3), rows @ vectors.T))

@@ -23,10 +23,10 @@ from dynamics.mechanism.freedoms import Freedoms
 from dynamics.mechanism.kinematics import mesh_shafts
 from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.phases import phases
-from dynamics.scene.scene import LEAST_RATE, Scene
+from dynamics.scene.scene import MIN_RATE, Scene
 from dynamics.types import FloatArray
 
-LEAST_SEAT = 0.1
+MIN_SEAT = 0.1
 """Least scale of a housing's amplitude, as a share of its largest."""
 
 
@@ -113,14 +113,14 @@ def _rate_duration(mass: FloatArray, stiffness: FloatArray) -> FloatArray:
     """
     elastic = stiffness > 0.0
     duration = np.sqrt(mass / np.where(elastic, stiffness, 1.0))
-    return np.where(elastic, duration, np.max(duration[elastic], initial=1.0 / LEAST_RATE))
+    return np.where(elastic, duration, np.max(duration[elastic], initial=1.0 / MIN_RATE))
 
 
 def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     """Return the meters per unit of each freedom, (n,).
 
     A rotation has the largest base or pin radius on its shaft. An amplitude of a housing has the largest
-    displacement of a seat per unit, at least `LEAST_SEAT` of the largest of all amplitudes: modes that hardly
+    displacement of a seat per unit, at least `MIN_SEAT` of the largest of all amplitudes: modes that hardly
     move a seat do not matter to the shafts.
     """
     largest = tilt_lever(scene)
@@ -142,5 +142,5 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     ]
     per_strain = np.array([1.0, 1.0, 1.0, largest, largest])[:, None]  # x, y, z, two tilts of a seat
     amplitudes = [np.max(np.abs(housing.shape) * per_strain, axis=(0, 1)) for housing in rotors.housings]
-    seats = [np.maximum(amplitude, LEAST_SEAT * np.max(amplitude)) for amplitude in amplitudes]
+    seats = [np.maximum(amplitude, MIN_SEAT * np.max(amplitude)) for amplitude in amplitudes]
     return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *seats])[freedoms.column])

@@ -58,10 +58,10 @@ def from_catalog(
     CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0
     smallest = pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))  # of the greatest number of balls
-    least, most = (_filled_rating(diameter, pitch) for diameter in (smallest, largest))
-    if not least <= static_rating <= most:
+    minimum, maximum = (_filled_rating(diameter, pitch) for diameter in (smallest, largest))
+    if not minimum <= static_rating <= maximum:
         suggestion = "Check its unit: no deep groove ball bearing of this section has such a rating."
-        raise InputError("static_rating", static_rating, from_to(least, most, "N"), suggestion)
+        raise InputError("static_rating", static_rating, from_to(minimum, maximum, "N"), suggestion)
     choices = [(count, _diameter(count, pitch, static_rating)) for count in NUMBERS]
     count, diameter = min(choices, key=lambda row: abs(_filled(row[0], row[1], pitch) - FILLED))
     return BallBearing(count, diameter, pitch, clearance=clearance)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from dynamics.checks import positive
 
-LEAST_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
+MIN_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class EllipticContact:
             return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
 
         # below 0 by as much as rounding needs where the radii are almost equal
-        return math.exp(float(brentq(missed, math.log(LEAST_RATIO), 1e-12, xtol=1e-15)))
+        return math.exp(float(brentq(missed, math.log(MIN_RATIO), 1e-12, xtol=1e-15)))
 
     @property
     def spring_constant(self) -> float:

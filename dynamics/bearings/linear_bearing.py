@@ -15,7 +15,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-MOST = 5
+MAX = 5
 
 
 class LinearBearingLaws(NamedTuple):
@@ -30,7 +30,7 @@ class LinearBearingLaws(NamedTuple):
     @classmethod
     def packed(cls, laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:
         """Lay out the stiffness and the damping (n, n) of each bearing."""
-        stiffness, damping = np.zeros((2, len(laws), MOST, MOST))
+        stiffness, damping = np.zeros((2, len(laws), MAX, MAX))
         for entry, (spring, damper) in enumerate(laws):
             rows = len(spring)
             stiffness[entry, :rows, :rows], damping[entry, :rows, :rows] = spring, damper

@@ -30,7 +30,7 @@ from dynamics.types import FloatArray
 
 TOLERANCE = 1e-12  # of the load
 STEPS = 500
-LEAST_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
+MIN_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class LoadedBearing:
             gained = float(wanted @ step) - (then.energy - now.energy)
             closer = np.linalg.norm(((wanted - then.force) / scale)[free]) < left
             if gained > 0.0 or closer:
-                d, now, damping = d + step, then, max(damping / 10.0, LEAST_DAMPING)
+                d, now, damping = d + step, then, max(damping / 10.0, MIN_DAMPING)
             else:
                 damping *= 4.0
         raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")

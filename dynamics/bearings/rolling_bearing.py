@@ -157,9 +157,9 @@ class _Row:
         Raises `InputError`: a field out of its bounds, or more elements than their circle holds.
         """
         declared_fields(self)
-        least = self.diameter / math.sin(math.pi / self.count)
-        if self.pitch_diameter <= least:
-            bound = above(least, "m", "where the elements touch each other")
+        minimum = self.diameter / math.sin(math.pi / self.count)
+        if self.pitch_diameter <= minimum:
+            bound = above(minimum, "m", "where the elements touch each other")
             suggestion = "Check number and diameter of the elements."
             raise InputError("pitch_diameter", self.pitch_diameter, bound, suggestion)
 

@@ -17,7 +17,7 @@ from dynamics.types import FloatArray
 
 ROLLER, BALL = 10.0 / 9.0, 1.5
 REACH_SHARE = 0.05  # of the typical load: where damping acts in full
-LEAST_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
+MIN_PRESS = 1e-6  # m; sets the typical load of a bearing that nothing loads
 
 
 class RollingContactLaws(NamedTuple):
@@ -100,7 +100,7 @@ class RollingContact(SceneBearingLaw):
 
     def typical_load(self, load: float) -> float:
         """Return `load` (N), or the force at one micrometer of compression if that is larger."""
-        return float(max(load, self.stiffness * LEAST_PRESS**self.exponent))
+        return float(max(load, self.stiffness * MIN_PRESS**self.exponent))
 
     def rows(self, duty: BearingDuty) -> FloatArray:
         """Return the displacements x and y, (2, 5)."""

@@ -19,7 +19,7 @@ from dynamics.types import FloatArray
 AVERAGED = 64
 """Elements in all, at least, whose force is taken for the average over the passing of an element."""
 PASSING_ANGLES = 8
-LEAST_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that nothing loads
+MIN_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that nothing loads
 
 
 class _RowLaw:
@@ -94,12 +94,12 @@ class _RowLaw:
     ) -> tuple[float, Reaction]:
         """Return displacement and answer under the typical load across the axis, nothing else moving."""
         exponent = 1.5 if isinstance(self.row, BallBearing) else EXPONENT
-        load = max(duty.load, self.row.element_stiffness * LEAST_PRESS**exponent)
+        load = max(duty.load, self.row.element_stiffness * MIN_PRESS**exponent)
 
         def reaction(way: float) -> Reaction:
             return (loaded or self.loaded).evaluate((way, 0.0, self.shift, 0.0, 0.0), angle)
 
-        far = LEAST_PRESS
+        far = MIN_PRESS
         while reaction(far).force[0] < load:
             far *= 2.0
         way = float(scipy.optimize.brentq(lambda x: float(reaction(x).force[0]) - load, 0.0, far, xtol=1e-15))

@@ -20,7 +20,7 @@ SMALL = 1e-6
 """Misalignment below which a change counts over this one, m."""
 PASSES = 6
 """Most passes."""
-MARGIN, LEAST_MARGIN = 0.5, 2e-6
+MARGIN, MIN_MARGIN = 0.5, 2e-6
 """How far the first knots lie beyond the misalignments without contact: part of their range, least in m."""
 CLOSEST = 2e-8
 """Least distance of knots, m: a closer one takes the place of the one before."""
@@ -103,7 +103,7 @@ def _first_knots(misalignments: Sequence[float], in_scene: float) -> list[float]
     They reach to the misalignment that the scene states, at which its rest begins.
     """
     low, high = min(misalignments), max(misalignments)
-    margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), LEAST_MARGIN)
+    margin = max(MARGIN * (high - low), MARGIN * max(abs(low), abs(high)), MIN_MARGIN)
     ends = [min(low - margin, in_scene), max(high + margin, in_scene)]
     return _with_knots(ends, misalignments, 0.1 * margin)
 

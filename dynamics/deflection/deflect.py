@@ -29,7 +29,7 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 from model_studies.workers import InProcess, Workers, divided
 
-MOST_POSITIONS = 512
+MAX_POSITIONS = 512
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def deflect(
     """
     distinct("load_cases", [case.name for case in cases])
     check_forces(cases, [force.name for force in scene.forces])
-    integer("positions", positions, 1, MOST_POSITIONS)
+    integer("positions", positions, 1, MAX_POSITIONS)
     deflections = []
     for deflected in divided(workers, _deflected, (scene, positions), list(enumerate(cases))):
         deflections.append(deflected)

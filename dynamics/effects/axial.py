@@ -49,21 +49,21 @@ class Axial(RotorEffect):
             name, pushes = rotor.shaft.name, _thrusts(mechanism, rotor)
             if not sense or rotor.radial_stiffness == 0.0 or rotor.axial_stiffness > 0.0:
                 continue
-            advice = f'Give one of its bearings axial stiffness, or set the effect "{self.name}" to "off".'
+            remedy = f'Give one of its bearings axial stiffness, or set the effect "{self.name}" to "off".'
             for index, force in enumerate(scene.forces):
                 if force.shaft == name and force.force[2] != 0.0:
                     bound = f'0 on "{name}", which nothing holds along its axis'
-                    raise InputError(f"forces[{index}].force.z", force.force[2], bound, advice)
+                    raise InputError(f"forces[{index}].force.z", force.force[2], bound, remedy)
             gears = [(k, gear) for k, gear in enumerate(scene.gears) if gear.shaft == name]
             helical = [(k, gear) for k, gear in gears if gear.base_helix_angle != 0.0]
             if abs(sum(pushes)) > BALANCED * sum(map(abs, pushes)):
                 bound = f'on a shaft with axial support, which "{name}" lacks'
             elif any(pushes) and len({gear.base_helix_angle > 0.0 for _, gear in helical}) == 2:
                 bound = f'on a shaft free to float: "{name}" is double helical, without axial support'
-                advice = advice.replace("axial stiffness", "axial stiffness, however small")
+                remedy = remedy.replace("axial stiffness", "axial stiffness, however small")
             else:
                 continue
-            raise InputError(f"gears[{helical[0][0]}]", helical[0][1].name, bound, advice)
+            raise InputError(f"gears[{helical[0][0]}]", helical[0][1].name, bound, remedy)
 
 
 def _thrusts(mechanism: Mechanism, rotor: Rotor) -> list[float]:

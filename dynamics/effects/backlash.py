@@ -39,12 +39,14 @@ class Backlash(MeshEffect):
         """
         if mesh.mesh.coast is None:
             return Verdict(False, False, "no coast flank given: lift-off has no limit", 0.0)
-        backlash, least = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
-        if least <= 0.0:
-            return Verdict(True, True, f"the load reverses: the mean force falls to {least:.4g} N", backlash)
+        backlash, minimum = mesh.mesh.coast.backlash, float(np.min(mesh.train.mean_force[mesh.index]))
+        if minimum <= 0.0:
+            return Verdict(
+                True, True, f"the load reverses: the mean force falls to {minimum:.4g} N", backlash
+            )
         swing = _force_swing(mesh)
-        text = f"the mean force stays above {least:.4g} N, resonance changes it by up to "
-        if swing >= least:
+        text = f"the mean force stays above {minimum:.4g} N, resonance changes it by up to "
+        if swing >= minimum:
             return Verdict(True, True, f"{text}{swing:.4g} N: flanks can lift off", backlash)
         return Verdict(False, True, f"{text}{swing:.4g} N only: flanks stay in contact", 0.0)
 

@@ -17,7 +17,7 @@ from dynamics.mechanism.thermal_expansion import warmed_bearings
 from dynamics.scene.scene import Scene
 from dynamics.temperatures import WarmBearing
 
-LEAST_CHANGE = 1e-12  # m
+MIN_CHANGE = 1e-12  # m
 UNLOADED = 1e-9  # m; within it rows of a pair just touch
 
 
@@ -59,7 +59,7 @@ def _differs(row: WarmBearing) -> bool:
         row.warm.row.clearance - row.drawn.row.clearance,
         row_law(row.warm).shift - row_law(row.drawn).shift,
     )
-    return bool(row.loose) or max(map(abs, changes)) > LEAST_CHANGE
+    return bool(row.loose) or max(map(abs, changes)) > MIN_CHANGE
 
 
 def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:

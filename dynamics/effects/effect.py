@@ -80,7 +80,7 @@ class RotorEffect(Effect):
         """Decide for all rotors of a scene."""
         return [self.called_for(rotor) for rotor in rotors]
 
-    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+    def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Return `mechanism` with what the effect adds to its rotors; verdicts of those where it is on."""
         return mechanism
 

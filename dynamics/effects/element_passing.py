@@ -41,11 +41,11 @@ class ElementPassing(RotorEffect):
         words = f"{reason}, {engineering(size / yielding)} of what the meshes yield"
         return Verdict(size > tolerance * yielding, True, words, size)
 
-    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+    def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Let the elements of the bearings pass on the shafts on which it is on."""
         shafts = {
             rotor.shaft.name
-            for rotor, verdict in zip(mechanism.rotors, decided, strict=True)
+            for rotor, verdict in zip(mechanism.rotors, decision, strict=True)
             if verdict is not None
         }
         names = (part.name for part in mechanism.scene.rolling_bearings if part.shaft in shafts)

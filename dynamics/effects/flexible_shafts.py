@@ -157,9 +157,9 @@ class FlexibleShafts(RotorEffect):
             for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
         ]
 
-    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+    def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Give the shafts on which it is on their elastic coordinates."""
-        elastic = [verdict.elastic if isinstance(verdict, _Bending) else None for verdict in decided]
+        elastic = [verdict.elastic if isinstance(verdict, _Bending) else None for verdict in decision]
         return mechanism if all(part is None for part in elastic) else _with_elastic(mechanism, elastic)
 
 

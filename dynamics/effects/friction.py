@@ -44,8 +44,8 @@ class Friction(MeshEffect):
         for index, mesh in enumerate(mechanism.scene.meshes):
             if mesh.friction is not None and getattr(mesh.table, "sliding_lever", None) is None:
                 bound = "left out: the table of the mesh has no sliding data"
-                advice = "Compute the table anew, give a closed form its teeth, or switch friction off."
-                raise InputError(f"meshes[{index}].friction", mesh.friction, bound, advice)
+                remedy = "Compute the table anew, give a closed form its teeth, or switch friction off."
+                raise InputError(f"meshes[{index}].friction", mesh.friction, bound, remedy)
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
         """Give the flank its sliding, and the force that resists it."""

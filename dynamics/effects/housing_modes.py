@@ -44,11 +44,11 @@ class HousingModes(RotorEffect):
             for rotor in rotors
         ]
 
-    def extend(self, mechanism: Mechanism, decided: Sequence[Verdict | None]) -> Mechanism:
+    def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Give the housings of shafts on which it is on their amplitudes."""
         on = {
             housing.name
-            for index, verdict in enumerate(decided)
+            for index, verdict in enumerate(decision)
             if verdict is not None
             for housing in _housings_of(mechanism, index)
         }

@@ -35,7 +35,7 @@ class _Verdicts:
 class _LedgerEntry:
     """One decision."""
 
-    decided: Effect
+    decision: Effect
     part: str
     """The shaft or the mesh that it is decided for."""
     choice: str
@@ -52,12 +52,12 @@ class _LedgerEntry:
     @property
     def effect(self) -> str:
         """Name of the effect."""
-        return self.decided.name
+        return self.decision.name
 
     @property
     def on(self) -> bool:
         """The decision: an explicit choice is obeyed as far as the scene allows, else the verdict."""
-        if self.choice == "off" and not self.decided.compulsory:
+        if self.choice == "off" and not self.decision.compulsory:
             return False
         obeyed = self.choice != "auto" and self.possible
         return self.choice == "on" if obeyed else self.verdict.on
@@ -86,7 +86,7 @@ class _LedgerEntry:
         if self.on == self.verdict.on:
             return ""
         neglected = f"{engineering(1e6 * self.influence)} µm of static displacement neglected"
-        return self.decided.cost if self.on else neglected
+        return self.decision.cost if self.on else neglected
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -99,7 +99,7 @@ class _LedgerEntry:
             "influence_m": self.influence,
             "called_for": self.verdict.on,
             "possible": self.possible,
-            "cost": self.decided.cost,
+            "cost": self.decision.cost,
             "price": self.price,
         }
 
@@ -120,7 +120,7 @@ class EffectLedger:
 
     def with_entries_of(self, other: EffectLedger, addition: str) -> EffectLedger:
         """Return the ledger with the decisions of `other` on the effect that adds `addition`."""
-        entries = (entry for entry in self.entries if addition not in entry.decided.adds)
+        entries = (entry for entry in self.entries if addition not in entry.decision.adds)
         return EffectLedger((*entries, *other.adding(addition)))
 
     def without(self, additions: frozenset[str], reason: str, choices: Mapping[str, str]) -> EffectLedger:
@@ -133,19 +133,19 @@ class EffectLedger:
 
         return EffectLedger(
             tuple(
-                entry if additions.isdisjoint(entry.decided.adds) else impossible(entry)
+                entry if additions.isdisjoint(entry.decision.adds) else impossible(entry)
                 for entry in self.entries
             )
         )
 
     def on_rotor(self, shaft: str) -> list[RotorEffect]:
         """Return the effects of rotors that are on for `shaft`."""
-        effects = [entry.decided for entry in self.entries if entry.on and entry.part == shaft]
+        effects = [entry.decision for entry in self.entries if entry.on and entry.part == shaft]
         return [effect for effect in effects if isinstance(effect, RotorEffect)]
 
     def on_mesh(self, mesh: str) -> list[MeshEffect]:
         """Return the effects of meshes that are on for `mesh`."""
-        effects = [entry.decided for entry in self.entries if entry.on and entry.part == mesh]
+        effects = [entry.decision for entry in self.entries if entry.on and entry.part == mesh]
         return [effect for effect in effects if isinstance(effect, MeshEffect)]
 
     def of(self, effect: str) -> list[_LedgerEntry]:
@@ -164,7 +164,7 @@ class EffectLedger:
     def _by_addition(self) -> dict[str, list[_LedgerEntry]]:
         rows: dict[str, list[_LedgerEntry]] = {}
         for entry in self.entries:
-            for addition in entry.decided.adds:
+            for addition in entry.decision.adds:
                 rows.setdefault(addition, []).append(entry)
         return rows
 

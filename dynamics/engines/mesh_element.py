@@ -15,7 +15,7 @@ from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 
-MOST_TEETH = 100_000
+MAX_TEETH = 100_000
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class MeshElement:
     def __post_init__(self) -> None:
         check_table(self.table, "table")
         for index in range(2):
-            integer(f"teeth[{index}]", self.teeth[index], 1, MOST_TEETH)
+            integer(f"teeth[{index}]", self.teeth[index], 1, MAX_TEETH)
             positive(f"base_radius[{index}]", self.base_radius[index])
         driven = self.base_radius[1] / self.teeth[1]
         if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > EQUAL:
@@ -58,8 +58,8 @@ class MeshElement:
         positive("damping_reach", self.reach)
         finite("position_offset", self.position_offset)
         if self.coast is not None and self.coast.table is not None:
-            advice = "Leave the coast flank out, or run the scene here."
-            raise InputError("coast.table", "a table of its own", "None: backs of teeth like fronts", advice)
+            remedy = "Leave the coast flank out, or run the scene here."
+            raise InputError("coast.table", "a table of its own", "None: backs of teeth like fronts", remedy)
 
     @property
     def reach(self) -> float:

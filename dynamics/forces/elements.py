@@ -131,8 +131,8 @@ class Elements(NamedTuple):
 
 def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
-    most = int(np.max(np.diff(elements.first), initial=1))
-    return LocalState.empty(elements.offset.size, most, meshes, elements.law.size, elements.drift.shape[0])
+    maximum = int(np.max(np.diff(elements.first), initial=1))
+    return LocalState.empty(elements.offset.size, maximum, meshes, elements.law.size, elements.drift.shape[0])
 
 
 def _call(law: Law, function: Callable[..., Any]) -> str:

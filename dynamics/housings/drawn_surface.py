@@ -24,13 +24,13 @@ from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
-MOST_TRIANGLES = 20_000
+MAX_TRIANGLES = 20_000
 WANTED_TRIANGLES = 6_000
 """Of a solid without small faces."""
 _FARTHEST = from_to(0.0, 1e3, "m")
 _AGGRESSIVENESS = 3.0, 5.0, 7.0
 """Of the reduction, in turn: the first keeps shapes best, the last closes bores where there are too many."""
-_OF_NORMALS, _LEAST_AREA = 0.2, 1e-6
+_OF_NORMALS, _MIN_AREA = 0.2, 1e-6
 """What normals count beside places, over the size of facets; least area of a facet over the mean of all."""
 
 
@@ -41,7 +41,7 @@ class DrawnSurface:
     points: FloatArray
     facets: IntArray
 
-    def reduced(self, most: int) -> tuple[DrawnSurface, IntArray]:
+    def reduced(self, maximum: int) -> tuple[DrawnSurface, IntArray]:
         """Return it with at most so many triangles, and which of its points that one has.
 
         Edges are collapsed to where all planes about them are least far off [1]_; the nearest points of the
@@ -51,15 +51,15 @@ class DrawnSurface:
         """
         corners = self.facets
         for aggressiveness in _AGGRESSIVENESS:
-            if len(corners) <= most:
+            if len(corners) <= maximum:
                 break
-            points, facets = simplify(self.points, self.facets, target_count=most, agg=aggressiveness)
+            points, facets = simplify(self.points, self.facets, target_count=maximum, agg=aggressiveness)
             weight = _OF_NORMALS * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
             there = np.hstack([points, weight * node_normals(points, facets)])
             own = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
             corners = np.asarray(cKDTree(own).query(there)[1])[facets]
         area = np.linalg.norm(_across(self.points[corners]), axis=1)
-        kept, facets = np.unique(corners[area > _LEAST_AREA * area.mean()], return_inverse=True)
+        kept, facets = np.unique(corners[area > _MIN_AREA * area.mean()], return_inverse=True)
         return DrawnSurface(self.points[kept], facets.reshape(-1, 3)), kept
 
 
@@ -80,12 +80,12 @@ def _at_corners(corners: IntArray, values: FloatArray, count: int) -> FloatArray
     return np.asarray(csr_array((np.ones(rows.size), (rows, columns)), shape=(count, len(corners))) @ values)
 
 
-def drawn_step(file: Path, most: int = MOST_TRIANGLES) -> DrawnSurface:
+def drawn_step(file: Path, maximum: int = MAX_TRIANGLES) -> DrawnSurface:
     """Return the surface of the one solid in a STEP file.
 
     Raises `InputError`: no solid or several, faces that gmsh does not mesh, or the size of no housing.
     """
-    request = {"step": str(file), "mesh": None, "triangles": min(WANTED_TRIANGLES, most)}
+    request = {"step": str(file), "mesh": None, "triangles": min(WANTED_TRIANGLES, maximum)}
     try:
         answer = step_answer(request)
     except MemoryError:
@@ -96,13 +96,13 @@ def drawn_step(file: Path, most: int = MOST_TRIANGLES) -> DrawnSurface:
         bound = f"a solid that can be drawn ({answer['error']})"
         raise InputError("step_file", file.name, bound, "Heal the geometry, or export it again.")
     if answer["solids"] != 1:
-        advice = "Unite the solids in the CAD program."
-        raise InputError("step_file.solids", answer["solids"], "one solid", advice)
+        remedy = "Unite the solids in the CAD program."
+        raise InputError("step_file.solids", answer["solids"], "one solid", remedy)
     facets = np.array(answer["facets"], dtype=np.int64).reshape(-1, 3)
-    return _drawn(np.array(answer["points"]), facets, most, "step_file")
+    return _drawn(np.array(answer["points"]), facets, maximum, "step_file")
 
 
-def drawn_mesh(file: Path, unit: str, most: int = MOST_TRIANGLES) -> DrawnSurface:
+def drawn_mesh(file: Path, unit: str, maximum: int = MAX_TRIANGLES) -> DrawnSurface:
     """Return the surface of a mesh of tetrahedra, straight between their corners; `unit`: "m" or "mm".
 
     Raises `InputError`: no mesh of its format, other solid elements, or the size of no housing.
@@ -113,15 +113,15 @@ def drawn_mesh(file: Path, unit: str, most: int = MOST_TRIANGLES) -> DrawnSurfac
     try:
         arrays, _ = mesh_arrays(file, title.lower())
     except UnreadableMesh:
-        bound, advice = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
-        raise InputError("mesh_file", file.name, bound, advice) from None
+        bound, remedy = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
+        raise InputError("mesh_file", file.name, bound, remedy) from None
     except OtherCells as error:
         bound = "tetrahedra alone, all with four or all with ten nodes"
         raise InputError("mesh_file.cells", error.args[0], bound, "Mesh with tetrahedra.") from None
     points, corners = np.asarray(arrays["points"], dtype=float), arrays["tetrahedra"][:, :4]
     if corners.min(initial=0) < 0 or corners.max(initial=0) >= len(points):
         raise InputError("mesh_file", "with elements that lack nodes", "complete, as meshlane reads it")
-    return _drawn(UNITS[unit] * points, _bounding(corners), most, "mesh_file")
+    return _drawn(UNITS[unit] * points, _bounding(corners), maximum, "mesh_file")
 
 
 def _bounding(tetrahedra: IntArray) -> IntArray:
@@ -131,7 +131,7 @@ def _bounding(tetrahedra: IntArray) -> IntArray:
     return np.asarray(faces[first[count == 1]])
 
 
-def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> DrawnSurface:
+def _drawn(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
     """Return a surface of at most so many triangles, which is near the origin and as large as a housing."""
     used, facets = np.unique(facets, return_inverse=True)
     points, facets = points[used], facets.reshape(-1, 3)
@@ -144,7 +144,7 @@ def _drawn(points: FloatArray, facets: IntArray, most: int, field: str) -> Drawn
         raise InputError(f"{field}.place", farthest, _FARTHEST, "Move the solid to its origin.")
     if not SIZE.holds(extent):
         raise InputError(f"{field}.size", extent, SIZE, "Check its unit.")
-    drawn, _ = DrawnSurface(points, facets).reduced(most)
-    if len(drawn.facets) > most:
-        raise InputError(f"{field}.facets", len(drawn.facets), at_most(most), "Leave out small parts.")
+    drawn, _ = DrawnSurface(points, facets).reduced(maximum)
+    if len(drawn.facets) > maximum:
+        raise InputError(f"{field}.facets", len(drawn.facets), at_most(maximum), "Leave out small parts.")
     return drawn

@@ -97,12 +97,12 @@ def reduced_housing(
         motions = sum(seat.motions for seat in housing.seats)
         reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
         predicted = on_this_host(WORK, reference, cache)
-        most, own = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
-        advice = f"{own}: use a coarser mesh or fewer modes."
-        if predicted.seconds > most.seconds:
-            raise InputError("predicted_seconds", predicted.seconds, at_most(most.seconds, "s"), advice)
-        if predicted.bytes > most.bytes:
-            raise InputError("predicted_bytes", predicted.bytes, at_most(most.bytes), advice)
+        maximum, own = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
+        remedy = f"{own}: use a coarser mesh or fewer modes."
+        if predicted.seconds > maximum.seconds:
+            raise InputError("predicted_seconds", predicted.seconds, at_most(maximum.seconds, "s"), remedy)
+        if predicted.bytes > maximum.bytes:
+            raise InputError("predicted_bytes", predicted.bytes, at_most(maximum.bytes), remedy)
         expected(predicted)
         body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
         return replace(body, cost=cost)

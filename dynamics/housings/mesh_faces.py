@@ -93,8 +93,8 @@ class Bore:
         element = Quantity(float(np.ptp(along, axis=1).max()), "m", digits=3)
         bound = "one between whose ends elements of the wall lie"
         there = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
-        advice = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
-        raise InputError("length", self.length, bound, Text.of(there, advice))
+        remedy = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
+        raise InputError("length", self.length, bound, Text.of(there, remedy))
 
     def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
         share = area / (np.pi * self.diameter * self.length)
@@ -106,8 +106,8 @@ class Bore:
         bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{there}"
         x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
         place = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
-        advice = Text.of(place, "position, axis, length and the unit of the mesh: ", others, ".")
-        raise InputError("diameter", self.diameter, bound, advice)
+        remedy = Text.of(place, "position, axis, length and the unit of the mesh: ", others, ".")
+        raise InputError("diameter", self.diameter, bound, remedy)
 
 
 @dataclass(frozen=True)
@@ -195,6 +195,6 @@ def _require_some(field: str, value: object, mesh: TetrahedralMesh, chosen: Bool
         extent = np.stack([mesh.points.min(axis=0), mesh.points.max(axis=0)], axis=1).ravel()
         ends = (Quantity(float(end), "m", digits=6) for end in extent)
         words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
-        advice = Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
-        raise InputError(field, value, "where the surface has triangles", advice)
+        remedy = Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
+        raise InputError(field, value, "where the surface has triangles", remedy)
     return np.asarray(mesh.surface[chosen])

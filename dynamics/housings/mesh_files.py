@@ -21,7 +21,7 @@ from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
 
-LEAST_SHAPE = 0.02
+MIN_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
 SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
@@ -48,16 +48,16 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     if not SIZE.holds(extent):
         raise InputError(f"{FIELD}.size", extent, SIZE, 'Check the unit of the mesh: "m" or "mm".')
     shape = element_shape(mesh)
-    if shape.min() < LEAST_SHAPE:
-        count, bound = int(np.sum(shape < LEAST_SHAPE)), f"at least {LEAST_SHAPE:g} (1: regular)"
+    if shape.min() < MIN_SHAPE:
+        count, bound = int(np.sum(shape < MIN_SHAPE)), f"at least {MIN_SHAPE:g} (1: regular)"
         raise InputError(
             f"{FIELD}.shape", float(shape.min()), bound, f"{count} elements are slivers: mesh again."
         )
     folded = int(np.sum(determinants(mesh.points, mesh.tetrahedra).min(axis=1) <= 0.0))
     if folded:
-        advice = "Mid-side nodes fold them: refine where the surface is curved, or use straight edges."
+        remedy = "Mid-side nodes fold them: refine where the surface is curved, or use straight edges."
         raise InputError(
-            f"{FIELD}.elements", f"{folded} of {len(mesh.tetrahedra)} folded", "without folds", advice
+            f"{FIELD}.elements", f"{folded} of {len(mesh.tetrahedra)} folded", "without folds", remedy
         )
     corners = mesh.tetrahedra[:, :4]
     row, column = np.repeat(corners[:, :1], 3, axis=1).ravel(), corners[:, 1:].ravel()
@@ -65,8 +65,8 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
     _, label = connected_components(graph, directed=False)
     parts = np.unique(label[corners[:, 0]]).size
     if parts > 1:
-        advice = "Unite the bodies, or merge the nodes they share."
-        raise InputError(f"{FIELD}.parts", parts, "1: one body whose elements share nodes", advice)
+        remedy = "Unite the bodies, or merge the nodes they share."
+        raise InputError(f"{FIELD}.parts", parts, "1: one body whose elements share nodes", remedy)
 
 
 class _Content(NamedTuple):
@@ -116,8 +116,8 @@ def _content(file: Path) -> _Content:
             bound = f"a mesh that is read within {limits} (the reader: {error.cause})"
             raise InputError(FIELD, file.name, bound, "Write less into the file.") from None
         if answer.get("unreadable"):
-            bound, advice = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
-            raise InputError(FIELD, file.name, bound, advice)
+            bound, remedy = f"a mesh as {title} writes it", "Export it again, or as gmsh (.msh)."
+            raise InputError(FIELD, file.name, bound, remedy)
         if (cells := answer.get("cells")) is not None:
             bound = "tetrahedra alone, all with four or all with ten nodes"
             raise InputError(f"{FIELD}.cells", cells, bound, "Mesh with tetrahedra.")

@@ -84,8 +84,8 @@ class MeshedHousing:
     def __post_init__(self) -> None:
         declared_fields(self)
         if not self.seats:
-            advice = "A housing acts through its bearing seats."
-            raise InputError("seats", self.seats, "at least one seat", advice)
+            remedy = "A housing acts through its bearing seats."
+            raise InputError("seats", self.seats, "at least one seat", remedy)
         distinct("seats", [seat.name for seat in self.seats])
         distinct("feet", [foot.name for foot in self.feet])
         columns = 6 + sum(seat.motions for seat in self.seats)

@@ -180,9 +180,9 @@ def receptance(
     try:
         amplitude = np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, forces[None])
     except np.linalg.LinAlgError as error:
-        advice = "The housing moves freely there, or resonates without damping."
+        remedy = "The housing moves freely there, or resonates without damping."
         raise InputError(
-            "frequency", "singular", "off frequencies at which the motion is infinite", advice
+            "frequency", "singular", "off frequencies at which the motion is infinite", remedy
         ) from error
     return np.asarray(basis @ amplitude)
 

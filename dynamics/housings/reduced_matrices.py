@@ -67,8 +67,8 @@ def read_reduced_matrices(path: str | Path) -> ReducedMatrices:
     }
     if chosen["stiffness"] is None:
         bound = f"a file with a matrix named {' or '.join(NAMES['stiffness'])}"
-        advice = f"It has {', '.join(sorted(matrices)[:5]) or 'none'}."
-        raise InputError(FIELD, file.name, bound, advice)
+        remedy = f"It has {', '.join(sorted(matrices)[:5]) or 'none'}."
+        raise InputError(FIELD, file.name, bound, remedy)
     return ReducedMatrices(chosen["stiffness"], chosen["mass"], chosen["damping"])
 
 

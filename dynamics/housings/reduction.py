@@ -72,13 +72,13 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
 
 def _require_converged(modes: FreeModes, count: int) -> None:
     if modes.status is ModeStatus.ITERATION_LIMIT:
-        advice = "Ask for fewer modes, or check the mesh for parts that hardly hold together."
-        raise SolveError(f"{len(modes.frequency)} of {count} modes of the housing converged. {advice}")
+        remedy = "Ask for fewer modes, or check the mesh for parts that hardly hold together."
+        raise SolveError(f"{len(modes.frequency)} of {count} modes of the housing converged. {remedy}")
     if modes.status is ModeStatus.ILL_CONDITIONED:
-        advice = "Check the quality of the mesh and the stiffness of the mounts."
+        remedy = "Check the quality of the mesh and the stiffness of the mounts."
         lost = f"{modes.solve_residual:.1e}, above {ACCEPTED:g}"
         raise SolveError(
-            f"Of the work of forces on the housing's seats {lost}, is lost to rounding. {advice}"
+            f"Of the work of forces on the housing's seats {lost}, is lost to rounding. {remedy}"
         )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from bounds import MOST_BYTES
+from bounds import MAX_BYTES
 from dynamics.housings.free_modes import basis_vectors
 from dynamics.work_cost import Cost
 
@@ -29,7 +29,7 @@ class CostLimit(NamedTuple):
     """What a reduction may cost: CPU seconds and bytes."""
 
     seconds: float = 600.0
-    bytes: float = MOST_BYTES
+    bytes: float = MAX_BYTES
 
 
 def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:

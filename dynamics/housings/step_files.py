@@ -115,8 +115,8 @@ def _by_gmsh(
         copy = shutil.copyfile(file, Path(folder) / f"housing{file.suffix.lower()}")
         run = command or (sys.executable, "-P", str(STEP_WORKER))
         try:
-            most = limits(seconds)
-            answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent, most)
+            maximum = limits(seconds)
+            answer = ask_child(request | {"step": copy.name}, seconds, run, copy.parent, maximum)
         except ChildOutOfMemory as error:
             raise SolveError(f"mesher: {error}. Use a larger element_size.") from error
         except ChildFailed as error:
@@ -124,6 +124,6 @@ def _by_gmsh(
                 f"mesher: {error.cause}. Heal the geometry, or try another element_size."
             ) from error
         if answer.get("solids") != 1:
-            advice = "Unite the solids in the CAD program."
-            raise InputError("step_file.solids", answer.get("solids"), "one solid", advice)
+            remedy = "Unite the solids in the CAD program."
+            raise InputError("step_file.solids", answer.get("solids"), "one solid", remedy)
         return made(answer, copy.parent)

@@ -2,7 +2,7 @@
 
 from dynamics.influence.assumed_phases import with_assumed_phases
 from dynamics.influence.neglected_check import (
-    Decided,
+    Decision,
     Influence,
     decide_effects,
     estimate_influences,
@@ -11,7 +11,7 @@ from dynamics.influence.neglected_check import (
 from dynamics.influence.sized_ledger import left_out_effects, sized_ledger
 
 __all__ = [
-    "Decided",
+    "Decision",
     "Influence",
     "decide_effects",
     "estimate_influences",

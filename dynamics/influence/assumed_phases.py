@@ -109,13 +109,13 @@ def _change(at: Excited, angle: AssumedAngle, harmonics: IntArray, parts: Comple
     products = np.einsum("mbdsh,nbdsh->mnsh", parts.conj(), parts)
     squares = np.einsum("amh,anh,mnsh->ash", phase.conj(), phase, products, optimize=True).real
     level = np.sqrt(np.maximum(np.max(squares, axis=1), 0.0))  # (angles, H)
-    least, most = level.min(axis=0), level.max(axis=0)
-    audible = most > AUDIBLE * most.max(initial=0.0)
+    minimum, maximum = level.min(axis=0), level.max(axis=0)
+    audible = maximum > AUDIBLE * maximum.max(initial=0.0)
     if not np.any(audible):
         return {"decibels": 0.0, "order": 1.0}
-    by_order = np.array([decibels(a, b) for a, b in zip(least, most, strict=True)])
+    by_order = np.array([decibels(a, b) for a, b in zip(minimum, maximum, strict=True)])
     index = int(np.argmax(np.where(audible, by_order, -1.0)))
-    above = decibels(float(level[0, index]), float(most[index]))
+    above = decibels(float(level[0, index]), float(maximum[index]))
     return {
         "decibels": float(by_order[index]),
         "above_assumed": above,  # dB from the assumed angle to the loudest one

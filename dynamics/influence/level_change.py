@@ -14,7 +14,7 @@ from dynamics.types import FloatArray
 
 Lines = Mapping[float, float]
 """Largest power or mean square over the speeds, weighted, by order."""
-MOST = 60.0
+MAX = 60.0
 """dB; what changes by more is all of the quantity."""
 ROUNDING = 1e-8
 """Relative change of amplitude below which an estimate says nothing."""
@@ -42,7 +42,7 @@ class LevelChange:
     order: float = 0.0
     """Multiple of the frequency of the first mesh that turns."""
     decibels: float = 0.0
-    """The level without the effect less that with it, each the largest over the speeds; at most `MOST` in
+    """The level without the effect less that with it, each the largest over the speeds; at most `MAX` in
     size.
     """
     relative: float = 0.0
@@ -53,7 +53,7 @@ class LevelChange:
         """The change, in words."""
         if self.relative <= ROUNDING:
             return f"0 {self.unit} of {self.quantity}"
-        more = "more than " if abs(self.decibels) >= MOST else ""
+        more = "more than " if abs(self.decibels) >= MAX else ""
         size = engineering(self.decibels, 2, "+")
         return f"{more}{size} {self.unit} of {self.quantity} at order {self.order:.4g}"
 
@@ -61,8 +61,8 @@ class LevelChange:
 def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[float, float]:
     """Return the largest square of each order (H,) over the speeds of (S, H), or that `known` if larger."""
     lines = dict(known)
-    for value, most in zip(np.round(order, 9).tolist(), np.max(squares, axis=0).tolist(), strict=True):
-        lines[value] = max(most, lines.get(value, 0.0))
+    for value, maximum in zip(np.round(order, 9).tolist(), np.max(squares, axis=0).tolist(), strict=True):
+        lines[value] = max(maximum, lines.get(value, 0.0))
     return lines
 
 
@@ -78,14 +78,14 @@ def level_change(whole: Lines, without: Lines, quantity: str, unit: str = "dB") 
 
 
 def decibels(size: float, left: float) -> float:
-    """Return the level of an amplitude `left` over `size`, dB, at most `MOST` in size; 0 of silence."""
-    least = 10.0 ** (-MOST / 20.0) * max(size, left)
-    return 20.0 * math.log10(max(left, least) / max(size, least)) if least else 0.0
+    """Return the level of an amplitude `left` over `size`, dB, at most `MAX` in size; 0 of silence."""
+    minimum = 10.0 ** (-MAX / 20.0) * max(size, left)
+    return 20.0 * math.log10(max(left, minimum) / max(size, minimum)) if minimum else 0.0
 
 
 def in_decibels(relative: float) -> float:
-    """Return the level of an amplitude that grows by a `relative` part of itself, dB, at most `MOST`."""
-    return min(20.0 * math.log10(1.0 + relative), MOST)
+    """Return the level of an amplitude that grows by a `relative` part of itself, dB, at most `MAX`."""
+    return min(20.0 * math.log10(1.0 + relative), MAX)
 
 
 def in_relative(decibels: float) -> float:

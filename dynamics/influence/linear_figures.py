@@ -87,9 +87,9 @@ def linear_figures(
         harmonics, shift = parametric_response(at, *motion, varying=varying)
         static = [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + shift
-        least, most = extremes(harmonics.dynamic_transmission_error, harmonics.order)
-        low = np.minimum(low, np.min(rest + least, axis=1))
-        high = np.maximum(high, np.max(rest + most, axis=1))
+        minimum, maximum = extremes(harmonics.dynamic_transmission_error, harmonics.order)
+        low = np.minimum(low, np.min(rest + minimum, axis=1))
+        high = np.maximum(high, np.max(rest + maximum, axis=1))
         mean += rest @ condition.weight
         orders = np.maximum(orders, _low_orders(harmonics.dynamic_transmission_error, harmonics))
         amplitude = np.maximum(amplitude, _low_orders(harmonics.bearing_force[:, :3], harmonics))

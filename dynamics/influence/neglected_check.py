@@ -337,9 +337,9 @@ def _beyond(system: System, linear: bool, parts: bool) -> str:
 def _by_order(change: FloatArray, value: FloatArray) -> FloatArray:
     """Return the largest change of each order over its largest amplitude, (5,); 0 of orders not there."""
     size = np.max(value, axis=0, initial=0.0)
-    most = np.max(np.abs(change), axis=0, initial=0.0)
+    maximum = np.max(np.abs(change), axis=0, initial=0.0)
     there = size > ROUNDING * np.max(size, initial=0.0)
-    return np.asarray(np.divide(most, size, out=np.zeros(most.shape), where=there))
+    return np.asarray(np.divide(maximum, size, out=np.zeros(maximum.shape), where=there))
 
 
 def _largest(change: FloatArray, value: FloatArray | float) -> float:
@@ -372,13 +372,13 @@ class _Allowance:
             return cls(f"{scene.tolerance:g}", allowed, allowed, lambda influence: influence.largest, True)
         if scene.level_tolerance is None:
             return None
-        most = scene.level_tolerance
-        words = f"{most:g} dB"
-        return cls(words, most, LEVEL_SHARE * most, lambda influence: influence.decibels, False)
+        maximum = scene.level_tolerance
+        words = f"{maximum:g} dB"
+        return cls(words, maximum, LEVEL_SHARE * maximum, lambda influence: influence.decibels, False)
 
 
 @dataclass(frozen=True)
-class Decided:
+class Decision:
     """A scene with what its tolerance decided."""
 
     scene: Scene
@@ -406,7 +406,7 @@ class Decided:
 
 def decide_effects(
     scene: Scene, estimates: Callable[[Scene], Mapping[str, Influence]] | None = None
-) -> Decided:
+) -> Decision:
     """Decide the effects that are left to "auto" by the scene's tolerance; without one, as the scene calls.
 
     Influences may sum up to a tenth of a relative tolerance in neglected effects, to half of a tolerance of
@@ -418,7 +418,7 @@ def decide_effects(
     """
     allowance = _Allowance.of(scene)
     if allowance is None:
-        return Decided(scene)
+        return Decision(scene)
     began = TimeTaken.now()
     if estimates is None:
         lean = scene.tolerance is None and scene.outputs.receipt != "full"
@@ -435,7 +435,7 @@ def decide_effects(
         choices[name] = "off"
         automatic[name] = f"neglected for the tolerance of {allowance.words}: influence {free[name].words}"
     chosen = replace(scene, effects={**scene.effects, **choices})
-    return Decided(chosen, automatic, influences, TimeTaken.now().since(began))
+    return Decision(chosen, automatic, influences, TimeTaken.now().since(began))
 
 
 def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str]:
@@ -453,9 +453,9 @@ def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str
 class NeglectedChecks:
     """Gathers, block by block, what the estimates of neglected effects are compared with."""
 
-    def __init__(self, decided: Decided) -> None:
-        self._decided = decided
-        meshes = len(decided.scene.meshes)
+    def __init__(self, decision: Decision) -> None:
+        self._decision = decision
+        meshes = len(decision.scene.meshes)
         self._low, self._high = np.full(meshes, np.inf), np.full(meshes, -np.inf)
         self._sum, self._samples, self._parted = np.zeros(meshes), 0, False
 
@@ -475,7 +475,7 @@ class NeglectedChecks:
         forces as estimated. Where flanks parted the linear theory of the estimate says nothing: it does not
         hold.
         """
-        left = self._decided.neglected if self._samples else {}
+        left = self._decision.neglected if self._samples else {}
         return [self._check(name, influence) for name, influence in left.items()]
 
     def _check(self, name: str, influence: Influence) -> Check:
@@ -491,6 +491,6 @@ class NeglectedChecks:
         reason = f"estimated at {engineering(100.0 * change, 2)} % of {size}"
         if self._parted:
             reason = "flanks lifted off: the linear theory that neglected it is invalid"
-        holds = not self._parted and change <= self._decided.allowed
+        holds = not self._parted and change <= self._decision.allowed
         assumption = "neglected effects are negligible"
         return Check(name, assumption, ANY_PART, holds, reason, {"change": change})

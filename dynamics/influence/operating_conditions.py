@@ -15,7 +15,7 @@ MOMENTS = 24
 """At which a run is looked at."""
 
 
-LEAST_SPEED = 1e-9
+MIN_SPEED = 1e-9
 """Of the largest: what is slower is at rest."""
 
 
@@ -69,7 +69,7 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
     ends = np.sort(np.stack([speed[:-2:2], speed[2::2]]), axis=0)
     time, speed = time[1::2], speed[1::2]
     rate = np.abs(np.gradient(speed, time)) if scene.duration > 0.0 else np.zeros(time.size)
-    moving = speed > LEAST_SPEED * np.max(speed, initial=0.0)
+    moving = speed > MIN_SPEED * np.max(speed, initial=0.0)
     time, speed, rate, ends = time[moving], speed[moving], rate[moving], ends[:, moving]
     if not time.size:
         return ()

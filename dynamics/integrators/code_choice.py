@@ -23,7 +23,7 @@ WORTHWHILE = 1.0
 """CPU time of ordinary loops from which a structure gets code of its own, over that of compiling it."""
 SEEN = 0.1
 """The same for a structure that has been run as long before."""
-LEAST = 0.5
+MIN = 0.5
 """CPU s of the smallest structure."""
 SECONDS_PER_EXPRESSION = 5e-5
 """Measured: 3e-5 to 11e-5, of 15 000 to 130 000 expressions."""
@@ -70,9 +70,9 @@ class StructureCode:
     def _worthwhile(self, key: str) -> MachineCode | None:
         """Return new code where ordinary loops have taken long enough for it."""
         share = SEEN if self._seen else WORTHWHILE
-        if _spent[key] >= SEEN * LEAST:
+        if _spent[key] >= SEEN * MIN:
             _store().note(key)  # the next run makes it sooner
-        if _spent[key] < share * LEAST:
+        if _spent[key] < share * MIN:
             return None
         module = None
         if key not in _expressions:

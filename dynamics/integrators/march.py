@@ -297,8 +297,8 @@ def march_on(
     """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration, rate = march.system.scene.duration, march.system.sampling.rate
     work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
-    least, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
-    block = min(max(duration / CHUNKS, least), longest)
+    minimum, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
+    block = min(max(duration / CHUNKS, minimum), longest)
     code = StructureCode(march.control.implicit, march.structure)
     while True:
         stop = min(float(march.work.time[0]) + block, duration)

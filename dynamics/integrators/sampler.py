@@ -374,13 +374,13 @@ def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: 
     """Store least and largest local forces over the points nearest to the output sample."""
     taps = ring.point.shape[0]
     half = min((factor + 1) // 2, taps // 2)
-    least, largest = out.least[row], out.largest[row]
-    for r in range(least.size):
-        least[r], largest[r] = ring.point[center, r], ring.point[center, r]
+    minimum, largest = out.minimum[row], out.largest[row]
+    for r in range(minimum.size):
+        minimum[r], largest[r] = ring.point[center, r], ring.point[center, r]
     for step in range(-half, half + 1):
         near = ring.point[(center + step) % taps]
-        for r in range(least.size):
-            least[r], largest[r] = min(least[r], near[r]), max(largest[r], near[r])
+        for r in range(minimum.size):
+            minimum[r], largest[r] = min(minimum[r], near[r]), max(largest[r], near[r])
 
 
 @inner

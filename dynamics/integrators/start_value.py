@@ -20,7 +20,7 @@ STATE = (
     *("speed", "power", "work", "highest", "fallen", "counts"),
 )
 """What a workspace carries from step to step beside what is per row of the force elements."""
-MOST_SAVED = 128
+MAX_SAVED = 128
 """In memory at once: when there are more, every second one is forgotten."""
 
 
@@ -73,7 +73,7 @@ class Trail:
         """Return a function that saves the state of `march`."""
 
         def remember() -> None:
-            if len(self._saved) == MOST_SAVED:
+            if len(self._saved) == MAX_SAVED:
                 del self._saved[::2]
             self._saved.append(_saved_state(march))
 
@@ -109,9 +109,9 @@ class StartValue:
         to, width = self._channels(march), states.filtered.shape[1]
         filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
         filtered[:, to[:width]] = states.filtered
-        least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
-        least[:, self.rows_of], largest[:, self.rows_of] = states.least, states.largest
-        return states._replace(filtered=filtered, least=least, largest=largest)
+        minimum, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
+        minimum[:, self.rows_of], largest[:, self.rows_of] = states.minimum, states.largest
+        return states._replace(filtered=filtered, minimum=minimum, largest=largest)
 
     def start(self, march: March) -> None:
         """Start `march` from there; elements that it has beside those of the other one carry no force."""

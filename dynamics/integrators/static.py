@@ -25,7 +25,7 @@ from dynamics.types import FloatArray, IntArray, StaticStatus
 ITERATION_LIMIT = 50
 RESIDUAL_LIMIT = 1e-10  # of the largest force
 CLOSE_LIMIT = 1e-12  # of a rest that is compared with one beside it
-LEAST_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
+MIN_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
 ROUNDED = 4.0  # times the rounding of all terms of a balance
 TURNS = 8  # of a first guess, whose meshes turn on as it loads them
 LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
@@ -205,7 +205,7 @@ def _on_springs(
     first = arrays.elements.first[carrying]
     table, offset = arrays.elements.laws.flank.table, arrays.elements.offset[first]
     # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
-    touch = LEAST_TOUCH * table.level[table.offset[carrying, 4] + 1]
+    touch = MIN_TOUCH * table.level[table.offset[carrying, 4] + 1]
     force = np.maximum(system.flanks.nominal_force, touch)
     flanks = list(enumerate(carrying))
     touching = np.array([table_deflection(table, flank, position[f], 0.0) for f, flank in flanks])

@@ -132,8 +132,8 @@ class Housing:
             raise InputError("bushings", self.bushings, "at least one bushing")
         distinct("bushings", self.bushings)
         if self.mass is None and self.modal_coordinates:
-            advice = "Give mass: modal coordinates are those of a housing with mass."
-            raise InputError("modal_coordinates", self.modal_coordinates, "0 without mass", advice)
+            remedy = "Give mass: modal coordinates are those of a housing with mass."
+            raise InputError("modal_coordinates", self.modal_coordinates, "0 without mass", remedy)
         sizes = tuple(per * len(self.bushings) + self.modal_coordinates for per in PER_SEAT)
         rows = len(check_matrix("stiffness", self.stiffness, sizes, PRECISION))
         for name in ("damping", "mass"):
@@ -190,12 +190,12 @@ class Housing:
         return follow.T @ stiffness @ follow, follow.T @ damping @ follow
 
 
-def _require_definite(field: str, rows: Matrix, advice: str) -> None:
+def _require_definite(field: str, rows: Matrix, remedy: str) -> None:
     """Refuse a matrix that some motion makes zero."""
-    least = least_share(np.asarray(rows, dtype=float))
-    if least <= DEFINITE:
+    minimum = least_share(np.asarray(rows, dtype=float))
+    if minimum <= DEFINITE:
         bound = "positive definite on a housing with mass"
-        raise InputError(field, f"singular: least eigenvalue {least:.1e} of the diagonal", bound, advice)
+        raise InputError(field, f"singular: least eigenvalue {minimum:.1e} of the diagonal", bound, remedy)
 
 
 def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Housing:
@@ -228,6 +228,6 @@ def read_housing_matrices(path: str | Path) -> dict[str, FloatArray]:
     is_text = file.suffix.lower() == ".csv"
     arrays = {"stiffness": _read_csv(file, field)} if is_text else read_archive(file, field)
     if "stiffness" not in arrays:
-        advice = f"It has {', '.join(sorted(arrays)[:5]) or 'none'}."
-        raise InputError(field, file.name, 'an archive with the array "stiffness"', advice)
+        remedy = f"It has {', '.join(sorted(arrays)[:5]) or 'none'}."
+        raise InputError(field, file.name, 'an archive with the array "stiffness"', remedy)
     return {part: arrays[part] for part in MATRICES if part in arrays}

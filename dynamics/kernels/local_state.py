@@ -49,8 +49,10 @@ class LocalState(NamedTuple):
     """Where the last look-up ended: the next starts there. Shape (E,)."""
 
     @classmethod
-    def empty(cls, rows: int, most: int, positions: int = 1, elements: int = 1, laws: int = 0) -> LocalState:
-        """Allocate for that many rows R, at `most` P of an element; m + f positions, E elements, k laws."""
+    def empty(
+        cls, rows: int, maximum: int, positions: int = 1, elements: int = 1, laws: int = 0
+    ) -> LocalState:
+        """Allocate for R rows, P of an element at `maximum`; m + f positions, E elements, k laws."""
         per_row = ("coordinate", "rate", "drift", "acceleration", "force", "elastic")
         return cls(
             position=np.zeros(positions),
@@ -61,5 +63,5 @@ class LocalState(NamedTuple):
             speed=np.zeros((elements, 2)),
             hint=np.zeros(elements, dtype=np.int64),
             **{name: np.zeros(rows) for name in per_row},
-            **{name: np.zeros((rows, most)) for name in ("tangent", "viscous", "inertial")},
+            **{name: np.zeros((rows, maximum)) for name in ("tangent", "viscous", "inertial")},
         )

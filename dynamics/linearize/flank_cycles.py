@@ -16,10 +16,10 @@ from dynamics.linearize.linear_system import LinearSystem
 from dynamics.motion.observation import local_state, static_deflections
 from dynamics.types import FloatArray
 
-SAMPLES, LEAST_SAMPLES, MOST_POSITIONS = 512, 64, 8192
+SAMPLES, MIN_SAMPLES, MAX_POSITIONS = 512, 64, 8192
 ITERATIONS = 60
 HELD = 1e-12  # of the force: where the search for a deflection ends
-LEAST_FORCE = 1e-3  # of the first level: an unloaded flank just touches
+MIN_FORCE = 1e-3  # of the first level: an unloaded flank just touches
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ def flank_cycles(
     cycles = []
     for index, mesh in enumerate(system.scene.meshes):
         period = mesh.table.period
-        count = max(min(samples, MOST_POSITIONS // period), min(samples, LEAST_SAMPLES), 4 * orders)
+        count = max(min(samples, MAX_POSITIONS // period), min(samples, MIN_SAMPLES), 4 * orders)
         position = np.arange(count * period) / count
         cycles.append(_cycle(system, at_rest, index, float(force[index]), position))
     return tuple(cycles)
@@ -92,7 +92,7 @@ def _cycle(system: System, local: LocalState, index: int, force: float, position
     elements = by_address(system.arrays.elements)
     rows = slice(*(int(row) for row in elements.first[index : index + 2]))
     level = system.flanks.tables[index].level
-    force = max(force, LEAST_FORCE * float(level[1] - level[0]))
+    force = max(force, MIN_FORCE * float(level[1] - level[0]))
     guess = np.empty_like(position)
     static_deflections(system.flanks.law.table, index, position, force, guess)
     size = rows.stop - rows.start

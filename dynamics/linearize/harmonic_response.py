@@ -33,7 +33,7 @@ from dynamics.results.array_file import stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 GRID = ("speed", "order")
-MOST_SAMPLES, MOST_PER_LINE, MOST_PARTED = 16_384, 1_000, 300
+MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
 
 
 def _none() -> ComplexArray:
@@ -294,32 +294,32 @@ def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
 def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each.
 
-    Over a period of more samples than `MOST_SAMPLES`, and than `MOST_PER_LINE` for each order, orders in no
+    Over a period of more samples than `MAX_SAMPLES`, and than `MAX_PER_LINE` for each order, orders in no
     proportion of small integers meet in all their phases: the extremes of their sums are the sums of their
-    extremes; of more than `MOST_PARTED`, of their amplitudes.
+    extremes; of more than `MAX_PARTED`, of their amplitudes.
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
     whole = harmonic % harmonic[:1] == 0
-    if samples > max(MOST_SAMPLES, MOST_PER_LINE * order.size) and not np.all(whole):
-        if order.size > MOST_PARTED:
-            most = np.sum(np.abs(amplitude), axis=-1)
-            return -most, most
+    if samples > max(MAX_SAMPLES, MAX_PER_LINE * order.size) and not np.all(whole):
+        if order.size > MAX_PARTED:
+            maximum = np.sum(np.abs(amplitude), axis=-1)
+            return -maximum, maximum
         parts = (
             extremes(amplitude[..., whole], order[whole]),
             extremes(amplitude[..., ~whole], order[~whole]),
         )
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
-    if samples > MOST_SAMPLES:
+    if samples > MAX_SAMPLES:
         samples = next_fast_len(samples, real=True)
-    least, most = np.empty(amplitude.shape[:2]), np.empty(amplitude.shape[:2])
+    minimum, maximum = np.empty(amplitude.shape[:2]), np.empty(amplitude.shape[:2])
     for part in speed_blocks((amplitude.shape[1], samples), amplitude.shape[0]):
         few = amplitude[:, part]
         lines = np.zeros((*few.shape[:2], samples // 2 + 1), dtype=complex)
         lines[..., harmonic] = few * (samples / 2.0)
         wave = np.fft.irfft(lines, samples, axis=-1)
-        least[:, part], most[:, part] = np.min(wave, axis=-1), np.max(wave, axis=-1)
-    return least, most
+        minimum[:, part], maximum[:, part] = np.min(wave, axis=-1), np.max(wave, axis=-1)
+    return minimum, maximum
 
 
 @lru_cache(maxsize=64)

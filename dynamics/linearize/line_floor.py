@@ -24,7 +24,7 @@ OF_MODE = 0.25
 """Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
 MISSED = 1.0 / 7.0
 """Of a second difference, that a straight line misses at most: an eighth of a parabola, more of others."""
-LEAST_RATIO = 1e-4
+MIN_RATIO = 1e-4
 COUNTED = 1e-10
 """Of the power of all lines, that a direction of the rows has to have."""
 BINS = 8
@@ -164,7 +164,7 @@ def floor_frequencies(at: Excited, lowest: float, highest: float) -> FloatArray:
     """Return frequencies (G,) from `lowest` to `highest`, Hz, that resolve every mode of the system."""
     modes = natural_modes(at.linear)
     elastic = modes.frequency > 0.0
-    natural, ratio = modes.frequency[elastic], np.maximum(modes.damping_ratio[elastic], LEAST_RATIO)
+    natural, ratio = modes.frequency[elastic], np.maximum(modes.damping_ratio[elastic], MIN_RATIO)
     hertz = [lowest]
     while hertz[-1] < highest:
         near = OF_MODE * np.maximum(ratio, np.abs(hertz[-1] / natural - 1.0))

@@ -24,7 +24,7 @@ from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 
-MOST_ORDERS = 100
+MAX_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
 """What an analysis keeps of `Modes`."""
@@ -184,7 +184,7 @@ def modal_analysis(
     SolveError
         If there is no static equilibrium, or one beyond the table (`STRAIGHT_ON`) that is not accepted.
     """
-    integer("orders", orders, 1, MOST_ORDERS)
+    integer("orders", orders, 1, MAX_ORDERS)
     require_freedoms(system)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = cpu_seconds()

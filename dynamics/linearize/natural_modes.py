@@ -96,5 +96,5 @@ def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveEr
             f"{excited[at]:.6g} Hz excite the mode at {hertz[mode]:.6g} Hz, in which {part} moves most and "
         )
         words += f"whose damping ratio is {engineering(modes.damping_ratio[elastic[mode]], 1)}"
-    advice = "Give the meshes, shafts or supports damping, or leave that speed out"
-    return SolveError(f"the vibration is unbounded: {words}. {advice}")
+    remedy = "Give the meshes, shafts or supports damping, or leave that speed out"
+    return SolveError(f"the vibration is unbounded: {words}. {remedy}")

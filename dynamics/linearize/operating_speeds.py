@@ -13,7 +13,7 @@ from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import proportional_speeds
 from dynamics.types import FloatArray
 
-MOST_SPEEDS = 100_000
+MAX_SPEEDS = 100_000
 LARGEST_DENOMINATOR = 10_000
 
 
@@ -56,16 +56,16 @@ def checked_speeds(speed: FloatArray | list[float] | tuple[float, ...], *, above
         If one is not finite, below 0 (or 0), not above the one before, or there are too many.
     """
     speeds = np.atleast_1d(np.asarray(speed, dtype=float))
-    if speeds.size > MOST_SPEEDS:
+    if speeds.size > MAX_SPEEDS:
         raise InputError(
-            "speed", f"{speeds.size} values", f"at most {MOST_SPEEDS} values", "Take wider steps."
+            "speed", f"{speeds.size} values", f"at most {MAX_SPEEDS} values", "Take wider steps."
         )
     for index, value in enumerate(speeds):
         finite(f"speed[{index}]", float(value))
         if value < 0.0 or (above_zero and value == 0.0):
-            advice = "The scene says in which sense it turns."
+            remedy = "The scene says in which sense it turns."
             bound = above(0.0) if above_zero else at_least(0.0)
-            raise InputError(f"speed[{index}]", float(value), bound, advice)
+            raise InputError(f"speed[{index}]", float(value), bound, remedy)
         if index and value <= speeds[index - 1]:
             bound = above(float(speeds[index - 1]), name="the one before it,")
             raise InputError(f"speed[{index}]", float(value), bound, "Sort the list and drop repeats.")

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.types import ComplexArray, FloatArray
 
-LEAST = 20
+MIN = 20
 """Freedoms from which on it is faster: 39 at 576 frequencies take 7 in place of 45 ms."""
 PRECISE = 1e-10
 """Largest force left, of the largest exciting force: modes that almost depend on each other leave more."""
@@ -34,7 +34,7 @@ class PartialFractions:
         """Solve the eigenvalue problem; None where modes depend on each other, or nothing is held."""
         count, square = len(mass), np.abs(np.diag(stiffness) / np.diag(mass))
         scale = float(np.sqrt(np.max(square, initial=0.0)))
-        if count < LEAST or not scale > 0.0:
+        if count < MIN or not scale > 0.0:
             return None
         mobility = np.linalg.inv(mass)
         motion = np.zeros((2 * count, 2 * count))  # of displacements times the scale, and rates

@@ -284,7 +284,7 @@ def _solve(
         PartialFractions.of(total, mass, damping) if fractions and small is None and not terms else None
     )
     parts = np.stack([total, mass, damping]).astype(complex)
-    most = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
+    maximum = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
     left, farthest = np.float64(0.0), np.zeros(per_meter.size)
     for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
@@ -293,7 +293,7 @@ def _solve(
         with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
             if by_modes is not None:
                 moved, miss = by_modes.solve(omega[part], exciting)
-                if not np.max(miss, initial=0.0) <= PRECISE * most:
+                if not np.max(miss, initial=0.0) <= PRECISE * maximum:
                     by_modes = None
             if by_modes is None and small is None:
                 moved, miss = _dense(parts, omega[part], swept, right)
@@ -310,9 +310,9 @@ def _solve(
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
     elastic = np.max(np.abs(total) @ farthest, initial=0.0)
-    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * most:
+    if not np.maximum(left, np.finfo(float).eps * elastic) <= ROUNDED * maximum:
         raise unbounded(linear, omega)
-    return displacement, float(left / most), largest
+    return displacement, float(left / maximum), largest
 
 
 def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bounds import MOST_BYTES
+from bounds import MAX_BYTES
 from dynamics.errors import InputError
 from dynamics.linearize.load_harmonics import load_multiples
 from dynamics.linearize.steady_vibration import Excited, flank_forces
@@ -48,8 +48,8 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     row in its mesh order. Orders of the meshes and of the loads at the highest `speed` (S,), rad/s, always
     count.
     """
-    most = max(ALWAYS, int(HELD / max(speed.size * at.system.arrays.mass.shape[0], 1)))
-    if harmonics.size <= most:
+    maximum = max(ALWAYS, int(HELD / max(speed.size * at.system.arrays.mass.shape[0], 1)))
+    if harmonics.size <= maximum:
         return Lines(harmonics, harmonics[:0])
     force = np.abs(flank_forces(at, harmonics)[1])
     bands, band = np.unique(np.rint(harmonics / at.period.counted), return_inverse=True)
@@ -60,7 +60,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
             _share(force[:, inside], np.max(force[:, inside], axis=1, keepdims=True)), axis=0
         )
     size[_always(at, harmonics, float(np.max(np.abs(speed))))] = np.inf
-    chosen = _of_every_band(size, band, most)
+    chosen = _of_every_band(size, band, maximum)
     squares = np.square(force)
     parts = [
         (squares[:, inside & ~chosen], squares[:, inside])
@@ -75,10 +75,10 @@ def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None
 
     Raises `InputError`: there are too many.
     """
-    most = int(MOST_BYTES // (16 * numbers * max(lines, 1)))
-    if speeds > most:
-        held = f"as {MOST_BYTES / 1e9:g} GB hold"
-        bound = f"at most {most} values in {lines} orders of {freedoms} freedoms, {held}"
+    maximum = int(MAX_BYTES // (16 * numbers * max(lines, 1)))
+    if speeds > maximum:
+        held = f"as {MAX_BYTES / 1e9:g} GB hold"
+        bound = f"at most {maximum} values in {lines} orders of {freedoms} freedoms, {held}"
         raise InputError("speed", f"{speeds} values", bound, "Take wider steps, or fewer orders.")
 
 
@@ -96,11 +96,11 @@ def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:
     return np.flatnonzero(always)
 
 
-def _of_every_band(size: FloatArray, band: IntArray, most: int) -> BoolArray:
-    """Return whether each line is among the `most` strongest, of every band as many."""
-    most = max(most // np.unique(band).size, 1)
+def _of_every_band(size: FloatArray, band: IntArray, maximum: int) -> BoolArray:
+    """Return whether each line is among the `maximum` strongest, of every band as many."""
+    maximum = max(maximum // np.unique(band).size, 1)
     order = np.lexsort((-size, band))
     first = np.searchsorted(band[order], band[order], side="left")
     chosen = np.zeros(size.size, dtype=bool)
-    chosen[order] = (np.arange(size.size) - first < most) | np.isinf(size[order])
+    chosen[order] = (np.arange(size.size) - first < maximum) | np.isinf(size[order])
     return chosen

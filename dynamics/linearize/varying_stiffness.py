@@ -283,8 +283,8 @@ def _varying(at: Excited, index: int, harmonics: IntArray) -> list[_Varying]:
 
 def _alike(cycle: FlankCycle) -> bool:
     """Return whether the tangents are the same at all positions."""
-    most = np.max(np.abs(cycle.tangents - cycle.tangent))
-    return bool(most <= ROUNDING * np.max(np.abs(cycle.tangent)))
+    maximum = np.max(np.abs(cycle.tangents - cycle.tangent))
+    return bool(maximum <= ROUNDING * np.max(np.abs(cycle.tangent)))
 
 
 def _solved(

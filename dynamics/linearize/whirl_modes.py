@@ -197,7 +197,7 @@ def _senses(
             kinetic[:, i] + kinetic[:, j],
         )
     )
-    row, most = np.arange(len(clusters)), np.argmax(share, axis=1)
-    moves = share[row, most] > STILL * np.array([cluster.size for cluster in clusters])
-    circling = turned[row, most] / np.where(moves, size[row, most], 1.0)
-    return np.asarray(np.where(moves, np.sign(spin[rotor[most]]) * 2.0 * circling, 0.0))
+    row, maximum = np.arange(len(clusters)), np.argmax(share, axis=1)
+    moves = share[row, maximum] > STILL * np.array([cluster.size for cluster in clusters])
+    circling = turned[row, maximum] / np.where(moves, size[row, maximum], 1.0)
+    return np.asarray(np.where(moves, np.sign(spin[rotor[maximum]]) * 2.0 * circling, 0.0))

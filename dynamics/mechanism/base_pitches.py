@@ -59,8 +59,8 @@ def _corrections(scene: Scene) -> Corrections:
         for gear, value in zip(train, used, strict=True):
             if abs(value / gear.base_radius - 1.0) > PRINTED:
                 field = f"gears[{scene.gears.index(gear)}].base_radius"
-                advice = f"Base pitches of a train agree to {PRINTED:g}."
-                raise InputError(field, gear.base_radius, exactly(value, ", as its train has it"), advice)
+                remedy = f"Base pitches of a train agree to {PRINTED:g}."
+                raise InputError(field, gear.base_radius, exactly(value, ", as its train has it"), remedy)
             corrected[gear.name] = (gear.base_radius, float(value))
     return corrected
 
@@ -72,8 +72,8 @@ def _check(scene: Scene) -> None:
         if abs(driver.base_pitch / driven.base_pitch - 1.0) > PRINTED:
             pitch = Quantity(driver.base_pitch, "m", digits=6)
             bound = Text.of("a gear of base pitch ", pitch, " like the driver's")
-            advice = f"base_radius / teeth must agree to {PRINTED:g}; smaller differences are corrected."
-            raise InputError(f"meshes[{index}].driven", Quantity(driven.base_pitch, "m"), bound, advice)
+            remedy = f"base_radius / teeth must agree to {PRINTED:g}; smaller differences are corrected."
+            raise InputError(f"meshes[{index}].driven", Quantity(driven.base_pitch, "m"), bound, remedy)
 
 
 def _trains(scene: Scene) -> Sequence[list[GearBody]]:

@@ -120,11 +120,11 @@ def turning_orders(scene: Scene, kinematics: Kinematics) -> dict[str, dict[str, 
     }
     shafts = {part.name: abs(float(turn)) for part, turn in zip(scene.shafts, turns, strict=True)}
     turning = gears | {name: turn for name, turn in shafts.items() if name not in gears}
-    least = SAME * float(np.max(np.abs(turns)))
+    minimum = SAME * float(np.max(np.abs(turns)))
     driven = (abs(float(turns[shaft])) for shaft in kinematics.law_shaft)
-    unit = next((rate for rate in (*meshes.values(), *driven) if rate > least), 1.0)
+    unit = next((rate for rate in (*meshes.values(), *driven) if rate > minimum), 1.0)
     return {
-        kind: {name: rate / unit for name, rate in orders.items() if rate > least}
+        kind: {name: rate / unit for name, rate in orders.items() if rate > minimum}
         for kind, orders in (("mesh", meshes), ("shaft", turning))
     }
 

@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.identity_cache import KEPT, cached_by
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.phases import cage_turns, load_orders
-from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
+from dynamics.scene.scene import MIN_RATE, Scene, check_samples
 from dynamics.types import FloatArray, Json
 
 PER_BAND = 2.56
@@ -22,7 +22,7 @@ DESIGN = STOP_BAND + 3.0
 """Attenuation required of Kaiser's formulas: they miss by up to 2 dB."""
 INNER_PER_PITCH = 64.0
 """Inner samples per base pitch, or period of a load's highest order, at the least: as many as steps."""
-LEAST_FACTOR = 3
+MIN_FACTOR = 3
 """Inner samples at the least, per output sample and per sample that would pass the highest resolved mode."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
@@ -100,7 +100,7 @@ def order_rate(scene: Scene, kinematics: Kinematics) -> float:
 
     As far as they lie in the band of the output.
     """
-    return max(PER_BAND * min(_top_order(scene, kinematics), scene.outputs.band), LEAST_RATE)
+    return max(PER_BAND * min(_top_order(scene, kinematics), scene.outputs.band), MIN_RATE)
 
 
 def shaft_resolution(scene: Scene, kinematics: Kinematics) -> float:
@@ -111,7 +111,7 @@ def shaft_resolution(scene: Scene, kinematics: Kinematics) -> float:
     """
     if scene.outputs.sample_rate is not None:
         return 0.5 * scene.outputs.sample_rate
-    rate = max(PER_BAND * _top_order(scene, kinematics), LEAST_RATE)
+    rate = max(PER_BAND * _top_order(scene, kinematics), MIN_RATE)
     return min(0.5 * rate, PER_BAND * scene.outputs.band)
 
 
@@ -181,8 +181,8 @@ def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampli
         elif by_order >= by_mode:
             chosen = f"{outputs.mesh_orders} orders of the highest mesh frequency, {mesh:.4g} Hz"
         check_samples(scene.duration, rate)
-    inner = max(INNER_PER_PITCH * max(mesh, load), LEAST_FACTOR * PER_BAND * mode)
-    factor = max(LEAST_FACTOR, math.ceil(inner / rate))
+    inner = max(INNER_PER_PITCH * max(mesh, load), MIN_FACTOR * PER_BAND * mode)
+    factor = max(MIN_FACTOR, math.ceil(inner / rate))
     stop_band = STOP_BAND if outputs.anti_alias else 0.0
     return Sampling(
         rate=rate,

@@ -11,7 +11,7 @@ from dynamics.mechanism.columns import column_count, elastic_columns
 from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
-LEAST_SHIFT = 1e-4
+MIN_SHIFT = 1e-4
 """Relative shift of a natural frequency below which a part of the moments is left out of time integration."""
 TILT_X, TILT_Y = 3, 4
 
@@ -54,7 +54,7 @@ def spun_pairs(rotors: Bodies, index: int, speed: float) -> list[tuple[FloatArra
     lowest = _lowest(rotor)
     pairs: list[tuple[FloatArray, float]] = []
     for value, vector in zip(share[::-1], vectors.T[::-1], strict=True):
-        if pairs and value * speed <= 2.0 * LEAST_SHIFT * lowest:
+        if pairs and value * speed <= 2.0 * MIN_SHIFT * lowest:
             break
         weight = scale * vector / scale[0]
         pairs.append((np.tensordot(weight, rows, axes=1), float(value * scale[0] ** 2)))

@@ -57,9 +57,9 @@ def _warm_row(scene: Scene, warm: Temperatures, bearing: RollingBearing) -> Warm
     try:
         row = replace(bearing.row, clearance=bearing.row.clearance + rings.play)
     except InputError as error:
-        bound, advice = error.bound, "The temperatures change it by more than the row can have."
+        bound, remedy = error.bound, "The temperatures change it by more than the row can have."
         name = "ball" if isinstance(bearing.row, BallBearing) else "roller"
-        raise InputError(f"{name}.{error.field}", error.value, bound, advice) from None
+        raise InputError(f"{name}.{error.field}", error.value, bound, remedy) from None
     fits = zip(("inner ring", "outer ring"), rings.interference or (0.0, 0.0), strict=True)
     return WarmBearing(
         bearing,

@@ -199,8 +199,8 @@ def _contradiction(train: _Train, index: int, position: float) -> InputError:
     geometry = _wrapped(driver.position(train.angle[driver.key]), 1)
     note = ", where its teeth touch with the first mesh of its train as it is, or a whole number more"
     bound = exactly(round(geometry, 9), note=note)
-    advice = "Leave it out: it follows from tooth numbers, tooth thickness and the places of the axes."
-    return InputError(f"meshes[{index}].position_offset", position, bound, advice)
+    remedy = "Leave it out: it follows from tooth numbers, tooth thickness and the places of the axes."
+    return InputError(f"meshes[{index}].position_offset", position, bound, remedy)
 
 
 def _follow(train: _Train) -> None:
@@ -240,10 +240,10 @@ def _place_back(train: _Train, gear: int, side: int) -> None:
 
 def _misfit(field: str, name: str, off: float, others: str) -> InputError:
     bound = f"of teeth that fit {others}; they are off by {off:.6g} pitches"
-    advice = (
+    remedy = (
         "Change tooth numbers, tooth thickness or axes, or stated positions: nobody can assemble the train."
     )
-    return InputError(field, name, bound, advice)
+    return InputError(field, name, bound, remedy)
 
 
 def _assume(train: _Train) -> None:
@@ -341,6 +341,6 @@ def _angle_contradiction(scene: Scene, gear: int, turns: float) -> InputError:
     angle = (scene.shaft(name).tooth_angles or ())[place]
     geometry = Quantity(angle + 2.0 * math.pi * turns, "rad", digits=9)
     field = f"shafts[{scene.shaft_index(name)}].tooth_angles[{place}]"
-    advice = "Leave tooth_angles out: the train leaves the shaft no other angle."
+    remedy = "Leave tooth_angles out: the train leaves the shaft no other angle."
     bound = Text.of(geometry, ", where the teeth of its train touch, or whole pitches more")
-    return InputError(field, Quantity(angle, "rad", digits=9), bound, advice)
+    return InputError(field, Quantity(angle, "rad", digits=9), bound, remedy)

@@ -44,8 +44,8 @@ def _at_temperature(mesh: GearMesh, change: WarmMesh) -> GearMesh:
     if coast is not None:
         left = coast.backlash + change.backlash
         if left < 0.0:
-            advice = Text.of("The temperatures take ", Quantity(-change.backlash, "m"), ".")
-            raise InputError("coast.backlash", left, at_least(0.0, "m", note=" at temperature"), advice)
+            remedy = Text.of("The temperatures take ", Quantity(-change.backlash, "m"), ".")
+            raise InputError("coast.backlash", left, at_least(0.0, "m", note=" at temperature"), remedy)
         coast = replace(coast, backlash=left)
     return replace(
         mesh,

@@ -14,7 +14,7 @@ from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
 BUCKETS_PER_KNOT = 4
-LEAST = 4  # knots of a table that can be decimated
+MIN = 4  # knots of a table that can be decimated
 
 
 @with_numbers("offset")
@@ -74,7 +74,7 @@ class PackedTables(NamedTuple):
 def kept_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""
     indices = np.arange(0, knots, every)
-    if indices.size < LEAST:
+    if indices.size < MIN:
         indices = np.arange(knots)
     return np.append(indices, knots)
 

@@ -138,16 +138,16 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
         return float(high + (force - table.level[first + k + 1]) / cubic_value(table.row, row + k + 1, 4, u))
     # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
     rise, c2, c3 = _force_cubic(table, row + k, first + k, u, high - low)
-    w, least, most = wanted / (rise + c2 + c3), 0.0, 1.0
+    w, minimum, maximum = wanted / (rise + c2 + c3), 0.0, 1.0
     for _ in range(100):
         trial = w * (rise + w * (c2 + w * c3))
         if trial < wanted:
-            least = w
+            minimum = w
         else:
-            most = w
+            maximum = w
         step = (wanted - trial) / (rise + w * (2.0 * c2 + 3.0 * w * c3))
-        if not least <= w + step <= most:
-            step = 0.5 * (least + most) - w
+        if not minimum <= w + step <= maximum:
+            step = 0.5 * (minimum + maximum) - w
         w += step
         if abs(step) <= 1e-15:
             break

@@ -27,15 +27,15 @@ class States(NamedTuple):
     """
     filtered: FloatArray
     """All channels behind the anti-alias filter. Shape (T, C)."""
-    least: FloatArray
+    minimum: FloatArray
     largest: FloatArray
-    """`least`, `largest`: Extremes of the local forces between the samples, unfiltered. Shape (T, R) each."""
+    """`minimum`, `largest`: Extremes (T, R) of the local forces between the samples, unfiltered."""
 
     def rows(self, first: int, stop: int) -> States:
         """Return a view of the samples `first` to `stop` - 1."""
         part = slice(first, stop)
         state = self.q[part], self.v[part], self.carried[part], self.moved[part]
-        return States(*state, self.filtered[part], self.least[part], self.largest[part])
+        return States(*state, self.filtered[part], self.minimum[part], self.largest[part])
 
 
 class Widths(NamedTuple):

@@ -35,8 +35,8 @@ FEWER = 0.5
 def surface_cells(hull: Hull, count: int) -> IntArray:
     """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
     share = _node_areas(hull)
-    most = min(count, int(np.count_nonzero(share)))
-    seeds = np.random.default_rng(0).choice(len(share), most, replace=False, p=share / share.sum())
+    maximum = min(count, int(np.count_nonzero(share)))
+    seeds = np.random.default_rng(0).choice(len(share), maximum, replace=False, p=share / share.sum())
     return settled_cells(hull, seeds, STEPS)
 
 
@@ -184,12 +184,12 @@ def radiating_hull(
 
     Cells are split where edges come out too long, or where the hull meets itself around a thin part.
     """
-    fine, most = RadiatingHull(outer.hull, outer.shapes), FEWER * len(outer.hull.nodes)
+    fine, maximum = RadiatingHull(outer.hull, outer.shapes), FEWER * len(outer.hull.nodes)
     longest = sound_speed / highest_frequency / coarseness.edges * ROUNDED_DOWN
     count = max(
         int(np.ceil(outer.hull.area / (0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2))), coarseness.cells
     )
-    if count >= most:
+    if count >= maximum:
         return fine
     cell = surface_cells(outer.hull, count)
     for _ in range(ATTEMPTS):
@@ -198,7 +198,7 @@ def radiating_hull(
         if not poor.size:
             return coarse
         cell = split_cells(outer.hull, cell, np.isin(np.arange(cell.max() + 1), owner[poor]))
-        if cell.max() >= most:
+        if cell.max() >= maximum:
             break
     return fine
 

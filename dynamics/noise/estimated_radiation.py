@@ -27,7 +27,7 @@ SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
 
 Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
 """
-LEAST = 1e-30
+MIN = 1e-30
 """kg/s, of a motion without sound."""
 
 
@@ -82,7 +82,7 @@ class EstimatedRadiation(HousingRadiation):
 
         The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
         """
-        count, whole = len(mode_power), max(float(mode_power.sum()), LEAST)
+        count, whole = len(mode_power), max(float(mode_power.sum()), MIN)
         knot = int(np.abs(self.frequency - frequency).argmin())
         off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / whole
         return float(off[0]), float(off[1])
@@ -137,4 +137,4 @@ def estimated_radiation(
 
 
 def _levels(resistance: FloatArray) -> FloatArray:
-    return np.asarray(10.0 * np.log10(np.maximum(resistance, LEAST)))
+    return np.asarray(10.0 * np.log10(np.maximum(resistance, MIN)))

@@ -50,7 +50,7 @@ WORK = "radiation resistance by {}"
 RADIATION_VERSION = 3
 """Raised with every change of the numbers of a resistance, or of what is kept with them."""
 STAGE = "radiation"
-LEAST_COST = 1.0
+MIN_COST = 1.0
 """CPU seconds."""
 
 
@@ -375,7 +375,7 @@ def kept_radiation(
         )
 
     def costly(made: HousingRadiation) -> bool:
-        return made.facts.cost.seconds > LEAST_COST
+        return made.facts.cost.seconds > MIN_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
     return kept_in(file, read, computed, write, ResultError, costly)

@@ -112,9 +112,9 @@ def sound_paths(
     distance = np.linalg.norm(hull.centers - at, axis=1)
     if hull.closed and _solid_angle(hull, at) > 2.0 * np.pi:
         raise InputError("microphone", at.tolist(), "a point outside of the housing")
-    least, nearest = NEAREST * hull.longest_edge, float(distance.min())
-    if nearest < least:
-        bound = at_least(least, "m", note=" from the surface, two of its longest edges")
+    minimum, nearest = NEAREST * hull.longest_edge, float(distance.min())
+    if nearest < minimum:
+        bound = at_least(minimum, "m", note=" from the surface, two of its longest edges")
         raise InputError("microphone", nearest, bound, "Move it away, or use smaller elements.")
     volume = air.density / model.solid_angle * hull.areas / distance
     return _SoundPaths(distance / air.sound_speed, volume[:, None] * shapes)

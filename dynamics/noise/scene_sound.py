@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.housings.reduced_housing import SurfaceHousing
-from dynamics.noise.estimated_radiation import LEAST, EstimatedRadiation
+from dynamics.noise.estimated_radiation import MIN, EstimatedRadiation
 from dynamics.noise.housing_radiation import HousingRadiation
 from dynamics.noise.model_levels import ModelLevels, model_levels
 from dynamics.noise.panel_sound import PanelSound, Region, panel_sound, regions
@@ -143,7 +143,7 @@ def joined_error(
             band = bands.get(radiation.model_name, (0.0, 0.0))
             error = np.broadcast_to(np.reshape(band, (2, 1, 1)), true.shape)
         power, true = power + sound.power, true + sound.power * 10.0 ** (-error / 10.0)
-    return np.asarray(-10.0 * np.log10(np.maximum(true, LEAST) / np.maximum(power, LEAST)))
+    return np.asarray(-10.0 * np.log10(np.maximum(true, MIN) / np.maximum(power, MIN)))
 
 
 def _over_time(run: RunResult, housings: Sequence[SoundingHousing]) -> SoundOverTime | None:

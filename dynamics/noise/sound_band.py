@@ -35,7 +35,7 @@ from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
-MOST_MISSED = 10.0
+MAX_MISSED = 10.0
 """dB; speeds that miss more are no map of a resonance."""
 Levels = Callable[[Mapping[str, float]], FloatArray]
 
@@ -395,12 +395,12 @@ def _with_floor_error(band: SoundBand, speed: FloatArray, power: OrderPower) -> 
     total, name = power.total_weighted_power, "orders_left_out"
     off = np.array(power.total_error).tolist()
     mean, missed = mean_power(speed, total), mean_power(speed, power.weighted_error)
-    least = float(sound_power_level(mean) - sound_power_level(max(mean - missed, 0.0)))
+    minimum = float(sound_power_level(mean) - sound_power_level(max(mean - missed, 0.0)))
     largest = off[int(np.argmax(total))]
     return replace(
         band,
         largest_total=band.largest_total.with_error(name, largest, largest),
-        mean_total=band.mean_total.with_error(name, least, least),
+        mean_total=band.mean_total.with_error(name, minimum, minimum),
         total=tuple(each.with_error(name, own, own) for each, own in zip(band.total, off, strict=True)),
     )
 
@@ -422,7 +422,7 @@ def _missed_by_steps(speed: FloatArray, power: FloatArray) -> float:
 
 
 def _missed_between(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far a peak between the speeds may stand above the largest power, dB, at most `MOST_MISSED`.
+    """Return how far a peak between the speeds may stand above the largest power, dB, at most `MAX_MISSED`.
 
     The reciprocal of the power over speed is a parabola near a resonance: that through the largest value and
     its neighbors. At the ends of the speeds nothing is known.
@@ -434,8 +434,8 @@ def _missed_between(speed: FloatArray, power: FloatArray) -> float:
     bend, slope, height = np.polyfit(
         speed[near] - speed[at], power[at] / np.maximum(power[near], 1e-30 * power[at]), 2
     )
-    least = height - slope**2 / (4.0 * bend) if bend > 0.0 else 1.0
-    return float(-10.0 * np.log10(np.clip(least, 10.0 ** (-MOST_MISSED / 10.0), 1.0)))
+    minimum = height - slope**2 / (4.0 * bend) if bend > 0.0 else 1.0
+    return float(-10.0 * np.log10(np.clip(minimum, 10.0 ** (-MAX_MISSED / 10.0), 1.0)))
 
 
 def largest_level(speed: FloatArray, power: OrderPower) -> float:

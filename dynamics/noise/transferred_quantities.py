@@ -57,8 +57,8 @@ class QuantityForm:
 
     def decibels(self, weighted: FloatArray) -> FloatArray:
         """Return the level of weighted powers or mean squares, or of sums of them, dB, at least `FLOOR`."""
-        least = self.reference * 10.0 ** (FLOOR / 10.0)
-        return np.asarray(10.0 * np.log10(np.maximum(weighted, least) / self.reference))
+        minimum = self.reference * 10.0 ** (FLOOR / 10.0)
+        return np.asarray(10.0 * np.log10(np.maximum(weighted, minimum) / self.reference))
 
 
 class Quantity(Protocol):

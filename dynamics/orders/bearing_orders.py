@@ -26,7 +26,7 @@ APART = 2.0
 """Cycles by which two orders differ within a window, or its Hann weights do not tell them apart."""
 ROWS = 400
 """Most windows; they overlap by half where that makes fewer."""
-MOST_SWEEP = 0.2
+MAX_SWEEP = 0.2
 """Change of the mesh frequency within a window, of its mean: beyond it the window has no speed."""
 
 
@@ -36,8 +36,8 @@ def bearing_signals(result: RunResult) -> FloatArray:
     Raises `InputError`: the run holds no bearing forces.
     """
     if not len(result.bearing_force):
-        advice = "Run the scene with bearing forces among its outputs."
-        raise InputError("bearing_force", "none", "a run with bearing forces", advice)
+        remedy = "Run the scene with bearing forces among its outputs."
+        raise InputError("bearing_force", "none", "a run with bearing forces", remedy)
     if not result.bearing_moment.size:
         return result.bearing_force
     return np.concatenate([result.bearing_force, result.bearing_moment], axis=1)
@@ -202,7 +202,7 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     mesh_cycles = cycles[np.argmax((harmonics.mesh == mesh) & (harmonics.multiple == 1))]
     windows = list(_windows(mesh_cycles, pitches))
     rows = [_row(result, harmonics, cycles, signals, window) for window in windows]
-    steady = [row for row in rows if row.sweep <= MOST_SWEEP]  # a mesh that rests or reverses sweeps from 0
+    steady = [row for row in rows if row.sweep <= MAX_SWEEP]  # a mesh that rests or reverses sweeps from 0
     if not steady:
         raise _no_window(mesh_cycles, pitches, rows)
     facts: Json = {
@@ -217,13 +217,13 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
 
 def _checked_pitches(harmonics: _MeshHarmonics, pitches: int | None) -> int:
     """Return the base pitches of a window that tells the orders apart."""
-    least = int(np.ceil(APART / harmonics.closest * (1.0 - 1e-6)))
+    minimum = int(np.ceil(APART / harmonics.closest * (1.0 - 1e-6)))
     if pitches is None:
-        return max(PITCHES, least)
+        return max(PITCHES, minimum)
     integer("pitches", pitches, 1, 1_000_000)
-    if pitches < least:
-        advice = "Longer windows, or fewer orders."
-        raise InputError("pitches", pitches, at_least(least, note=", which tell the orders apart"), advice)
+    if pitches < minimum:
+        remedy = "Longer windows, or fewer orders."
+        raise InputError("pitches", pitches, at_least(minimum, note=", which tell the orders apart"), remedy)
     return pitches
 
 
@@ -287,10 +287,10 @@ def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
     if not rows:
         value = f"{float(np.max(own)):.4g} base pitches of one sense"
         return InputError("result", value, f"at least {pitches}, the length of a window", "Run for longer.")
-    least = min(row.sweep for row in rows)
-    value = f"speeds that change by {100.0 * least:.3g} % or more within {pitches} base pitches"
-    advice = "Run up more slowly, or take fewer orders of several meshes."
-    return InputError("result", value, f"at most {100.0 * MOST_SWEEP:g} %", advice)
+    minimum = min(row.sweep for row in rows)
+    value = f"speeds that change by {100.0 * minimum:.3g} % or more within {pitches} base pitches"
+    remedy = "Run up more slowly, or take fewer orders of several meshes."
+    return InputError("result", value, f"at most {100.0 * MAX_SWEEP:g} %", remedy)
 
 
 def _put_together(

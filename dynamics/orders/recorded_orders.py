@@ -22,7 +22,7 @@ from dynamics.types import FloatArray
 
 PASSED = 0.42
 """Of the sample rate: what is below keeps its amplitude between the samples."""
-LEAST_PER_PITCH, MOST_IN_BLOCK = 64, 1 << 22
+MIN_PER_PITCH, MAX_IN_BLOCK = 64, 1 << 22
 SLOWEST = 0.02
 """Of the highest mesh frequency: slower blocks last too long to hold one speed."""
 
@@ -142,6 +142,6 @@ def _samples_per_pitch(signal: PositionedSignal, start: float, pitches: int, hig
     """Return a power of two of samples a pitch, at least one for each sample of the slowest part."""
     first, last = np.searchsorted(signal.position, [start, start + pitches])
     slowest = float(np.min(np.diff(signal.position[max(first - 1, 0) : last + 1])))
-    needed = max(LEAST_PER_PITCH, 8 * highest, math.ceil(1.0 / max(slowest, 1e-9)))
-    most = 1 << int(math.log2(MOST_IN_BLOCK / pitches))
-    return min(1 << math.ceil(math.log2(needed)), most)
+    needed = max(MIN_PER_PITCH, 8 * highest, math.ceil(1.0 / max(slowest, 1e-9)))
+    maximum = 1 << int(math.log2(MAX_IN_BLOCK / pitches))
+    return min(1 << math.ceil(math.log2(needed)), maximum)

@@ -171,10 +171,10 @@ def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
 
 def cubic_between(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     """Interpolate by Lagrange between four samples of a uniform grid, `part` of the way after `index`."""
-    most = values.shape[-1] - 4
-    if most < 0:
+    maximum = values.shape[-1] - 4
+    if maximum < 0:
         return np.asarray(values[..., index] + part * (values[..., index + 1] - values[..., index]))
-    first = np.clip(index - 1, 0, most)
+    first = np.clip(index - 1, 0, maximum)
     u = index + part - first  # 0..3
     interpolated = values[..., first] * (-(u - 1.0) * (u - 2.0) * (u - 3.0) / 6.0)
     interpolated += values[..., first + 1] * (u * (u - 2.0) * (u - 3.0) / 2.0)

@@ -16,7 +16,7 @@ from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 
 ON_LINE = 1e-6  # of a line's distance
-LEAST_LINES = 3.0
+MIN_LINES = 3.0
 """Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
 REFERENCE = 1000.0  # Hz, the center of band 0
 SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
@@ -209,8 +209,8 @@ def band_sums(
     top, bottom : float
         Edges that no band crosses, Hz.
     """
-    least = max(LEAST_LINES * width / SHARE, bottom * 10.0**0.05)
-    low = int(np.ceil(10.0 * np.log10(least / REFERENCE)))
+    minimum = max(MIN_LINES * width / SHARE, bottom * 10.0**0.05)
+    low = int(np.ceil(10.0 * np.log10(minimum / REFERENCE)))
     last = width * power.shape[-1]
     high = int(np.floor(10.0 * np.log10(min(top, last) / REFERENCE) - 0.5))
     band = np.arange(low, high + 1)

@@ -26,7 +26,7 @@ FALLING = 0.3  # of the residual: where an iteration leaves more, derivatives ar
 EASY = 1  # derivations on the way to a motion: with no more the step along the branch grows
 SMALLEST_STEP = 1e-5  # of the largest
 LARGEST_STEP = 0.02  # between neighboring motions, of the larger speed or of the size of the state
-MOST_POINTS = 500
+MAX_POINTS = 500
 FOLD_LIMIT = 1e-6  # of the largest speed: by how much a fold may lie beyond the motions found
 FOLD_ITERATIONS = 20
 FOLD_SHARE = 0.1  # of a bracket that each iteration takes off at least
@@ -98,7 +98,7 @@ def follow_branch(
     last: float,
     largest_step: float = LARGEST_STEP,
     guess: FloatArray | None = None,
-    points: int = MOST_POINTS,
+    points: int = MAX_POINTS,
     progress: Callable[[float], None] | None = None,
 ) -> Branch:
     """Follow the periodic motions from the speed `first` until they leave the range `first` to `last`.

@@ -36,8 +36,8 @@ HALVINGS = 8
 digits and the end of the march depends smoothly on its start."""
 
 SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
-MOST_STEPS = 1_000_000
-MOST_GAIN = 100.0
+MAX_STEPS = 1_000_000
+MAX_GAIN = 100.0
 STEPS_PER_CYCLE = 24  # of the highest natural frequency
 STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
 NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
@@ -148,8 +148,8 @@ class PeriodGrid:
         """
         knots = _knots(system, period)
         counts = np.maximum(np.ceil(np.diff(knots) / largest * (1.0 - 1e-9)), 1.0)
-        if np.sum(counts) > MOST_STEPS:
-            bound = f"such that a period takes at most {MOST_STEPS} steps"
+        if np.sum(counts) > MAX_STEPS:
+            bound = f"such that a period takes at most {MAX_STEPS} steps"
             suggestion = "Look at one stage or fewer different teeth, or at higher speeds."
             raise InputError("period", f"{period.revolutions} revolutions", bound, suggestion)
         inner = [
@@ -248,7 +248,7 @@ def _resonant_gain(system: System, modes: Modes) -> float:
     ratios = modes.damping_ratio[modes.frequency > 0.0]
     if system.scene.meshes or not ratios.size:
         return 1.0
-    return min(MOST_GAIN, 0.5 / max(float(np.min(ratios)), 0.5 / MOST_GAIN))
+    return min(MAX_GAIN, 0.5 / max(float(np.min(ratios)), 0.5 / MAX_GAIN))
 
 
 @dataclass(frozen=True)
@@ -263,8 +263,8 @@ class PeriodicProblem:
     grid: PeriodGrid
     """Steps of one period, the same at all speeds, so that the map depends smoothly on speed."""
     rate: float
-    least: float
-    """`rate`, `least`: Steps that a period has at least: so many a second, and so many in all."""
+    minimum: float
+    """`rate`, `minimum`: Steps that a period has at least: so many a second, and so many in all."""
     repeat: int
     """Common periods after which the motion is to repeat; 2 finds what period doubling leads to."""
     time: float
@@ -287,7 +287,7 @@ class PeriodicProblem:
         Raises `InputError`: the speed is zero or of the other sense.
         """
         _check_speed(self.system, self.period, speed)
-        largest = 1.0 / max(self.rate * self.period.duration(speed), self.least)
+        largest = 1.0 / max(self.rate * self.period.duration(speed), self.minimum)
         return replace(self, grid=PeriodGrid.of(self.system, self.period, largest))
 
 
@@ -314,7 +314,7 @@ def periodic_problem(
     modes = natural_modes(system, time)
     rate = steps_per_cycle * _highest(system, modes.frequency)
     pitches = max((abs(count) for count in period.pitches), default=0)
-    least = float(STEPS_PER_PITCH * max(pitches, load_cycles(system, period)))
+    minimum = float(STEPS_PER_PITCH * max(pitches, load_cycles(system, period)))
     rest = start.displacement * system.arrays.scale
     force, stiff = _largest_force(system, start.mesh_force), _stiffest(system)
     size = max(float(np.max(np.abs(rest))), _resonant_gain(system, modes) * force / stiff)
@@ -325,9 +325,9 @@ def periodic_problem(
     return PeriodicProblem(
         system,
         period,
-        PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), least)),
+        PeriodGrid.of(system, period, 1.0 / max(rate * period.duration(slowest), minimum)),
         rate,
-        least,
+        minimum,
         repeat,
         time,
         np.concatenate([rest, np.zeros(rest.size)]),

@@ -11,13 +11,13 @@ from dynamics.linearize import natural_modes
 from dynamics.linearize.harmonic_response import excited_lines
 from dynamics.linearize.operating_speeds import leading_law
 from dynamics.linearize.steady_vibration import steady_vibration
-from dynamics.periodic.continuation import LARGEST_STEP, MOST_POINTS
+from dynamics.periodic.continuation import LARGEST_STEP, MAX_POINTS
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import RESIDUAL_LIMIT, SETTLING, settled
 from dynamics.types import FloatArray
 from host import cpu_seconds
 
-ENOUGH, LEAST_STEPS, TIMES = 0.01, 16, 3
+ENOUGH, MIN_STEPS, TIMES = 0.01, 16, 3
 """CPU s and steps of a stretch that tells, and how often it is taken: the quickest counts, as other work on
 the machine only slows it. All stretches of a probe take at most six times as long, where steps are cheap."""
 PROBED, AFFORDED = 9, 0.5
@@ -100,7 +100,7 @@ def steady_cost(
         at, states = _response_states(problem, sense * speed)
         affords = PROBED * SETTLING * period_cost < AFFORDED
         seconds, length = _settling(problem, at, states) if affords else (period_cost, _lengths(states).sum())
-        period_cost, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MOST_POINTS)
+        period_cost, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MAX_POINTS)
         making = min(_taken(PeriodMap(problem, end), problem.rest, 1) for end in ends)
     whole = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
     return SteadyCost(
@@ -150,7 +150,7 @@ def _settling(problem: PeriodicProblem, speed: FloatArray, states: FloatArray) -
 
 def period_seconds(problem: PeriodicProblem, speed: float) -> float:
     """Return the CPU seconds of a period of the motions at a speed, by the first steps from rest."""
-    over_period, steps, whole = PeriodMap(problem, speed), LEAST_STEPS, problem.grid.level.size
+    over_period, steps, whole = PeriodMap(problem, speed), MIN_STEPS, problem.grid.level.size
     over_period.begun(problem.rest, 1)  # reads the code
     while True:
         steps = min(steps, whole)

@@ -59,7 +59,7 @@ class BearingLoadChecks:
         share = float(self._unloaded[row] / max(self._samples, 1))
         reason = "the bearing stayed loaded"
         if share > 0.0:
-            advice = "enable the effect" if self._has_law[row] else "give the bearing its clearance"
-            reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
+            remedy = "enable the effect" if self._has_law[row] else "give the bearing its clearance"
+            reason = f"the load reversed in {100.0 * share:.3g} % of the run: {remedy}"
         assumption, name = "linear bearing stays loaded", self._name[index]
         return Check(self._effect, assumption, name, share == 0.0, reason, {"unloaded": share})

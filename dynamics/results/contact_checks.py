@@ -27,11 +27,11 @@ class ContactChecks:
     def see(self, series: SeriesBlock, _states: States) -> None:
         """Count the samples of a block at which flanks have parted."""
         position, deflection = series["position"], series["dynamic_transmission_error"]
-        force, least = series["mesh_force"], series["least_mesh_force"]
+        force, minimum = series["mesh_force"], series["least_mesh_force"]
         before = self._samples
         self._samples += position.shape[1]
         for index in self._watched:
-            parted = least[index] <= 0.0
+            parted = minimum[index] <= 0.0
             if self._first[index] < 0 and np.any(parted):
                 self._first[index] = before + int(np.argmax(parted))
             touch = np.empty(position.shape[1])

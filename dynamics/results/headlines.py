@@ -11,7 +11,7 @@ from bounds import engineering
 from bounds.brief import Row
 from dynamics.types import FloatArray, Json, RunStatus
 
-MOST_PARTS = 3
+MAX_PARTS = 3
 """Meshes and bearings that are listed, those of the largest forces."""
 
 
@@ -59,8 +59,8 @@ def _meshes(run: Run) -> Iterator[Row]:
     """Yield transverse force and dynamic transmission error of meshes."""
     if not run.time.size:
         return
-    most = run.mesh_force.max(axis=1, initial=0.0)
-    for at in np.argsort(-most)[:MOST_PARTS]:
+    maximum = run.mesh_force.max(axis=1, initial=0.0)
+    for at in np.argsort(-maximum)[:MAX_PARTS]:
         force, error = run.mesh_force[at], 1e6 * run.dynamic_transmission_error[at]
         swing = engineering(float(np.ptp(error)), 3)
         yield (
@@ -75,7 +75,7 @@ def _bearings(run: Run) -> Iterator[Row]:
     if not run.bearing_force.size:
         return
     radial = np.hypot(run.bearing_force[:, 0], run.bearing_force[:, 1]).max(axis=1)
-    for at in np.argsort(-radial)[:MOST_PARTS]:
+    for at in np.argsort(-radial)[:MAX_PARTS]:
         yield f"bearing {run.bearing[at]}", f"radial force up to {engineering(float(radial[at]), 4)} N"
 
 

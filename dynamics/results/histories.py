@@ -86,7 +86,7 @@ def filtered(system: System, states: States, seen: Observed) -> _Signals:
     Modal freedoms that the filter has not taken are left out, and the coordinates they move are those of the
     motion's points, as `seen`: no output has them.
     """
-    rows, channels, modal = states.least.shape[1], states.filtered, system.arrays.sparse.modal
+    rows, channels, modal = states.minimum.shape[1], states.filtered, system.arrays.sparse.modal
     n, meshes = modal.first, system.flanks.nominal_force.size
     force, q, v, static, amplitudes = np.split(channels, np.cumsum([rows, n, n, meshes]), axis=1)
     coordinate = system.arrays.elements.offset + q @ system.arrays.direction[:, :n].T
@@ -127,7 +127,7 @@ def histories(
         "static_transmission_error": signals.static,
         "mesh_force": signals.force[driving],
         "coast_force": _coast_force(system, signals.force),
-        "least_mesh_force": np.ascontiguousarray(states.least[:, driving].T),
+        "least_mesh_force": np.ascontiguousarray(states.minimum[:, driving].T),
         "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
         "elastic_force": seen.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
         "contact": _contact(system, seen.force),
@@ -155,7 +155,7 @@ def checked_series(
         "dynamic_transmission_error": seen.coordinate[driving],
         "mesh_force": seen.force[driving],
         "coast_force": _coast_force(system, seen.force),
-        "least_mesh_force": states.least[:, driving].T,
+        "least_mesh_force": states.minimum[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
         **_axis_series(system, seen.coordinate, seen.force),
         "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.moved)[0],

@@ -42,8 +42,8 @@ class _DynamicFactor:
     """`time`, `mesh_frequency`: Means of each block, s and Hz. Shape (B,) each."""
     largest: FloatArray
     mean: FloatArray
-    least: FloatArray
-    """`largest`, `mean`, `least`: Of the driving flank's force in the block, over the nominal force.
+    minimum: FloatArray
+    """`largest`, `mean`, `minimum`: Of the driving flank's force in the block, over the nominal force.
     `largest` is K_v as ISO 6336-1 defines it; `mean` differs from 1 by what accelerates the train. Shape (B,)
     each.
     """
@@ -63,7 +63,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _Dyna
     if first.size < 2:
         raise InputError("pitches", pitches, at_most(int(travel[-1]), note=", the run's length"))
     nominal = result.nominal_force[mesh]
-    force, least, largest = (
+    force, minimum, largest = (
         series[mesh, : first[-1]] / nominal
         for series in (result.mesh_force, result.least_mesh_force, result.largest_mesh_force)
     )
@@ -78,7 +78,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> _Dyna
         mean(result.mesh_frequency[mesh]),
         np.maximum.reduceat(largest, first),
         mean(force),
-        np.minimum.reduceat(least, first),
+        np.minimum.reduceat(minimum, first),
     )
 
 

@@ -60,7 +60,7 @@ def _phasors(solved: FloatArray, shape: tuple[int, ...]) -> ComplexArray:
     return np.asarray((coefficients[:, :orders] - 1j * coefficients[:, orders:]).reshape(shape))
 
 
-def orders_seen(position: FloatArray, most: int) -> int:
-    """Return how many orders, at most `most`, four samples a period or more resolve over `position` (T,)."""
+def orders_seen(position: FloatArray, maximum: int) -> int:
+    """Return how many orders, up to `maximum`, four samples a period resolve over `position` (T,)."""
     fastest = float(np.max(np.abs(np.diff(position)), initial=0.0))
-    return max(min(most, int(0.25 / fastest)) if fastest > 0.0 else 0, 0)
+    return max(min(maximum, int(0.25 / fastest)) if fastest > 0.0 else 0, 0)

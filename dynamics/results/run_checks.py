@@ -135,9 +135,9 @@ def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, f
         mesh = scene.meshes[index]
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
         radius = driven.base_radius if driver.internal else driver.base_radius  # whose torques it counts
-        most = largest * radius
-        digit = 10.0 ** (np.floor(np.log10(most)) - 1.0)
-        rounded = float(np.ceil(most / digit) * digit)
+        maximum = largest * radius
+        digit = 10.0 ** (np.floor(np.log10(maximum)) - 1.0)
+        rounded = float(np.ceil(maximum / digit) * digit)
         reason = (
             f"forces up to {largest:.4g} N, {times:.3g} times the table's highest load of {highest:.4g} N; "
             f"above it the table is extrapolated linearly, up to {STRAIGHT_ON:g} times. Compute it with "

@@ -18,7 +18,7 @@ from dynamics.types import FloatArray
 
 LARGEST_TILT = 0.01
 """rad: beyond it a gear's displacement along the line of action is no linear function of its tilt."""
-MOST = 4
+MAX = 4
 """Parts beyond their bound that are named: where one is, most of them are."""
 WORKING_DEPTH = 2.0
 """Modules on the operating pitch circle: the working depth of standard teeth (ISO 53)."""
@@ -75,7 +75,7 @@ class SmallMotionCheck:
         share = self._largest / np.array([limit.bound for limit in limits])
         beyond = np.flatnonzero(share >= 1.0)
         chosen = beyond[np.argsort(-share[beyond])] if beyond.size else [int(np.argmax(share))]
-        return [_check(limits[index], float(self._largest[index])) for index in chosen[:MOST]]
+        return [_check(limits[index], float(self._largest[index])) for index in chosen[:MAX]]
 
 
 def _check(limit: _Limit, largest: float) -> Check:

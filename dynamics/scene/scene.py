@@ -40,7 +40,7 @@ ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
 LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
-LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
+MIN_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 def _check_housings(scene: Scene) -> None:
@@ -67,8 +67,8 @@ def _check_housings(scene: Scene) -> None:
             _check_seat_position(f"housings[{index}].seat_positions[{seat}]", at, bearing, origin)
         if not lawful.isdisjoint(housing.bushings) and least_share(housing.matrices()[0]) <= DEFINITE:
             bound = "positive definite under bearings that are not linear"
-            advice = "Hold the housing at its feet, or on mounts, in every direction that has a row."
-            raise InputError(f"housings[{index}].stiffness", housing.name, bound, advice)
+            remedy = "Hold the housing at its feet, or on mounts, in every direction that has a row."
+            raise InputError(f"housings[{index}].stiffness", housing.name, bound, remedy)
     for index, bushing in enumerate(scene.ground_bearings):
         if scene.shaft(bushing.shaft).frame is not None:
             _check_isotropic(f"bushings[{index}]", bushing)
@@ -82,8 +82,8 @@ def _check_seat_position(
         x, y, z = (Quantity(float(value), "m", digits=3) for value in off)
         limit = Quantity(SEAT_AGREEMENT, "m")
         bound = Text.of("within ", limit, f' of "{bearing.name}"; it is off by ', x, ", ", y, ", ", z)
-        advice = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
-        raise InputError(field, at, bound, advice)
+        remedy = "Move and turn the mesh so that it stands as the scene does, z along the shafts."
+        raise InputError(field, at, bound, remedy)
 
 
 def _check_isotropic(field: str, bushing: Bushing) -> None:
@@ -125,8 +125,8 @@ def _check_frames(scene: Scene) -> None:
     for kind in ("bushings", "rolling_bearings"):
         for index, part in enumerate(getattr(scene, kind)):
             if not _on_own_axis(scene, scene.shaft(part.shaft)):
-                bound, advice = "a shaft on the carrier's axis", "Planets rest on planet bearings."
-                raise InputError(f"{kind}[{index}].shaft", part.shaft, bound, advice)
+                bound, remedy = "a shaft on the carrier's axis", "Planets rest on planet bearings."
+                raise InputError(f"{kind}[{index}].shaft", part.shaft, bound, remedy)
 
 
 def _on_own_axis(scene: Scene, shaft: Shaft) -> bool:
@@ -203,8 +203,8 @@ def _check_positions(scene: Scene) -> None:
             if not on_length(part.position, length):
                 ends = from_to(0.0, length, "m")
                 bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
-                advice = "Lengthen the shaft, or move what sits on it."
-                raise InputError(f"{kind}[{index}].position", part.position, bound, advice)
+                remedy = "Lengthen the shaft, or move what sits on it."
+                raise InputError(f"{kind}[{index}].position", part.position, bound, remedy)
 
 
 def _check_tooth_angles(scene: Scene) -> None:
@@ -250,8 +250,8 @@ def _check_temperatures(scene: Scene) -> None:
         if scene.temperatures is None and value is not None:
             raise InputError(path, value, "left out without [temperatures]", "Give that of the housing.")
         if scene.temperatures is not None and needed and value is None:
-            advice = "With [temperatures] shafts, gears and rings of rolling bearings have one each."
-            raise InputError(path, None, "given", advice)
+            remedy = "With [temperatures] shafts, gears and rings of rolling bearings have one each."
+            raise InputError(path, None, "given", remedy)
 
 
 def _temperatures(scene: Scene) -> Iterator[tuple[str, Any, bool]]:
@@ -354,7 +354,7 @@ class Scene(BearingLawParts):
             within("level_tolerance", self.level_tolerance, *LEVEL_TOLERANCES)
         if self.highest_frequency is not None:
             positive("highest_frequency", self.highest_frequency)
-        check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)
+        check_samples(self.duration, self.outputs.sample_rate or MIN_RATE)
         _check_parts(self)
 
     @property

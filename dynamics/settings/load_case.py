@@ -105,5 +105,5 @@ def check_forces(cases: Iterable[LoadCase], names: Sequence[str]) -> None:
             if part.name not in names:
                 known = ", ".join(f'"{name}"' for name in names)
                 bound = f"a force of the scene: {known}" if names else "a force of the scene, which has none"
-                advice = "Add it to the scene's forces, where it acts; its values there may be 0."
-                raise InputError(f"load_cases[{number}].forces[{index}].name", part.name, bound, advice)
+                remedy = "Add it to the scene's forces, where it acts; its values there may be 0."
+                raise InputError(f"load_cases[{number}].forces[{index}].name", part.name, bound, remedy)

@@ -18,7 +18,7 @@ from dynamics.errors import SolveError
 from dynamics.forces.elements import Elements
 from dynamics.forces.laws import BEARING_PARTS, Law, among
 from dynamics.influence import (
-    Decided,
+    Decision,
     Influence,
     estimate_influences,
     left_out_effects,
@@ -52,7 +52,7 @@ from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
-LEAST_SHARE = 0.05  # of a part in the kinetic energy of a mode
+MIN_SHARE = 0.05  # of a part in the kinetic energy of a mode
 ROWS = (Law.BALLS, Law.ROLLERS)
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
@@ -83,19 +83,19 @@ class RunFacts:
         end: Ending,
         checks: RunChecks,
         clock: StageClock,
-        decided: Decided,
+        decision: Decision,
         before: EarlierRun,
     ) -> RunFacts:
         """Gather them; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
-            influences = _known_influences(decided, system)
-        clock.book("influence_estimates", decided.taken)
+            influences = _known_influences(decision, system)
+        clock.book("influence_estimates", decision.taken)
         audit = None
         if system.scene.outputs.energy_audit:
             audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
         checks_of_run = [*checks.checks(), *([] if audit is None else [audit.check()])]
-        automatic = {**decided.automatic, **before.reasons}
-        return cls(system, decided.scene, audit, checks_of_run, automatic, influences)
+        automatic = {**decision.automatic, **before.reasons}
+        return cls(system, decision.scene, audit, checks_of_run, automatic, influences)
 
     def with_errors(self, error: Json) -> RunFacts:
         """Return them with the check of the errors of the steps, where they are measured."""
@@ -224,13 +224,13 @@ def _modes_of_run(system: System) -> Json:
     except SolveError:
         return {}
     modes = natural_modes(linear)
-    most = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
+    maximum = np.argmax(modes.kinetic_energy, axis=1) if modes.frequency.size else []
     turning = any(part.speed.extreme != 0.0 for part in system.scene.references)
     rotating = turning and linear.freedom and system.ledger.adds(SPEED_DEPENDENCE)
     return {
         "frequency": [float(value) for value in modes.frequency],
         "damping_ratio": [float(value) for value in modes.damping_ratio],
-        "freedom": [modes.freedom[index] for index in most],
+        "freedom": [modes.freedom[index] for index in maximum],
         "moves": _moves(modes.freedom, modes.kinetic_energy),
         **({"over_speed": _over_speed(system, linear)} if rotating else {}),
     }
@@ -242,7 +242,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
     branches = branches_up_to(system, linear, abs(system.scene.references[law].speed.extreme))
     speed = branches.speed
     whole = np.all(np.isfinite(branches.frequency), axis=0)
-    most = np.argmax(branches.kinetic_energy[-1], axis=1)
+    maximum = np.argmax(branches.kinetic_energy[-1], axis=1)
     return {
         "shaft": system.scene.references[law].shaft,
         "speed": speed.tolist(),
@@ -250,7 +250,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
         "frequency": branches.frequency[:, whole].T.tolist(),
         "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
         "whirl": branches.whirl[:, whole].T.tolist(),
-        "freedom": [linear.freedom[index] for index in most[whole]],
+        "freedom": [linear.freedom[index] for index in maximum[whole]],
         "moves": _moves(linear.freedom, branches.kinetic_energy[-1][whole]),
     }
 
@@ -262,8 +262,8 @@ def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
         summed = dict.fromkeys(names, 0.0)
         for name, share in zip(names, shares, strict=True):
             summed[name] += share
-        most = sorted(summed.items(), key=lambda part: -part[1])
-        moves.append({name: share for name, share in most if share >= LEAST_SHARE})
+        maximum = sorted(summed.items(), key=lambda part: -part[1])
+        moves.append({name: share for name, share in maximum if share >= MIN_SHARE})
     return moves
 
 
@@ -373,11 +373,11 @@ def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     return about if holds else about | {"effect_ledger": effect_ledger(run)}
 
 
-def _known_influences(decided: Decided, system: System) -> Mapping[str, Influence]:
+def _known_influences(decision: Decision, system: System) -> Mapping[str, Influence]:
     """Return the influence of effects as decided by, else estimated where the receipt is to have it."""
-    scene = decided.scene
-    if decided.influences or scene.outputs.receipt != "full":
-        return decided.influences
+    scene = decision.scene
+    if decision.influences or scene.outputs.receipt != "full":
+        return decision.influences
     return estimate_influences(scene, system=system)
 
 

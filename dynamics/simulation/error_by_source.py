@@ -29,7 +29,7 @@ from host import cpu_seconds
 WINDOWS = 3
 SHARE = 0.045
 """Of the samples of a run, in all windows at most: integrating them anew takes some 12 % of the run."""
-LEAST_SAMPLES, MOST_SAMPLES = 24, 512
+MIN_SAMPLES, MAX_SAMPLES = 24, 512
 """Of a window. An error of the steps is stationary once the vibration it makes has decayed: measured on the
 paper's pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows state no better errors."""
 ORDERS = 5
@@ -128,9 +128,9 @@ def window_seconds(system: System) -> float:
 def _spans(system: System) -> list[tuple[int, int]]:
     """Return windows at the ends of equal parts of the run; none where it is too short or has no mesh."""
     samples = sample_count(system)
-    count = WINDOWS if SHARE * samples >= WINDOWS * LEAST_SAMPLES else 1
-    size = min(int(SHARE * samples / count), MOST_SAMPLES)
-    if size < LEAST_SAMPLES or not system.scene.meshes:
+    count = WINDOWS if SHARE * samples >= WINDOWS * MIN_SAMPLES else 1
+    size = min(int(SHARE * samples / count), MAX_SAMPLES)
+    if size < MIN_SAMPLES or not system.scene.meshes:
         return []
     ends = [round((k + 1) * samples / count) for k in range(count)]
     return [(end - size, end) for end in ends]

@@ -13,7 +13,7 @@ from dynamics.linearize.operating_speeds import leading_law
 from dynamics.mechanism.sampling import SPEED_POINTS
 from dynamics.types import Json
 
-MOST = 1e6
+MAX = 1e6
 """Hz; the highest band of an output."""
 
 
@@ -27,7 +27,7 @@ def linear_orders(system: System) -> Json:
     top = sampling.mesh_orders * sampling.mesh_frequency
     if scene.outputs.sample_rate is not None or top <= sampling.band:
         return {}
-    wide = replace(scene, outputs=replace(scene.outputs, band=min(top, MOST)))
+    wide = replace(scene, outputs=replace(scene.outputs, band=min(top, MAX)))
     try:
         resolved = assemble(wide)
         law = wide.references[leading_law(resolved)]

@@ -24,7 +24,7 @@ PARTS = (0.05, 0.5, 0.95)
 """Of the duration: where a run is probed."""
 ENOUGH = 0.02
 """CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
-LEAST_STEPS = 32
+MIN_STEPS = 32
 """Of a stretch that counts, however long a step takes."""
 FINER = 10.0**0.2
 """Steps at a tenth of the tolerance over those of the run; those by half the positions are as many."""
@@ -121,7 +121,7 @@ def _probe(system: System, time: float) -> _Probe:
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
         whole = stretch >= system.scene.duration  # of a short run all its steps are few
-        if not first and (whole or (steps >= LEAST_STEPS and seconds > ENOUGH)):
+        if not first and (whole or (steps >= MIN_STEPS and seconds > ENOUGH)):
             light = outlives_windows(system, choice)
             return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)
         stretch, first = 2.0 * stretch, False

@@ -15,7 +15,7 @@ from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.varied import with_static_reference
 from dynamics.errors import ResultError, SolveError
-from dynamics.influence import Decided, decide_effects
+from dynamics.influence import Decision, decide_effects
 from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators import march as marching
@@ -185,11 +185,11 @@ def run_scene(
     describe: Description = described,
 ) -> RunResult:
     """Run `scene` as `simulate` does; what is implausible about it is in the result alone, if `describe`d."""
-    decided, before = decide_effects(scene), FIRST
-    run = _run(decided, before, None, progress, cancel, describe)
+    decision, before = decide_effects(scene), FIRST
+    run = _run(decision, before, None, progress, cancel, describe)
     while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
         before = before.then(needed, sum(run.result.receipt["seconds"].values()))
-        run = _run(before.of(decided), before, run, progress, cancel, describe)
+        run = _run(before.of(decision), before, run, progress, cancel, describe)
     if progress is not None:
         progress(1.0, "done")
     return run.result
@@ -231,27 +231,27 @@ class _Start:
     clock: StageClock
 
     @classmethod
-    def of(cls, decided: Decided) -> _Start:
+    def of(cls, decision: Decision) -> _Start:
         """Assemble a scene and find its equilibrium.
 
         Raises `SolveError`: there is none; ``partial`` shows where the search for it ended.
         """
         clock = StageClock()
         with clock.stage("assembly_and_equilibrium"):
-            system = with_tolerance_to_scale(assemble(decided.scene))
+            system = with_tolerance_to_scale(assemble(decision.scene))
             rest = static_equilibrium(system)
         if not rest.status.usable:
             message = (
                 f"no static equilibrium at t = 0: {rest.status.name.lower()}, {rest.residual:.3g} N left"
             )
-            raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, None, decided))
+            raise SolveError(message, _result(system, _no_trajectory(system, rest), clock, None, decision))
         choice = choose_method(system, rest.displacement, system.scene.integration)
         made = choice.of(with_static_reference(system, rest.displacement))
         return cls(made, rest, choice, Trail(system), clock)
 
 
 def _run(
-    decided: Decided,
+    decision: Decision,
     before: EarlierRun,
     earlier: _Run | None,
     progress: Progress | None,
@@ -259,7 +259,7 @@ def _run(
     describe: Description,
 ) -> _Run:
     """Run a scene once; `before` says what of the run `earlier` it repeats."""
-    start = _Start.of(decided)
+    start = _Start.of(decision)
     system = start.system
     if earlier is not None:
         states_of = earlier.trajectory.states.rows
@@ -282,9 +282,9 @@ def _run(
         return run, run.states.rows
 
     errors = _Errors(start, trajectory.states.rows, finer)
-    result = _result(system, trajectory, start.clock, errors, decided, before, start.choice, describe)
+    result = _result(system, trajectory, start.clock, errors, decision, before, start.choice, describe)
     if not result.status.usable:
-        reached = f"at {trajectory.end:.6g} s of {decided.scene.duration:g} s"
+        reached = f"at {trajectory.end:.6g} s of {decision.scene.duration:g} s"
         raise SolveError(f"run ended early, {result.status.name.lower()} {reached}", result)
     return _Run(result, start.trail, trajectory)
 
@@ -335,16 +335,16 @@ def _result(
     trajectory: Trajectory,
     clock: StageClock,
     errors: _Errors | None,
-    decided: Decided,
+    decision: Decision,
     before: EarlierRun = FIRST,
     choice: MethodChoice | None = None,
     describe: Description = described,
 ) -> RunResult:
-    checks = RunChecks(system, [NeglectedChecks(decided)])
+    checks = RunChecks(system, [NeglectedChecks(decision)])
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    facts = RunFacts.of(system, trajectory, checks, clock, decided, before)
+    facts = RunFacts.of(system, trajectory, checks, clock, decision, before)
     error: Json = {}
     if errors is not None:
         with clock.stage("error_estimate"):
@@ -445,14 +445,14 @@ def simulate_to_file(
     going = (progress, cancel, checkpoint_every)
     before = EarlierRun.read(folder) if resume else FIRST
     warn_of(scene_findings(scene))
-    decided = decide_effects(scene)
-    run = _run_to_file(before.of(decided), path, before, going, resume=resume)
+    decision = decide_effects(scene)
+    run = _run_to_file(before.of(decision), path, before, going, resume=resume)
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
             checkpoint.unlink()  # of a system without these effects
         before.write(folder)
-        run = _run_to_file(before.of(decided), path, before, going, run)
+        run = _run_to_file(before.of(decision), path, before, going, run)
     if run.status is not RunStatus.CANCELLED:
         _remove(folder)
     if progress is not None:
@@ -461,7 +461,7 @@ def simulate_to_file(
 
 
 def _run_to_file(
-    decided: Decided,
+    decision: Decision,
     path: Path,
     before: EarlierRun,
     going: tuple[Progress | None, Cancel | None, float],
@@ -470,7 +470,7 @@ def _run_to_file(
     resume: bool = False,
 ) -> _MadeRun:
     """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
-    start = _Start.of(decided)
+    start = _Start.of(decision)
     system, rest, clock = start.system, start.rest, start.clock
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
@@ -485,21 +485,21 @@ def _run_to_file(
             return check.go(_of_errors(going[0]), *going[1:]), check.spool.states
 
         errors = _Errors(start, leg.spool.states, finer)
-        status, ledger = _write(path, leg, end, errors, decided, before)
+        status, ledger = _write(path, leg, end, errors, decision, before)
     return _MadeRun(status, ledger, sum(clock.seconds.values()), start.trail, leg.march.widths)
 
 
 def _write(
-    path: Path, leg: _Leg, end: Ending, errors: _Errors, decided: Decided, before: EarlierRun
+    path: Path, leg: _Leg, end: Ending, errors: _Errors, decision: Decision, before: EarlierRun
 ) -> tuple[RunStatus, Json]:
     """Make the series from the states, block by block, into the file; return status and effect ledger."""
     system, start = leg.march.system, errors.start
-    checks = RunChecks(system, [NeglectedChecks(decided)])
+    checks = RunChecks(system, [NeglectedChecks(decision)])
     with RunFile(path) as file:
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
-        facts = RunFacts.of(system, end, checks, start.clock, decided, before)
+        facts = RunFacts.of(system, end, checks, start.clock, decision, before)
         with start.clock.stage("error_estimate"):
             error, status = errors.measure(end, facts)
         facts = facts.with_errors(error)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from dynamics.assembly.assemble import System
 from dynamics.errors import ResultError
-from dynamics.influence import Decided
+from dynamics.influence import Decision
 from dynamics.influence.neglected_check import ANY_PART
 from dynamics.integrators.start_value import StartValue, Trail, added_rows
 from dynamics.motion.sampled_states import States
@@ -66,10 +66,10 @@ class EarlierRun:
         """Return what a further repetition repeats."""
         return EarlierRun({**self.turned_on, **needed}, self.seconds + seconds)
 
-    def of(self, decided: Decided) -> Decided:
+    def of(self, decision: Decision) -> Decision:
         """Return the scene with these effects on."""
-        effects = {**decided.scene.effects, **dict.fromkeys(self.turned_on, "on")}
-        return replace(decided, scene=replace(decided.scene, effects=effects))
+        effects = {**decision.scene.effects, **dict.fromkeys(self.turned_on, "on")}
+        return replace(decision, scene=replace(decision.scene, effects=effects))
 
 
 FIRST = EarlierRun()

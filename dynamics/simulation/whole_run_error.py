@@ -69,7 +69,7 @@ def outlives_windows(system: System, choice: MethodChoice) -> bool:
 
 
 def _parted(system: System, states: States) -> BoolArray:
-    return np.asarray(states.least[:, system.driving_rows] <= 0.0)
+    return np.asarray(states.minimum[:, system.driving_rows] <= 0.0)
 
 
 def finer_run(integration: Integration, end: Ending) -> Integration:

@@ -16,7 +16,7 @@ from dynamics.structure_code.arrays import Group, Known
 from dynamics.structure_code.statements import Statements
 
 POINTER = WORD.as_pointer()
-MOST_EXPRESSIONS = 150_000
+MAX_EXPRESSIONS = 150_000
 """Beyond it compiling takes longer than runs do."""
 FEW_EXPRESSIONS = 500
 """Of a function that is written for known numbers though it could be for any: a frame's terms have 300."""
@@ -41,7 +41,7 @@ class Module:
     def count(self) -> None:
         """Count an expression; too many are `Unsupported`."""
         self.expressions += 1
-        if self.expressions > MOST_EXPRESSIONS:
+        if self.expressions > MAX_EXPRESSIONS:
             raise Unsupported("the structure is too large")
 
     def alias(self, array: Any) -> Any:

@@ -16,7 +16,7 @@ import numpy as np
 from dynamics.structure_code.arrays import LONGEST, Known
 from dynamics.types import BoolArray, IntArray
 
-MOST_AXES = 3
+MAX_AXES = 3
 
 
 class _Layout(NamedTuple):
@@ -37,10 +37,10 @@ class _Layout(NamedTuple):
 @cache
 def _layout(kind: Any) -> _Layout:
     arrays, numbers = _words(kind, 0)
-    axes = [[first + 1 + k if k < array.ndim else -1 for k in range(MOST_AXES)] for first, array, _ in arrays]
+    axes = [[first + 1 + k if k < array.ndim else -1 for k in range(MAX_AXES)] for first, array, _ in arrays]
     return _Layout(
         np.array([first for first, _, _ in arrays], dtype=np.int64),
-        np.array(axes, dtype=np.int64).reshape(-1, MOST_AXES),
+        np.array(axes, dtype=np.int64).reshape(-1, MAX_AXES),
         np.array([getattr(array.dtype, "bitwidth", 8) // 8 for _, array, _ in arrays], dtype=np.int64),
         np.array([known for _, _, known in arrays], dtype=bool),
         np.array(numbers, dtype=np.int64),

@@ -16,7 +16,7 @@ from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
-MOST_POINTS = 1_000_000
+MAX_POINTS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -112,18 +112,18 @@ class Design:
     def __post_init__(self) -> None:
         if not self.factors:
             raise InputError("factors", {}, "at least one factor")
-        integer("samples", self.samples, 1, MOST_POINTS)
+        integer("samples", self.samples, 1, MAX_POINTS)
         integer("seed", self.seed, 0, 2**63 - 1)
         if bool(self._sampled) != (self.samples > 1):
-            advice = "Samples are of factors with a distribution."
+            remedy = "Samples are of factors with a distribution."
             bound = "above 1 with a distribution, and 1 without"
-            raise InputError("samples", self.samples, bound, advice)
+            raise InputError("samples", self.samples, bound, remedy)
         lengths = {len(factor.values) for factor in self.factors.values() if isinstance(factor, Listed)}
         if len(lengths) > 1:
             raise InputError("values", sorted(lengths), "lists of one length: their values change together")
         cells = math.prod(self.shape) * max(lengths, default=1)
-        if cells * self.samples > MOST_POINTS:
-            raise InputError("factors", cells * self.samples, at_most(MOST_POINTS, note=" points"))
+        if cells * self.samples > MAX_POINTS:
+            raise InputError("factors", cells * self.samples, at_most(MAX_POINTS, note=" points"))
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -180,10 +180,10 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     unheld = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
     if np.any(unheld):
         at, mode = np.argwhere(unheld)[0]
-        advice = "Give the housing damping (loss_factor, damping_ratio, mounts), or leave that speed out."
+        remedy = "Give the housing damping (loss_factor, damping_ratio, mounts), or leave that speed out."
         where = Quantity(float(natural[mode] / (2.0 * math.pi)), "Hz")
         off = Text.of("off the natural frequency of a mode of the housing without damping, ", where)
-        raise InputError("frequency", float(omega[at] / (2.0 * math.pi)), off, advice)
+        raise InputError("frequency", float(omega[at] / (2.0 * math.pi)), off, remedy)
     if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
         return np.asarray(pushed / dynamic[:, None, :])
     return _coupled(square, omega, damping, pushed)

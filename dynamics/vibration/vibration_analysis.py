@@ -179,8 +179,8 @@ def operating_deflection(housing: ReducedHousing, motion: ComplexArray) -> Surfa
     """Return the surface's motion by that of the reduced coordinates, (r,), of any quantity."""
     surface = housing.surface
     if surface is None:
-        advice = "Reduce its mesh or STEP file: matrices alone have no surface."
-        raise InputError("surface", "none", "a housing with a surface", advice)
+        remedy = "Reduce its mesh or STEP file: matrices alone have no surface."
+        raise InputError("surface", "none", "a housing with a surface", remedy)
     return SurfaceShape(surface.points, surface.triangles, np.asarray(surface.motion @ motion, dtype=complex))
 
 
@@ -270,8 +270,8 @@ def analyze_vibration(
         (`HousingVibration.largest`).
     """
     if housing.surface is None and not housing.points:
-        advice = "Reduce it from its mesh or STEP file: matrices alone do not say what moves."
-        raise InputError("housing", name, "one with a surface or named points", advice)
+        remedy = "Reduce it from its mesh or STEP file: matrices alone do not say what moves."
+        raise InputError("housing", name, "one with a surface or named points", remedy)
     vibration = housing_vibration(response, housing, bearings, points)
     at = vibration.largest(speed, order)
     hertz, force = float(vibration.frequency[at]), vibration.seat_force[at]

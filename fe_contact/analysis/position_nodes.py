@@ -72,7 +72,7 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
         middles, at_middle, probed = _probed(nodes, values, solve, ~settled, PROBES)
         error[~settled], between[:, ~settled] = probed[~settled], at_middle[:, ~settled]
         beyond = np.any(error > allowed, axis=1)
-        if not beyond.any() or not remaining or nodes.size + beyond.sum() > rule.most:
+        if not beyond.any() or not remaining or nodes.size + beyond.sum() > rule.maximum:
             break
         nodes, values, settled, error, between = _inserted(nodes, values, beyond, middles, between, error)
     nominal = values.shape[0] // 2
@@ -153,7 +153,7 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
             values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
         return values
 
-    return adaptive_nodes(replace(plan.nodes, most=most_positions(plan, times)), solve)
+    return adaptive_nodes(replace(plan.nodes, maximum=most_positions(plan, times)), solve)
 
 
 def assessed_pitches(pair: ParallelAxes, model: ContactModel, limit: int) -> IntArray:

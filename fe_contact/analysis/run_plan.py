@@ -9,7 +9,7 @@ from typing import NamedTuple
 from bounds import engineering
 from fe_contact.analysis.checks.effect_ledger import effect_ledger
 from fe_contact.analysis.request.expected_curves import expected_curves
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
@@ -111,18 +111,18 @@ def plan_run(
     if options.level is None:
         options = replace(options, time_budget=budget)
         checked = replace(checked, request=replace(checked.request, options=options))
-    decided = decide(checked, cache, tried=True)
-    checked, choice = decided.checked, decided.mesh
+    decision = decide(checked, cache, tried=True)
+    checked, choice = decision.checked, decision.mesh
     curves = expected_curves(checked)
     others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
-    needed = () if decided.wished is None else (_decided(decided.wished, curves, cache),)
-    passes = tuple(_decided(later, curves, cache) for later in decided.passes)
+    needed = () if decision.wished is None else (_decision(decision.wished, curves, cache),)
+    passes = tuple(_decision(later, curves, cache) for later in decision.passes)
     rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
     levels = sorted(rows.values(), key=lambda row: LEVELS.index(row.level))
     conflict = ""
     if budget is not None and (options.tolerance is not None or options.level is not None):
-        conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
-    return RunPlan(checked, choice, decided.plan, passes, tuple(levels), conflict, cache)
+        conflict = _conflict(decision, positive("time_budget", budget, "Seconds."), cache)
+    return RunPlan(checked, choice, decision.plan, passes, tuple(levels), conflict, cache)
 
 
 class PredictedDesigns(NamedTuple):
@@ -171,7 +171,7 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     return PredictedDesigns(bodies, design, errors, whole.positions, model.across_face, memory, table, work)
 
 
-def _decided(choice: Decided, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
+def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
     """Predict what was decided; its error is the one by which it was, where it was by an error."""
     checked, option = choice.checked, choice.mesh.option
     error = option.error
@@ -188,7 +188,7 @@ def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache:
     return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 
-def _conflict(choice: Decided, time_budget: float, cache: Path | None) -> str:
+def _conflict(choice: Decision, time_budget: float, cache: Path | None) -> str:
     tolerance = choice.checked.request.options.tolerance
     goal = f"level {choice.mesh.level}" if tolerance is None else tolerance.words
     refusal = f"{goal} within {time_budget:.3g} CPU s cannot be had"

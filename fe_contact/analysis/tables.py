@@ -20,7 +20,7 @@ from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes, table_nodes
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.solved_run import SolvedRun, edges_left_out
 from fe_contact.analysis.table_fields import table_fields, table_support
@@ -42,7 +42,7 @@ from model_studies.workers import InProcess, pays
 class SolvedTable(SolvedRun):
     """One run up to its table."""
 
-    decided: Decided
+    decision: Decision
     """Model and discretization."""
     prediction: Prediction
     """What it was expected to cost."""
@@ -68,7 +68,7 @@ def solve_table(
     clock: StageClock,
     run: Run,
     before: SolvedTable | None = None,
-    decided: Decided | None = None,
+    decision: Decision | None = None,
 ) -> SolvedTable:
     """Plan and solve a request, by workers if that pays.
 
@@ -81,8 +81,8 @@ def solve_table(
     """
     full = checked.request.options.receipt == "full"
     with clock.stage("planning"):
-        decided = decided or decide(checked, run.cache)
-        checked, plan, request = decided.checked, decided.plan, decided.checked.request
+        decision = decision or decide(checked, run.cache)
+        checked, plan, request = decision.checked, decision.plan, decision.checked.request
         prediction = checked.predicted(plan, run.cache, with_errors=full)
         run = run if pays(run.workers, prediction.cpu_seconds) else replace(run, workers=InProcess())
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
@@ -95,7 +95,7 @@ def solve_table(
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
         nodes = table_nodes(points, plan, partial(progress, "positions"))
         points, sets, condition, derived = _solved_places(
-            points, nodes.position, decided, full=full, report=partial(progress, "table")
+            points, nodes.position, decision, full=full, report=partial(progress, "table")
         )
         contacts, support = sets
         table = assembled_table(request, points, nodes, contacts, support)
@@ -106,7 +106,7 @@ def solve_table(
         plan,
         points,
         solved,
-        decided,
+        decision,
         prediction,
         nodes,
         contacts,
@@ -118,14 +118,14 @@ def solve_table(
 
 
 def _solved_places(
-    points: OperatingPoints, position: FloatArray, decided: Decided, *, full: bool, report: Report
+    points: OperatingPoints, position: FloatArray, decision: Decision, *, full: bool, report: Report
 ) -> tuple[OperatingPoints, list[list[KeptContact]], FloatArray | None, DerivedCycle | None]:
     """Solve all places, their pitches by derivatives where that is predicted to take less.
 
     Returns the places, what is kept of them for each set of loads, condition numbers where workers found
     them, and what came of derivatives where they were tried.
     """
-    checked, plan, known = decided.checked, decided.plan, None
+    checked, plan, known = decision.checked, decision.plan, None
     loads, edges = (plan.load, plan.support), edges_left_out(checked)
     sizes = [levels.size for levels in loads]
     pair = checked.request.pair

@@ -15,10 +15,10 @@ A the compliance with the cuts held. The cuts are scaled to K_ll + K_rr = 1, L L
 forces and displacements are then energies, and a force r that is not balanced is worth r'r of compliance but
 for the factor by which neighbors soften a cut. Three errors enter S by their squares:
 
-- Loads V are solved for, and what passes less than `LEAST_PASSED` to the cuts is not. With P = V V' and
+- Loads V are solved for, and what passes less than `MIN_PASSED` to the cuts is not. With P = V V' and
   T_m = B' G_m B V,  B' G_m B = T_m V' + V T_-m' - V V' T_m V'  but for  (1 - P) B' G_m B (1 - P).
 - A few harmonics are solved; the others by Galerkin's method in the space of these solutions.
-- Directions that hold less than `LEAST_ENERGY` of the solutions are left out of it.
+- Directions that hold less than `MIN_ENERGY` of the solutions are left out of it.
 
 What the last two leave unbalanced is measured at every harmonic, and where a flank node is more than
 `LARGEST_MISSED` off, the worst harmonic is solved, too.
@@ -194,9 +194,9 @@ def close_ring(
     even, count = even_sector(sector), probes.shape[1]
     flank = len(sector.flank) if free is None else free.flank
     largest = float(np.abs(sector.flank[:flank, :flank]).max())
-    least = least_passed(teeth)
+    minimum = least_passed(teeth)
     # The probes are among them: blocks hold their energy but for rounding.
-    modes, _ = np.linalg.qr(np.concatenate([probes, row_space(even.transmitted, least * largest)], axis=1))
+    modes, _ = np.linalg.qr(np.concatenate([probes, row_space(even.transmitted, minimum * largest)], axis=1))
     loads, rank = even.transmitted @ np.concatenate([modes, probes], axis=1), modes.shape[1]
     ring, basis, restraint = _turning(sector, even, TurningLoads(even.across, loads, teeth), free)
     closed = solve_few(ring, basis, modes, largest, slice(rank, rank + count), report)
@@ -212,7 +212,7 @@ def close_ring(
         everywhere[..., :count],
         closed.shares,
         solved,
-        SOFTENED * (closed.missed / largest + 2.0 * least),
+        SOFTENED * (closed.missed / largest + 2.0 * minimum),
         everywhere[..., count:],
         np.zeros(0) if free is None else free.turn,
         restraint,

@@ -57,8 +57,8 @@ def deformed_solids(
         the contact of a ring gear has them.
     """
     if gear.seat.key is not None:
-        advice = "Leave the key out: under it every tooth bends in another way."
-        raise InputError("seat.key", "given", "left out for deformed gears", advice)
+        remedy = "Leave the key out: under it every tooth bends in another way."
+        raise InputError("seat.key", "given", "left out for deformed gears", remedy)
     right = gear.right_handed()
     section = quad_sector(right, recipe)
     support = bore_support(right)

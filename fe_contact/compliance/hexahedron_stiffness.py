@@ -71,9 +71,9 @@ def stiffness_of(nodes: FloatArray, lame: tuple[float, float]) -> FloatArray:
     an element is folded.
     """
     mesh = hexahedra(nodes)
-    least = determinants(mesh, get_quadrature(ElementHexS2, QUADRATURE_ORDER)[0]).min(axis=1)
-    if not least.min() > 0.0:
-        worst = int(least.argmin())
+    minimum = determinants(mesh, get_quadrature(ElementHexS2, QUADRATURE_ORDER)[0]).min(axis=1)
+    if not minimum.min() > 0.0:
+        worst = int(minimum.argmin())
         x, y = 1e3 * nodes[worst, :, :2].mean(axis=0)
         raise MeshError(
             f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded. "

@@ -12,9 +12,9 @@ from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
 # Shares of the largest entry of A:
-LEAST_TOLD = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
-LEAST_PASSED = 1e-7  # the same that is solved for where not every harmonic is
-LEAST_ENERGY = 1e-8  # energy under unit loads that a direction of the space holds
+MIN_TOLD = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
+MIN_PASSED = 1e-7  # the same that is solved for where not every harmonic is
+MIN_ENERGY = 1e-8  # energy under unit loads that a direction of the space holds
 LARGEST_MISSED = 3e-7  # what a flank node may be off by harmonics that are not solved
 
 SOFTENED = 2.0  # what moving neighbors add to the compliance of a cut; where it is more, the space holds it
@@ -30,7 +30,7 @@ def first_harmonics(teeth: int) -> list[int]:
 
 def least_passed(teeth: int) -> float:
     """Return the share of the compliance that tells loads apart; more where all harmonics are solved."""
-    return LEAST_TOLD if len(first_harmonics(teeth)) > teeth // 2 else LEAST_PASSED
+    return MIN_TOLD if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
 
 
 class ClosedRing(NamedTuple):
@@ -75,7 +75,7 @@ def solve_few(
         for number in chosen:
             x = ring.solve(number)
             known[number] = x[:, probes]
-            basis = _extended(basis, np.concatenate([x.real, x.imag], axis=1), LEAST_ENERGY * largest)
+            basis = _extended(basis, np.concatenate([x.real, x.imag], axis=1), MIN_ENERGY * largest)
             report(len(known) / (len(known) + 2.0))
         within = ring.within(basis)
         solutions = [within.solve(number) for number in ring.harmonics]
@@ -96,7 +96,7 @@ def solve_few(
     return ClosedRing(basis, solutions, solved, turns.real @ parts, float(residual.sum(axis=0).max()))
 
 
-def _extended(basis: FloatArray, columns: FloatArray, least: float) -> FloatArray:
+def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatArray:
     """Return orthonormal columns that also span `columns` (nc, p), but for directions of less energy.
 
     The softest come first: beside them rounding hides the stiff ones.
@@ -105,9 +105,9 @@ def _extended(basis: FloatArray, columns: FloatArray, least: float) -> FloatArra
         columns = columns - basis @ (basis.T @ columns)
         gram = _gram(columns)
         largest = gram.diagonal().max()
-        if largest <= least:
+        if largest <= minimum:
             return basis
-        added = columns @ _whitening(gram, max(least, RESOLVED * largest))[0]
+        added = columns @ _whitening(gram, max(minimum, RESOLVED * largest))[0]
         added -= basis @ (basis.T @ added)
         basis = np.concatenate([basis, added @ _whitening(_gram(added), 0.5)[0]], axis=1)
 
@@ -133,9 +133,9 @@ def _missed(
     return np.stack(residuals)
 
 
-def row_space(matrix: FloatArray, least: float) -> FloatArray:
-    """Return orthonormal columns (nf, r) that span the rows of a matrix but for squares below `least`."""
-    vectors, values = _whitening(_gram(matrix), least)
+def row_space(matrix: FloatArray, minimum: float) -> FloatArray:
+    """Return orthonormal columns (nf, r) that span the rows of a matrix but for squares below `minimum`."""
+    vectors, values = _whitening(_gram(matrix), minimum)
     return vectors * np.sqrt(values)
 
 
@@ -144,15 +144,15 @@ def _gram(columns: FloatArray) -> FloatArray:
     return np.asarray(blas.dsyrk(1.0, np.asfortranarray(columns), trans=1, lower=1))
 
 
-def _whitening(gram: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
-    """Return T (p, k) with T' G T = 1 and the k eigenvalues above `least` of a Gram matrix, lower triangle.
+def _whitening(gram: FloatArray, minimum: float) -> tuple[FloatArray, FloatArray]:
+    """Return T (p, k) with T' G T = 1 and the k eigenvalues above `minimum` of a Gram matrix, lower triangle.
 
-    They are those of its pivoted factor, which ends when no diagonal entry above `least` is left.
+    They are those of its pivoted factor, which ends when no diagonal entry above `minimum` is left.
     """
-    factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=least)
+    factor, pivots, rank, _ = lapack.dpstrf(np.asfortranarray(gram), lower=1, tol=minimum)
     lower = np.tril(factor[:, :rank])
     values, vectors = np.linalg.eigh(lower.T @ lower)
-    significant = values > least
+    significant = values > minimum
     whitening = np.empty((len(gram), int(significant.sum())))
     whitening[pivots - 1] = lower @ (vectors[:, significant] / values[significant])
     return whitening, values[significant]

@@ -20,7 +20,7 @@ from fe_contact.compliance.cyclic_compliance import SOLVER
 from fe_contact.compliance.cyclic_harmonics import LeftCuts
 from fe_contact.compliance.cyclic_ring import RingSolution, even_sector, loaded_cuts
 from fe_contact.compliance.gear_checks import element_forces, residual
-from fe_contact.compliance.reduced_harmonics import LEAST_TOLD, row_space
+from fe_contact.compliance.reduced_harmonics import MIN_TOLD, row_space
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
     UnitRootStress,
@@ -61,7 +61,7 @@ def compute_root_stress_3d(
     root = quad_root(section, profile)
     clock.finish("mesh")
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
-    modes = row_space(even_sector(tooth.held).transmitted, LEAST_TOLD * np.abs(tooth.held.flank).max())
+    modes = row_space(even_sector(tooth.held).transmitted, MIN_TOLD * np.abs(tooth.held.flank).max())
     cuts = loaded_cuts(tooth.held, np.concatenate([modes, loads], axis=1), gear.teeth, reach, modes.shape[1])
     clock.finish("ring")
     functionals = root_functionals(gear, section, tooth.sector, root)

@@ -18,6 +18,6 @@ def condition_numbers(compliance: FloatArray) -> FloatArray:
         alike = np.flatnonzero((real == members).all(axis=1))
         columns = np.flatnonzero(members)
         eigenvalues = np.linalg.eigvalsh(compliance[np.ix_(alike, columns, columns)])
-        least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
-        number[alike] = np.divide(largest, least, out=number[alike], where=least > 0.0)
+        minimum, largest = eigenvalues[:, 0], eigenvalues[:, -1]
+        number[alike] = np.divide(largest, minimum, out=number[alike], where=minimum > 0.0)
     return number

@@ -111,15 +111,15 @@ def _most_nodes(
 ) -> int:
     """Return the most nodes that a slice loads, those that its patches share counted for each."""
     n, count = center.shape
-    most = 0
+    maximum = 0
     for p in range(n):
         needed = 0
         for q in range(count):
             along = _touched(grid.s[::2], center[p, q] - half_width[p, q], center[p, q] + half_width[p, q])
             across = _touched(grid.z, *_part(low[p], high[p], q, count))
             needed += (2 * along + 1) * (2 * across + 1)
-        most = max(most, needed)
-    return most
+        maximum = max(maximum, needed)
+    return maximum
 
 
 @inner()

@@ -17,7 +17,7 @@ _VALLEYS = 8
 """Samples from which the gap is followed at most."""
 _DEEPER = 4.0
 """How much deeper than its parabola a valley may be: its curvature may jump at a node of a surface."""
-_STEPS, _LEAST_STEPS = 15, 6
+_STEPS, _MIN_STEPS = 15, 6
 """Refinements of a place at most, and at least: each side of it is halved once."""
 _HALVED = 3
 """One in so many of them halves the longer side: parabolas alone can keep one end of a bracket."""
@@ -46,15 +46,15 @@ def least_gap(
     value = gap(x, of)
     first = np.searchsorted(of, np.arange(allowed.size + 1))
     promise = _promises(x, value, first)
-    place, least = x[first[:-1]].copy(), np.full(allowed.size, np.inf)
+    place, minimum = x[first[:-1]].copy(), np.full(allowed.size, np.inf)
     for _ in range(_VALLEYS):
-        on, ways, values = _lowest_valleys(x, value, promise, first, least - allowed)
+        on, ways, values = _lowest_valleys(x, value, promise, first, minimum - allowed)
         if not on.size:
             break
         _follow(gap, on, ways, values, allowed[on])
-        lower = values[1] < least[on]
-        place[on[lower]], least[on[lower]] = ways[1, lower], values[1, lower]
-    return place, least
+        lower = values[1] < minimum[on]
+        place[on[lower]], minimum[on[lower]] = ways[1, lower], values[1, lower]
+    return place, minimum
 
 
 def _follow(
@@ -65,7 +65,7 @@ def _follow(
     for k in range(_STEPS):
         place, gained = _refinements(ways, values, on, k % _HALVED == _HALVED - 1)
         height = gap(place, contact[on])
-        on = _narrow(ways, values, (on, place, height, gained), allowed, k < _LEAST_STEPS)
+        on = _narrow(ways, values, (on, place, height, gained), allowed, k < _MIN_STEPS)
         if not on.size:
             break
 

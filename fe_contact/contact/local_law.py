@@ -70,15 +70,15 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
         Whether the strip has outgrown the reference length.
     """
     width, modulus = law.strip[i, _WIDTH], law.strip[i, MODULUS]
-    p, (k, least, widest) = force / width, _limits(law, i)
+    p, (k, minimum, widest) = force / width, _limits(law, i)
     half, rigid = 0.0, 0.0
     if p > 0.0:
         middle, half, rigid = half_strip(
             law.gap, i, p, modulus, law.strip[i, MIDDLE], law.strip[i, HALF_STRIP]
         )
         law.strip[i, MIDDLE], law.strip[i, HALF_STRIP] = middle, half
-    if half <= least:
-        load, rigid = strip_load(law.gap, i, least, modulus)
+    if half <= minimum:
+        load, rigid = strip_load(law.gap, i, minimum, modulus)
         slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
         return slope * p, slope / width, False
     beyond = half > widest
@@ -91,9 +91,9 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
 @inner(error_model="numpy")
 def plain_approach(law: LocalLaw, i: int, force: float) -> float:
     """Return the local approach in m of contact `i` under `force` in N, > 0, on a gap that is a parabola."""
-    p, (k, least, widest) = force / law.strip[i, _WIDTH], _limits(law, i)
+    p, (k, minimum, widest) = force / law.strip[i, _WIDTH], _limits(law, i)
     curvature = float(law.gap[i, CURVATURE])
-    half = min(max(math.sqrt(2.0 * k * p / curvature), least), widest)
+    half = min(max(math.sqrt(2.0 * k * p / curvature), minimum), widest)
     return float(
         0.25 * curvature * half * half + k * p * (math.log(law.strip[i, REFERENCE_LENGTH] / half) - 0.25)
     )
@@ -108,10 +108,10 @@ def width_of(law: LocalLaw, i: int) -> float:
 @inner(error_model="numpy")
 def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
     """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
-    _, least, widest = _limits(law, i)
+    _, minimum, widest = _limits(law, i)
     p, modulus = force / law.strip[i, _WIDTH], law.strip[i, MODULUS]
     _, half, _ = half_strip(law.gap, i, p, modulus, law.strip[i, MIDDLE], law.strip[i, HALF_STRIP])
-    half = min(max(half, least), widest)
+    half = min(max(half, minimum), widest)
     return (0.0 if half <= law.strip[i, _FREE] else strip_middle(law.gap, i, half)), half
 
 
@@ -132,13 +132,13 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     if half <= free:
         load, slope = plain_load(curvature, law.strip[i, REFERENCE_LENGTH], modulus, half, value)
     else:
-        _, least, widest = _limits(law, i)
-        guess = max(half, least)
+        _, minimum, widest = _limits(law, i)
+        guess = max(half, minimum)
         middle, half, first, rigid = strip_at(
             law.gap, i, value, law.strip[i, REFERENCE_LENGTH], middle, guess
         )
         carried = 0.5 * math.pi * modulus * half * first
-        if not least < half < widest:
+        if not minimum < half < widest:
             half, middle = half_strip_at(law, i, value, guess), 0.0
             carried, rigid = strip_load(law.gap, i, half, modulus)
         load, slope = _load_on(half, carried, rigid, law.strip[i, REFERENCE_LENGTH], modulus, value)
@@ -177,15 +177,15 @@ def plain_strip(curvature: float, length: float, value: float, guess: float) -> 
     step leaves its square.
     """
     scaled = 2.0 * value / (curvature * length * length)
-    most = LARGEST_STRIP * LARGEST_STRIP
-    if scaled >= most * (0.25 - 0.5 * math.log(most)):
+    maximum = LARGEST_STRIP * LARGEST_STRIP
+    if scaled >= maximum * (0.25 - 0.5 * math.log(maximum)):
         return LARGEST_STRIP * length
-    y = min(guess * guess / (length * length), most)
+    y = min(guess * guess / (length * length), maximum)
     if y == 0.0:
         y = scaled / (0.25 - 0.4 * math.log(0.5 * scaled))
     for _ in range(_STEPS):
         following = (scaled - 0.5 * y) / (-0.25 - 0.5 * math.log(y))  # Newton's step, written out
-        following = min(max(following, 0.1 * y), most)
+        following = min(max(following, 0.1 * y), maximum)
         if abs(following - y) <= _PLAIN_TOLERANCE * y:
             return length * math.sqrt(following)
         y = following

@@ -75,22 +75,22 @@ def _curvature(gap: Gap, i: int, x: float) -> float:
 def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
     n, breaks = gap.place.shape
-    least, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
+    minimum, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
     position, bend = gap.place.copy(), gap.bend.copy()
     for i in range(n):
         x = shift[i]
-        least[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
+        minimum[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
         curvature[i] = gap.curvature[i]
         at_end = x == gap.low[i] or x == gap.high[i]
         for k in range(breaks):
             at = gap.place[i, k]
             right = at >= 0.0
             beyond = max((x - at) if right else (at - x), 0.0)
-            least[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
+            minimum[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
             at_end = at_end or x == at
             position[i, k] = at - x
             if (position[i, k] >= 0.0) != right:
                 curvature[i] += gap.bend[i, k]
                 bend[i, k] = -gap.bend[i, k]
         slope[i] = _slope_beside(gap, i, x, -1.0) if at_end else 0.0
-    return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)
+    return minimum, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)

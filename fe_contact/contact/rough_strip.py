@@ -32,7 +32,7 @@ BREAKS = 2 * HALF_STRIPS.size
 _USUAL = 4
 """Load whose centroid is that of the patch: a half strip of 0.016."""
 _CELLS = 48
-_LEAST_WINDOW, _LARGEST_WINDOW = 2.7, 12.0
+_MIN_WINDOW, _LARGEST_WINDOW = 2.7, 12.0
 """Half of what is looked at over the half strip of plain flanks: flanks lie on crests beside the first one as
 far out as deviations make up for what round flanks part, and load makes them yield."""
 FLATTEST = 0.02
@@ -107,7 +107,7 @@ def _excess(
     excess, center = np.zeros((part.size, LOADS.size)), np.zeros(part.size)
     level = gap_of(place, part)[:, None]
     for k, half in enumerate(HALF_STRIPS):
-        reach = min(math.sqrt(_LEAST_WINDOW**2 + 2.0 * raised / half**2), _LARGEST_WINDOW)
+        reach = min(math.sqrt(_MIN_WINDOW**2 + 2.0 * raised / half**2), _LARGEST_WINDOW)
         ways = 2.0 * reach * cells
         there = place[:, None] + half / curvature[:, None] * ways
         gap = gap_of(there.ravel(), np.repeat(part, _CELLS)).reshape(there.shape) - level

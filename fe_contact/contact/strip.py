@@ -77,20 +77,20 @@ def with_breaks(gap: Gap, count: int) -> Gap:
 
 
 @njit(cache=True, error_model="numpy")
-def rounded(gap: Gap, least: FloatArray) -> Gap:
-    """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
-    curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
+def rounded(gap: Gap, minimum: FloatArray) -> Gap:
+    """Return gaps whose curvature (n,) is nowhere below `minimum` in 1/m."""
+    curvature, bend = np.maximum(gap.curvature, minimum), gap.bend.copy()
     for i in range(curvature.size):
         flattest = curvature[i]
         for k in range(bend.shape[1]):
             flattest += min(bend[i, k], 0.0)
-        if flattest >= least[i]:
+        if flattest >= minimum[i]:
             continue
         order = np.argsort(np.abs(gap.place[i]))
         left, right = curvature[i], curvature[i]
         for k in order:  # away from the touching point to either side
             here = right if gap.place[i, k] >= 0.0 else left
-            bend[i, k] = max(bend[i, k], least[i] - here)
+            bend[i, k] = max(bend[i, k], minimum[i] - here)
             if gap.place[i, k] >= 0.0:
                 right += bend[i, k]
             else:

@@ -115,13 +115,13 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     bend = (before - 2.0 * center + after) / half**2
     steepness = (after - before) / (2.0 * half) - bend * middle
     level = center - middle * (steepness + 0.5 * bend * middle)
-    gap, way, least, far = _free_steps(common.about, steepness, bend)
+    gap, way, minimum, far = _free_steps(common.about, steepness, bend)
     if far.any():
-        _step_on(common, gap, (steepness, bend), (way, least), np.flatnonzero(far))
+        _step_on(common, gap, (steepness, bend), (way, minimum), np.flatnonzero(far))
     teeth = part.gap(way)
     remainder = teeth - level - way * (steepness + 0.5 * bend * way)
     poor = (np.abs(way) > half) | (np.abs(remainder) > ALLOWED / common.curvature)
-    touching = common.s_1 + way, common.s_2 - way, common.gap + least + teeth, common.missed
+    touching = common.s_1 + way, common.s_2 - way, common.gap + minimum + teeth, common.missed
     slopes = (getattr(common, name) for name in _SLOPES)
     return (*touching, *slopes, *gap), poor
 
@@ -138,7 +138,7 @@ def _free_steps(
     n, breaks = gap.place.shape
     slope, curvature, low, high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     place = gap.place.copy()
-    ways, least, far = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
+    ways, minimum, far = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
     for i in range(n):
         slope[i], curvature[i] = gap.slope[i], gap.curvature[i] + bend[i]
         low[i], high[i] = gap.low[i], gap.high[i]
@@ -159,11 +159,11 @@ def _free_steps(
             far[i] = far[i] or (way >= at if at >= 0.0 else way <= at)
         if far[i]:
             continue
-        ways[i], least[i] = way, 0.5 * gap.curvature[i] * way * way
+        ways[i], minimum[i] = way, 0.5 * gap.curvature[i] * way * way
         low[i], high[i] = low[i] - way, high[i] - way
         for k in range(breaks):
             place[i, k] -= way
-    return Gap(slope, curvature, low, high, place, gap.jump.copy(), gap.bend.copy()), ways, least, far
+    return Gap(slope, curvature, low, high, place, gap.jump.copy(), gap.bend.copy()), ways, minimum, far
 
 
 def _step_on(

@@ -159,12 +159,12 @@ def _touching(flanks: _Flanks) -> _Touching:
     at = np.flatnonzero(rough | wavy)
     for part in np.array_split(at, at.size // _AT_ONCE + 1):
         near, again = flanks.some(part), np.flatnonzero(rough[part])
-        place, least = whole[0][part], whole[1][part]
+        place, minimum = whole[0][part], whole[1][part]
         if again.size:
-            place[again], least[again] = near.some(again).least(place[again])
+            place[again], minimum[again] = near.some(again).minimum(place[again])
         off, error, local_gap = near.beside(place, wavy=wavy[part])
         local_gap = with_breaks(local_gap, about.place.shape[1])
-        whole = _replaced(whole, part, (place, least, off, error, *local_gap))
+        whole = _replaced(whole, part, (place, minimum, off, error, *local_gap))
     shift, now, off, error, *beside_all = whole
     return _Touching(shift, now, off, error, Gap(*beside_all))
 
@@ -186,9 +186,9 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
         ahead = flanks.gap(x + step)
         down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
-        least, local_gap = moved_gap(about, step)
+        minimum, local_gap = moved_gap(about, step)
         arrays = _replaced(arrays, of, tuple(local_gap))
-        poor[of] = ~down | (np.abs(now[of] + least - ahead) > _MISSED * flanks.allowed)
+        poor[of] = ~down | (np.abs(now[of] + minimum - ahead) > _MISSED * flanks.allowed)
         shift[of], now[of] = x + step, np.where(down, ahead, now[of])
     return shift, now, poor, Gap(*arrays)
 
@@ -260,7 +260,7 @@ class _Flanks:
         surfaces = [(surface.gear, surface.extent) for surface in self._surfaces]
         return surfaces if self._teeth is None else surfaces + self._teeth.extents()
 
-    def least(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def minimum(self, start: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return where the gap is least (n,), and the gap there, m; `start`: where it is low.
 
         Off the window the conjugate gap is larger than all that the deviations can fall.
@@ -311,10 +311,10 @@ class _Flanks:
         far off to be lower than the one at 0.
         """
         lowest = np.zeros(self.step.size)
-        least = self.gap(lowest)
+        minimum = self.gap(lowest)
         alike = self._teeth is None
         bounded = alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
-        may = np.flatnonzero(least > 0.0) if bounded else np.arange(lowest.size)
+        may = np.flatnonzero(minimum > 0.0) if bounded else np.arange(lowest.size)
         part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.some(may)
         x = near.first + (near.last - near.first) * part
         if bounded:
@@ -322,12 +322,12 @@ class _Flanks:
         else:
             gap = np.array([near.gap(way) for way in x]) if self.cut_tips else near.gap(x)
         if bounded:
-            below = gap < least[may]
+            below = gap < minimum[may]
             gap[below] += near._removed(x[below], np.nonzero(below)[1])
         best, columns = gap.argmin(axis=0), np.arange(may.size)
-        lower = gap[best, columns] < least[may]
-        lowest[may[lower]], least[may[lower]] = x[best, columns][lower], gap[best, columns][lower]
-        return lowest, least
+        lower = gap[best, columns] < minimum[may]
+        lowest[may[lower]], minimum[may[lower]] = x[best, columns][lower], gap[best, columns][lower]
+        return lowest, minimum
 
     def about(self, x: FloatArray) -> Gap:
         """Return the gap about x.

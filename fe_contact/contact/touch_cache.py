@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.contact.plain_touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
-_MOST, _MOST_BYTES = 8, 32_000_000
+_MAX, _MAX_BYTES = 8, 32_000_000
 """Entries, and bytes of all of them: the last ones of one process."""
 
 _entries: list[_Entry] = []
@@ -50,7 +50,7 @@ def cached_touch(
     size = sum(values.nbytes for values in vars(touch).values())
     with _lock:
         _entries.append(_Entry(digest, origin, touch, size))
-        while len(_entries) > _MOST or sum(entry.size for entry in _entries) > _MOST_BYTES:
+        while len(_entries) > _MAX or sum(entry.size for entry in _entries) > _MAX_BYTES:
             _entries.pop(0)
     return touch
 

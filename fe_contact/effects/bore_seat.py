@@ -47,5 +47,5 @@ class BoreSeatElasticity(Effect):
         """Refuse seats of bores: in the plane every bore is fixed."""
         for name, gear in scene.gears.items():
             if gear.seat != CLAMPED:
-                advice = "Use the 3-D model for it."
-                raise InputError(f"{name}.seat", "given", "left out for a plane model", advice)
+                remedy = "Use the 3-D model for it."
+                raise InputError(f"{name}.seat", "given", "left out for a plane model", remedy)

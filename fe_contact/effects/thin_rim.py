@@ -41,5 +41,5 @@ class ThinRim(Effect):
         """Refuse a web that tilts its gear: the plane has no tilt."""
         for name, gear in scene.gears.items():
             if gear.web is not None and gear.web.low + gear.web.high != 0.0:
-                offset, advice = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
-                raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", advice)
+                offset, remedy = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
+                raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", remedy)

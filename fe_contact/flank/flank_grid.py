@@ -18,7 +18,7 @@ LARGEST_INVENTION = 0.1e-6
 """How far the surface may leave the nodes around it, m, beyond what their curvature makes it."""
 _CONFIRMING = 4
 """Neighboring second differences that confirm a curvature; beside a border of five nodes three."""
-_MOST_UNLIKE = 3.0
+_MAX_UNLIKE = 3.0
 """Their ratio: 1 of a parabola; a flat between two reliefs has several times the curvature beside it."""
 _STEEPEST = 3.0
 """Bound of the slope of a monotone cubic over that of its chord."""
@@ -139,8 +139,8 @@ class FlankGrid:
 def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
     if len(row) != length:
         raise InputError(f"removed[{index}]", f"{len(row)} values", f"{length} values, one per face position")
-    advice = SiNote("In m: 5 µm is 5e-6.")
-    return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, advice) for j, v in enumerate(row))
+    remedy = SiNote("In m: 5 µm is 5e-6.")
+    return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, remedy) for j, v in enumerate(row))
 
 
 def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
@@ -178,7 +178,7 @@ def _curvature(secant: FloatArray, step: FloatArray) -> FloatArray:
     count = min(_CONFIRMING, nodes)
     around = np.clip(np.arange(cells) - 2, 0, nodes - count)[:, None] + np.arange(count)
     low, high = at_nodes[around].min(axis=1), at_nodes[around].max(axis=1)
-    alike = _MOST_UNLIKE * np.minimum(np.abs(low), np.abs(high)) > np.maximum(np.abs(low), np.abs(high))
+    alike = _MAX_UNLIKE * np.minimum(np.abs(low), np.abs(high)) > np.maximum(np.abs(low), np.abs(high))
     ends = np.concatenate([at_nodes[:1], at_nodes, at_nodes[-1:]])
     return np.where(alike & (low * high > 0.0), _lesser(ends[:-1], ends[1:]), 0.0)
 

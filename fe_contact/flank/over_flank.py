@@ -68,9 +68,9 @@ class _GroundHelixCrowning(FlankPart):
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` for a ring gear, which no worm grinds."""
         if self.ground_helix_crowning and gear.sign < 0:
-            advice = "Give it a helix crowning and a twist."
+            remedy = "Give it a helix crowning and a twist."
             name = "modification.ground_helix_crowning"
-            raise InputError(name, self.ground_helix_crowning, "0 for a ring gear", advice)
+            raise InputError(name, self.ground_helix_crowning, "0 for a ring gear", remedy)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
@@ -87,8 +87,8 @@ class _CornerRelief(ProfileRelief):
         """Raise `InputError` if it is longer than the involute, or no line of contact crosses the flank."""
         super().check_fits(gear)
         if self._amount and not gear.base_helix_angle:
-            advice = "Lines of contact of a spur gear run along the face: give it a tip or root relief."
-            raise InputError(f"modification.{self._name}", self._amount, "0 for a spur gear", advice)
+            remedy = "Lines of contact of a spur gear run along the face: give it a tip or root relief."
+            raise InputError(f"modification.{self._name}", self._amount, "0 for a spur gear", remedy)
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
@@ -181,14 +181,14 @@ def check_reach(grid: FlankGrid, gear: Tooth) -> None:
         if nodes[-1] <= low or nodes[0] >= high:
             ends = Quantity(low, "m", digits=6), " to ", Quantity(high, "m", digits=6)
             bound = Text.of("a range that reaches into the flank, which spans ", *ends)
-            advice = "Is the unit or the origin another one?"
-            raise InputError(f"flank_grid.{axis}", [nodes[0], nodes[-1]], bound, advice)
+            remedy = "Is the unit or the origin another one?"
+            raise InputError(f"flank_grid.{axis}", [nodes[0], nodes[-1]], bound, remedy)
     removed, largest = np.array(grid.removed), 0.5 * gear.normal_module
     i, j = np.unravel_index(np.abs(removed).argmax(), removed.shape)
     if abs(removed[i, j]) > largest:
         bound = Text.of("at most half the module in size, ", Quantity(largest, "m", digits=6))
-        advice = "Is the unit another one, or is the point beside the tooth?"
-        raise InputError(f"flank_grid.removed[{i}][{j}]", float(removed[i, j]), bound, advice)
+        remedy = "Is the unit another one, or is the point beside the tooth?"
+        raise InputError(f"flank_grid.removed[{i}][{j}]", float(removed[i, j]), bound, remedy)
 
 
 class OverFlank(

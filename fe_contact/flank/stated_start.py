@@ -28,7 +28,7 @@ from fe_contact.flank.involute import radius_at_roll_length, roll_length_at_radi
 from fe_contact.flank.part import SHORTEST
 from fe_contact.flank.tooth import Tooth
 
-_ADVICE = "A relief starts on the involute, before the end of the flank to which it runs."
+_REMEDY = "A relief starts on the involute, before the end of the flank to which it runs."
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class _Way:
 
     words: str
     unit: str
-    most: float
+    maximum: float
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
@@ -65,7 +65,7 @@ def _start(relief: str, way: str, example: float) -> Any:
     """Return the field of one way to state where a relief starts."""
     kind = WAYS[way]
     text = f"{kind.words.capitalize()} at which the {relief} starts, instead of its length; left out: none"
-    bound = between(0.0, kind.most)
+    bound = between(0.0, kind.maximum)
     return declared(
         None, Declared(Kind.START, kind.unit, bound, text, example, Direction.PROFILE, later=True)
     )
@@ -110,11 +110,11 @@ class StatedStarts:
         length, words = modification.get(f"{relief}_length", 0.0), relief.replace("_", " ")
         ways = [*([f"{relief}_length"] if length else []), *starts]
         if len(ways) > 1:
-            bound, advice = (
+            bound, remedy = (
                 Text.of("left out beside ", FieldName(ways[0])),
                 f"State once where the {words} starts.",
             )
-            raise InputError(f"modification.{ways[1]}", starts[ways[1]], bound, advice)
+            raise InputError(f"modification.{ways[1]}", starts[ways[1]], bound, remedy)
         if not ways and modification.get(relief, 0.0):
             names = tuple(part for field in by_field for part in (", ", FieldName(field)))
             bound = Text.of("above 0, or left out beside one of ", *names[1:])
@@ -136,7 +136,7 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     end = tip if at_tip else form
     bound = Bound(low, high, end == low, end == high, low_name=names[low], high_name=names[high])
     if not bound.holds(value):
-        raise InputError(f"modification.{field}", value, bound, _ADVICE)
+        raise InputError(f"modification.{field}", value, bound, _REMEDY)
     radius = radius_at_roll_length(gear.base_radius, way.roll_length(gear.base_radius, value))
     length = abs(radius - (gear.tip_radius if at_tip else gear.form_radius))
     return min(max(length, SHORTEST), abs(gear.tip_radius - gear.form_radius))

@@ -69,15 +69,15 @@ def _check_chamfer(gear: Tooth, height: float, angle: float) -> None:
     _check("modification.tip_chamfer", height, 0.0, fits, _CHAMFER_FITS)
 
 
-def _check(field: str, value: float, least: float, fits: Callable[[float], bool], advice: Words) -> None:
+def _check(field: str, value: float, minimum: float, fits: Callable[[float], bool], remedy: Words) -> None:
     """Refuse a value that does not fit, naming the largest that does."""
     if fits(value):
         return
-    low, high = least, value
+    low, high = minimum, value
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if fits(middle) else (low, middle)
-    within(field, value, least, low, advice)
+    within(field, value, minimum, low, remedy)
 
 
 def _above_form_point(gear: Tooth, roll: float) -> bool:
@@ -127,8 +127,8 @@ class CutTip(FlankPart):
     def __post_init__(self) -> None:
         super().__post_init__()
         if self.tip_rounding and self.tip_chamfer:
-            advice = "The tip has a rounding or a chamfer: give one of them."
-            raise InputError("tip_chamfer", self.tip_chamfer, "0 where the tip has a rounding", advice)
+            remedy = "The tip has a rounding or a chamfer: give one of them."
+            raise InputError("tip_chamfer", self.tip_chamfer, "0 where the tip has a rounding", remedy)
 
     def check_fits(self, gear: Tooth) -> None:
         """Raise `InputError` if the edge leaves no involute or no tip."""

@@ -84,7 +84,7 @@ def tight_shift_sum(pinion: Toothing, wheel: Toothing, working_pressure_angle: f
 def _distance_at(pinion: Toothing, wheel: Toothing, involute: float) -> float:
     """Center distance whose working pressure angle has this involute function."""
     if involute < 0.0:
-        bound, advice = _LARGER if wheel.sign > 0 else _SMALLER
+        bound, remedy = _LARGER if wheel.sign > 0 else _SMALLER
         total = shift_sum(pinion, wheel)
-        raise InfeasibleGeometry("profile shift sum", "profile_shift_coefficient", total, bound, advice)
+        raise InfeasibleGeometry("profile shift sum", "profile_shift_coefficient", total, bound, remedy)
     return abs(base_radius_sum(pinion, wheel)) / math.cos(inverse_involute(involute))

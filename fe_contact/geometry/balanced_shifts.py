@@ -7,7 +7,7 @@ import math
 from fe_contact.geometry.backlash import tight_shift_sum, working_pressure_angle
 from fe_contact.geometry.gear import Gear
 
-_LEAST, _MOST = -1.0, 1.5
+_MIN, _MAX = -1.0, 1.5
 
 _HALVINGS = 60
 
@@ -23,7 +23,7 @@ def balanced_shifts(pinion: Gear, wheel: Gear, center_distance: float) -> tuple[
     total = tight_shift_sum(pinion, wheel, pressure)
     tangent = center_distance * math.sin(pressure)
     ratio = wheel.teeth / pinion.teeth
-    low, high = _LEAST, _MOST
+    low, high = _MIN, _MAX
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         first, second = _tip_roll(pinion, middle), _tip_roll(wheel, total - middle)

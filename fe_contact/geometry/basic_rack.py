@@ -55,15 +55,15 @@ class BasicRack:
         limit = self.full_fillet_coefficient
         if limit < 0.0:
             crossing = "smaller: the flanks of the rack's tooth space cross above its root"
-            advice = "Lower the dedendum or the pressure angle."
+            remedy = "Lower the dedendum or the pressure angle."
             raise InfeasibleGeometry(
-                "root radius", "dedendum_coefficient", self.dedendum_coefficient, crossing, advice
+                "root radius", "dedendum_coefficient", self.dedendum_coefficient, crossing, remedy
             )
         if self.root_radius_coefficient > limit + 1e-12:
             bound = at_most(limit, note=", the full fillet")
-            advice = "Lower the root radius, the dedendum or the pressure angle."
+            remedy = "Lower the root radius, the dedendum or the pressure angle."
             raise InfeasibleGeometry(
-                "root radius", "root_radius_coefficient", self.root_radius_coefficient, bound, advice
+                "root radius", "root_radius_coefficient", self.root_radius_coefficient, bound, remedy
             )
 
     @property

@@ -23,7 +23,7 @@ from fe_contact.errors import InputError, integer, within
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
 
-_ADVICE = "ISO 1328-1:2013, 5.2.1 has no tolerances beyond: give your own figures."
+_REMEDY = "ISO 1328-1:2013, 5.2.1 has no tolerances beyond: give your own figures."
 
 NO_CLEARANCE = (0.0, 0.0)
 
@@ -128,7 +128,7 @@ def check_scope(name: str, gear: Toothing) -> None:
         ("face_width", gear.face_width, 4e-3, 1.2),
         ("helix_angle", abs(gear.helix_angle), 0.0, math.radians(45.0)),
     ):
-        within(f"{name}.{field_name}", value, low, high, _ADVICE)
+        within(f"{name}.{field_name}", value, low, high, _REMEDY)
 
 
 @dataclass(frozen=True)
@@ -202,8 +202,8 @@ def misalignment_range(
         if clearance == 0.0:
             continue
         if shaft is None:
-            advice = "It tilts over the span of its bearings."
-            raise InputError("clearances", clearance, f"0 without the shaft of the {name}", advice)
+            remedy = "It tilts over the span of its bearings."
+            raise InputError("clearances", clearance, f"0 without the shaft of the {name}", remedy)
         within("clearances", clearance, 0.0, 1e-2)
         by_source[f"bearing clearance of the {name}"] = clearance * face / shaft.length
     return MisalignmentRange(tolerance_class, MappingProxyType(by_source))

@@ -21,8 +21,8 @@ def refuse_bore(gear: Toothing) -> None:
     bore = 2.0 * gear.held_radius
     if bore >= 2.0 * gear.root_radius:
         bound = below(2.0 * gear.root_radius, "m", "the root diameter")
-        advice = "Lower the bore or add teeth."
-        raise InfeasibleGeometry("bore", "bore_diameter", bore, bound, advice)
+        remedy = "Lower the bore or add teeth."
+        raise InfeasibleGeometry("bore", "bore_diameter", bore, bound, remedy)
 
 
 def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
@@ -32,18 +32,18 @@ def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
     if hub < bore:
         bound = at_least(bore, "m", "the bore diameter")
         raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
-    least, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
-    if deepest <= least:
+    minimum, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
+    if deepest <= minimum:
         field = "bore_diameter" if blank.hub_diameter is None else "blank.hub_diameter"
-        widest = 2.0 * (gear.root_radius - least)
+        widest = 2.0 * (gear.root_radius - minimum)
         bound = below(widest, "m", note=f", which leaves a rim of {THINNEST_RIM:g} normal modules")
         raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
     if not blank.rim_thickness < deepest:
         bound = below(deepest, "m", note=", the depth between root circle and hub (or bore)")
-        advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
-        raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
-    if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):
-        bound = at_least(least, "m", note=f", {THINNEST_RIM:g} normal modules")
+        remedy = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
+        raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, remedy)
+    if blank.rim_thickness < minimum * (1.0 - LIMIT_SLACK):
+        bound = at_least(minimum, "m", note=f", {THINNEST_RIM:g} normal modules")
         raise InfeasibleGeometry(
             "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
         )
@@ -51,30 +51,30 @@ def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
 
 def refuse_web(gear: Toothing, blank: GearBlank) -> None:
     """Refuse a web that is a foil, or that leaves the face."""
-    least = THINNEST_WEB * gear.face_width
-    if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
-        bound = from_to(least, gear.face_width, "m", "the face width")
-        advice = "A web as thick as the face is wide is a solid gear."
-        raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
+    minimum = THINNEST_WEB * gear.face_width
+    if not minimum * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+        bound = from_to(minimum, gear.face_width, "m", "the face width")
+        remedy = "A web as thick as the face is wide is a solid gear."
+        raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, remedy)
     room = 0.5 * (gear.face_width - blank.web_thickness)
     if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
         bound = from_to(-room, room, "m", note=", so that the web stays within the face")
-        advice = "Lower the offset or the web thickness."
-        raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)
+        remedy = "Lower the offset or the web thickness."
+        raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, remedy)
 
 
 def refuse_undercut(gear: Toothing) -> None:
     """Refuse a tip circle or a fillet that leaves no involute, or no material in the tooth's root."""
-    advice = "Raise the tip diameter, the profile shift or the number of teeth, or lower the dedendum."
+    remedy = "Raise the tip diameter, the profile shift or the number of teeth, or lower the dedendum."
     if gear.form_radius >= gear.tip_radius:
         name = "undercut" if gear.form_point.undercut else "tip diameter"
         bound = above(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet ends")
-        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, remedy)
     angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 65)
     if gear.form_point.undercut and np.min(gear.trochoid.point(angles)[:, 0]) <= 0.0:
         larger = "larger: the fillets of both flanks cut the tooth off"
         raise InfeasibleGeometry(
-            "undercut", "profile_shift_coefficient", gear.profile_shift_coefficient, larger, advice
+            "undercut", "profile_shift_coefficient", gear.profile_shift_coefficient, larger, remedy
         )
 
 
@@ -83,5 +83,5 @@ def refuse_pointed_tooth(gear: Toothing) -> None:
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
         bound = Text.of("smaller: the transverse tip thickness is ", thickness)
-        advice = "Lower the tip diameter, the addendum or the profile shift."
-        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+        remedy = "Lower the tip diameter, the addendum or the profile shift."
+        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, remedy)

@@ -43,9 +43,9 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
     )
     for name, field, value, expected in compared:
         if not math.isclose(value, expected, rel_tol=1e-9, abs_tol=1e-12):
-            advice = _OPPOSITE_HANDS if wheel.sign > 0 else _SAME_HAND
+            remedy = _OPPOSITE_HANDS if wheel.sign > 0 else _SAME_HAND
             bound = exactly(expected, ", to fit the pinion")
-            raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, advice)
+            raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, remedy)
     if wheel.sign < 0:
         refuse_tooth_numbers(pinion, wheel)
 
@@ -77,13 +77,13 @@ def _refuse_jamming(pair: ParallelAxes) -> None:
     tight = tight_center_distance(pinion, wheel)
     bound = (at_most if pair.internal else at_least)(tight, "m", note=", where the teeth jam")
     distance = Quantity(tight, "m", side="high" if pair.internal else "low")
-    advice = Text.of("Without backlash: ", FieldName("center_distance"), " = ", distance)
+    remedy = Text.of("Without backlash: ", FieldName("center_distance"), " = ", distance)
     if not touching:
         largest = Quantity(tight_shift_sum(pinion, wheel, pair.working_pressure_angle), side="high")
         instead = Text.of(largest, " instead of ", Quantity(shift_sum(pinion, wheel)))
-        advice = Text.of(advice, ", or x_1 + x_2 = ", instead, ". ", _beyond_rounding(pair))
-    advice = Text.of(advice, ".")
-    raise InfeasibleGeometry("profile shift sum", "center_distance", pair.center_distance, bound, advice)
+        remedy = Text.of(remedy, ", or x_1 + x_2 = ", instead, ". ", _beyond_rounding(pair))
+    remedy = Text.of(remedy, ".")
+    raise InfeasibleGeometry("profile shift sum", "center_distance", pair.center_distance, bound, remedy)
 
 
 def _beyond_rounding(pair: ParallelAxes) -> Text:
@@ -104,8 +104,8 @@ def _refuse_contact_ratio(pair: ParallelAxes) -> None:
         if pair.overlap_ratio == 0.0:
             value = pair.transverse_contact_ratio
         bound = f"smaller: the contact ratio is {value:.6g}, below 1"
-        advice = "Lower the center distance, or raise the tip diameters or the number of teeth."
-        raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
+        remedy = "Lower the center distance, or raise the tip diameters or the number of teeth."
+        raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, remedy)
 
 
 def _refuse_short_flanks(pair: ParallelAxes) -> None:
@@ -127,9 +127,9 @@ def _refuse_tip_clearance(pair: ParallelAxes) -> None:
         largest = pair.center_distance - mate.root_radius
         if gear.tip_radius >= largest:
             bound = below(2.0 * largest, "m", note=", where the tip reaches the mating root circle")
-            advice = "Lower the tip diameter or the addendum, or raise the mate's dedendum."
+            remedy = "Lower the tip diameter or the addendum, or raise the mate's dedendum."
             raise InfeasibleGeometry(
-                "tip clearance", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
+                "tip clearance", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, remedy
             )
 
 
@@ -140,8 +140,8 @@ def _refuse_interference(pair: ParallelAxes) -> None:
         lowest = pair.common_tangent - gear.tip_roll_length  # on the mate
         if lowest < mate.form_roll_length * (1.0 - LIMIT_SLACK):
             reason = "where the tip meets the mating form circle"
-            advice = "Lower the tip diameter or the addendum, or raise the mate's profile shift or dedendum."
-            _refuse_long_tip(pair, name, gear, reason, advice)
+            remedy = "Lower the tip diameter or the addendum, or raise the mate's profile shift or dedendum."
+            _refuse_long_tip(pair, name, gear, reason, remedy)
 
 
 def _refuse_fillet_interference(pair: ParallelAxes) -> None:
@@ -152,18 +152,18 @@ def _refuse_fillet_interference(pair: ParallelAxes) -> None:
         if depth > FILLET_SLACK * gear.normal_module:
             cut = Quantity(depth, "m", digits=3)
             reason = Text.of("the tip cuts the mating fillet by ", cut, " off the line of action")
-            advice = "Lower the tip diameter or the addendum, or the mate's root radius."
-            _refuse_long_tip(pair, name, gear, reason, advice)
+            remedy = "Lower the tip diameter or the addendum, or the mate's root radius."
+            _refuse_long_tip(pair, name, gear, reason, remedy)
 
 
-def _refuse_long_tip(pair: ParallelAxes, name: str, gear: Toothing, reason: Words, advice: str) -> NoReturn:
+def _refuse_long_tip(pair: ParallelAxes, name: str, gear: Toothing, reason: Words, remedy: str) -> NoReturn:
     """Refuse a tip diameter, and say which one is clear of the mating flank and fillet."""
     mate = pair.wheel if gear is pair.pinion else pair.pinion
     largest = largest_clear_tip(pair, gear, mate)
     bound = (
         Text.of("smaller: ", reason) if largest is None else at_most(largest, "m", note=Text.of(", ", reason))
     )
-    raise InfeasibleGeometry("interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+    raise InfeasibleGeometry("interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, remedy)
 
 
 _EXTERNAL_CHECKS = (

@@ -104,8 +104,8 @@ class PitchDeviation:
         """Refuse a list that is not as long as the gear has teeth, naming the field of the gear."""
         count = len(self.cumulative)
         if count not in (0, teeth):
-            advice = "One value per tooth, in the order of meshing."
-            raise InputError("pitch_deviation", f"{count} values", f"a list of {teeth}", advice)
+            remedy = "One value per tooth, in the order of meshing."
+            raise InputError("pitch_deviation", f"{count} values", f"a list of {teeth}", remedy)
 
 
 NO_PITCH_DEVIATION = PitchDeviation()

@@ -44,18 +44,18 @@ def refuse_tip_diameter(gear: Toothing, cutter: PinionCutter) -> None:
     smallest = math.hypot(gear.base_radius, cutter.common_tangent)
     if gear.tip_radius < smallest * (1.0 - LIMIT_SLACK):
         bound = at_least(2.0 * smallest, "m", note=", where the cutter's involute ends at its base circle")
-        advice = f"Raise the tip diameter, or lower the addendum or the profile shift. {_OTHER_CUTTER}"
+        remedy = f"Raise the tip diameter, or lower the addendum or the profile shift. {_OTHER_CUTTER}"
         name = "tip diameter" if gear.tip_radius < gear.base_radius else "interference"
-        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, remedy)
 
 
 def refuse_rounding(gear: Toothing, cutter: PinionCutter) -> None:
     """Refuse a rounding that does not fit on the cutter's tip."""
     if cutter.corner_angle < 0.0 or cutter.corner_center_radius < cutter.base_radius:
         bound = "smaller: the rounding does not fit between the two flanks of the cutter's tooth"
-        advice = "Lower the root radius or the dedendum."
+        remedy = "Lower the root radius or the dedendum."
         raise InfeasibleGeometry(
-            "root radius", "root_radius_coefficient", gear.root_radius_coefficient, bound, advice
+            "root radius", "root_radius_coefficient", gear.root_radius_coefficient, bound, remedy
         )
 
 
@@ -67,8 +67,8 @@ def refuse_cut_tips(gear: Toothing, cutter: PinionCutter) -> None:
     )
     if radial_clearance(cutter.ratio, at_tips, cutter.working_pressure_angle) < 0.0:
         bound = "smaller: the cutter would trim the ring's tips while it is fed in"
-        advice = "Lower the cutter's number of teeth, or raise the tip diameter."
-        raise InfeasibleGeometry("trimming interference", "cutter_teeth", cutter.teeth, bound, advice)
+        remedy = "Lower the cutter's number of teeth, or raise the tip diameter."
+        raise InfeasibleGeometry("trimming interference", "cutter_teeth", cutter.teeth, bound, remedy)
 
 
 def refuse_pointed_tooth(gear: Toothing) -> None:
@@ -76,5 +76,5 @@ def refuse_pointed_tooth(gear: Toothing) -> None:
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
         bound = Text.of("larger: the transverse tip thickness is ", thickness)
-        advice = "Raise the tip diameter, or lower the addendum."
-        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+        remedy = "Raise the tip diameter, or lower the addendum."
+        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, remedy)

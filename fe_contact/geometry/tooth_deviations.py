@@ -103,8 +103,8 @@ class Wave:
     def __post_init__(self) -> None:
         declared_fields(self)
         if not self.order and not self.face_waves:
-            advice = "State the number of waves over the face width, or an order."
-            raise InputError("order", self.order, at_least(1), advice)
+            remedy = "State the number of waves over the face width, or an order."
+            raise InputError("order", self.order, at_least(1), remedy)
 
     @property
     def reversed(self) -> Wave:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from fe_contact.flank.tooth import Tooth
 
 _LARGEST = 1e-3  # m; larger deviations are micrometers stated as meters
-MOST_TEETH = 4000
-MOST_NODES = 250_000
+MAX_TEETH = 4000
+MAX_NODES = 250_000
 """Nodes of the surfaces of all teeth of a gear."""
 
 _TOOTH = "Number of the tooth in the order of meshing; 1 is that of pair 0 at position 0"
@@ -55,7 +55,7 @@ class ToothFlank:
         A value out of its bounds.
     """
 
-    tooth: int = required(Declared(Kind.COUNT, "", integers(1, MOST_TEETH), _TOOTH, 1))
+    tooth: int = required(Declared(Kind.COUNT, "", integers(1, MAX_TEETH), _TOOTH, 1))
     profile_slope: float = declared(
         0.0, _deviation(_SLOPE.format("f_Halpha", "usable profile", "the tip"), 3e-6)
     )
@@ -198,8 +198,8 @@ def check_flanks(gear: Tooth, flanks: Sequence[ToothFlank], teeth: int) -> None:
                 check_reach(flank.flank_grid, gear)
                 nodes += len(flank.flank_grid.roll_length) * len(flank.flank_grid.face_position)
         seen.add(flank.tooth)
-    if nodes > MOST_NODES:
-        raise InputError("tooth_flanks", f"{nodes} nodes", f"at most {MOST_NODES} nodes of all surfaces")
+    if nodes > MAX_NODES:
+        raise InputError("tooth_flanks", f"{nodes} nodes", f"at most {MAX_NODES} nodes of all surfaces")
 
 
 def turned_back(flanks: Sequence[ToothFlank], teeth: int) -> tuple[ToothFlank, ...]:

@@ -20,7 +20,7 @@ from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation, counted
 from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
-from fe_contact.geometry.tooth_flank import MOST_TEETH, ToothFlank, check_flanks, turned_back
+from fe_contact.geometry.tooth_flank import MAX_TEETH, ToothFlank, check_flanks, turned_back
 from fe_contact.material import STEEL, Material
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ _RUN_OUT = Declared(Kind.PART, "", None, _OF_AXIS, part=RunOut, later=True)
 _OF_FLANKS = "Waves on all loaded flanks, left by machining"
 _WAVES = Declared(Kind.PARTS, "", None, _OF_FLANKS, part=Wave, later=True)
 _OF_TEETH = "Deviations of the loaded flanks of single teeth; teeth without an entry are as designed"
-_TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, most=MOST_TEETH)
+_TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, maximum=MAX_TEETH)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
 """Fields in which mating gears agree, but for the hand of external ones."""

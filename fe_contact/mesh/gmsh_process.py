@@ -31,7 +31,7 @@ def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None
     try:
         return ask_child(request, seconds, command or (sys.executable, "-P", str(WORKER)))
     except ChildOutOfMemory as error:
-        advice = "Select a coarser level, or raise the memory limit."
-        raise MeshError(f"gmsh worker: {error}. {advice}") from error
+        remedy = "Select a coarser level, or raise the memory limit."
+        raise MeshError(f"gmsh worker: {error}. {remedy}") from error
     except ChildFailed as error:
         raise MeshError(f"gmsh worker: {error}") from error

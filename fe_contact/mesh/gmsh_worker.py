@@ -80,9 +80,9 @@ def _grow_from(gmsh: Any, loops: list[list[list[float]]], tags: list[int], growt
         mean = sum(edge for edge, _ in members) / len(members)
         field.setString(size, "F", f"{mean!r} + {growth!r} * F{distance}")
         sizes.append(size)
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", sizes)
-    field.setAsBackgroundMesh(least)
+    minimum = field.add("Min")
+    field.setNumbers(minimum, "FieldsList", sizes)
+    field.setAsBackgroundMesh(minimum)
 
 
 def _triangulate(

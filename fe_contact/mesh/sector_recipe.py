@@ -94,7 +94,7 @@ class SectorRecipe:
     def draft(cls, gear: Toothing) -> SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
-        layers = _layers(gear, least=8, thickest=1.5, limit=16)
+        layers = _layers(gear, minimum=8, thickest=1.5, limit=16)
         merge = () if wound(gear) and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
         return cls(
             flank_size=0.2 * m,
@@ -119,7 +119,7 @@ class SectorRecipe:
             depth_limit=0.45 * m,
             body_size=0.2 * m,
             body_limit=1.5 * m,
-            layers=_layers(gear, least=16 if wound(gear) else 12, thickest=1.0, limit=24),
+            layers=_layers(gear, minimum=16 if wound(gear) else 12, thickest=1.0, limit=24),
         )
 
     @classmethod
@@ -135,7 +135,7 @@ class SectorRecipe:
             body_limit=1.0 * m,
             body_growth=0.4,
             land_elements=4,
-            layers=_layers(gear, least=18, thickest=0.7, limit=36),
+            layers=_layers(gear, minimum=18, thickest=0.7, limit=36),
             merge_rows=(-4,),
         )
 
@@ -178,7 +178,7 @@ def wound(gear: Toothing) -> bool:
     return turn >= WOUND
 
 
-def _layers(gear: Toothing, least: int, thickest: float, limit: int) -> int:
+def _layers(gear: Toothing, minimum: int, thickest: float, limit: int) -> int:
     """Return an even number of layers no thicker than `thickest` modules, within its bounds."""
     needed = gear.face_width / (thickest * gear.normal_module)
-    return 2 * math.ceil(min(max(least, needed), limit) / 2)
+    return 2 * math.ceil(min(max(minimum, needed), limit) / 2)

@@ -80,7 +80,7 @@ def choose(
     with clock.stage("confirmation"):
         own = dict(zip(problem.names, request.own, strict=True))
         designs = own, problem.values(runs[best].place)
-        seconds = len(designs) * study.decided.checked.predicted(study.decided.plan, run.cache).cpu_seconds
+        seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
         shared = problem, study, run.cache
         start, optimum = divided(to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
     choice = Choice(problem, start, optimum, runs, best)

@@ -43,9 +43,9 @@ def _worse(choice: Choice) -> str:
     if not worse.size:
         return ""
     torques = ", ".join(f"{torque:.6g}" for torque in before.torque[worse])
-    most = worse[np.argmax((after.expected - before.expected)[worse])]
-    change = f"{1e6 * before.expected[most]:.3g} to {1e6 * after.expected[most]:.3g} µm"
-    return f"; it rises at {torques} N m, most at {before.torque[most]:.6g} N m from {change}"
+    maximum = worse[np.argmax((after.expected - before.expected)[worse])]
+    change = f"{1e6 * before.expected[maximum]:.3g} to {1e6 * after.expected[maximum]:.3g} µm"
+    return f"; it rises at {torques} N m, most at {before.torque[maximum]:.6g} N m from {change}"
 
 
 def _ended(choice: Choice, request: OptimizationRequest) -> str:
@@ -53,8 +53,8 @@ def _ended(choice: Choice, request: OptimizationRequest) -> str:
     cut = any(run.ended is Ended.CANCELLED for run in choice.runs)
     if cut or len(choice.runs) < request.search.starts:
         count = sum(run.evaluations for run in choice.runs)
-        most = request.search.starts * request.search.evaluations
-        return f"the search was interrupted after {count} of at most {most} designs"
+        maximum = request.search.starts * request.search.evaluations
+        return f"the search was interrupted after {count} of at most {maximum} designs"
     return "the search converged" if choice.run.converged else "the search used all its evaluations"
 
 
@@ -71,7 +71,7 @@ def untried_steps(choice: Choice, request: OptimizationRequest, study: DesignStu
     """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
     names = _not_varied({variable.name for variable in request.variables})
     spread = (*((MISALIGNMENT,) if request.scatter.misalignment else ()), *request.scatter.modification)
-    off = [name for name, choice_of in study.decided.checked.decided.items() if choice_of == "off"]
+    off = [name for name, choice_of in study.decision.checked.decision.items() if choice_of == "off"]
     bounds = _on_bounds(choice, request)
     starts = "one start" if request.search.starts == 1 else f"{request.search.starts} starts"
     untried = [

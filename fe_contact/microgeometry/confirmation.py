@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.database.compute_database import compute_database
-from fe_contact.analysis.request.model_choice import Decided
+from fe_contact.analysis.request.model_choice import Decision
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.microgeometry.confirmed_figures import confirmed_figures
 from fe_contact.microgeometry.design_loads import (
@@ -92,7 +92,7 @@ def confirm(
         Directory of flank compliances.
     """
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
-    table = full_table(search, values, study.decided, cache)
+    table = full_table(search, values, study.decision, cache)
     fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
     figures, exact = confirmed_figures(fine, values, cache), replace(fine, nodes=ONE_NODE)
     error = ripple_errors(table, fine)
@@ -117,19 +117,19 @@ def confirm(
 
 
 def full_table(
-    search: Evaluator, values: Mapping[str, float], decided: Decided, cache: Path | None
+    search: Evaluator, values: Mapping[str, float], decision: Decision, cache: Path | None
 ) -> SteDatabase:
     """Compute the table of a design over torques and the misalignments of all nodes and of none."""
-    request = decided.checked.request
+    request = decision.checked.request
     skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
         request,
         pair=modified(search.contact.pair, values),
         misalignment=skews,
-        options=replace(request.options.at_level(decided.mesh.level), effects=dict(search.choices)),
+        options=replace(request.options.at_level(decision.mesh.level), effects=dict(search.choices)),
     )
     checked = checked_request(full, neglect=False)
-    table = compute_database(checked, full.to_json(), Run(cache=cache), replace(decided, checked=checked))
+    table = compute_database(checked, full.to_json(), Run(cache=cache), replace(decision, checked=checked))
     table.require_complete()
     return table
 

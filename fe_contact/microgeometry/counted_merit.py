@@ -33,11 +33,11 @@ class Budget:
         self.total, self.used = total, 0
         self.cancelled, self._report = cancel, report
 
-    def take(self, most: int) -> None:
-        """Take one design, if fewer than `most` were taken; raises `BudgetUsed` or `Cancelled`."""
+    def take(self, maximum: int) -> None:
+        """Take one design, if fewer than `maximum` were taken; raises `BudgetUsed` or `Cancelled`."""
         if self.cancelled():
             raise Cancelled
-        if self.used >= min(most, self.total):
+        if self.used >= min(maximum, self.total):
             raise BudgetUsed
         self.used += 1
 
@@ -68,22 +68,22 @@ class CountedMerit:
         self,
         problem: SearchProblem,
         budget: Budget,
-        most: int,
+        maximum: int,
         workers: Workers = InProcess(),  # noqa: B008 (frozen)
     ) -> None:
         self.problem, self.workers, self._seconds = problem, workers, 0.0
         self.designs: list[Design] = []
         self.ends: list[Design] = []
-        self._budget, self._most = budget, most
+        self._budget, self._maximum = budget, maximum
 
     def __call__(self, point: FloatArray) -> float:
         """Assess a design."""
-        self._budget.take(self._most)
+        self._budget.take(self._maximum)
         return self._counted(self.problem.assess(point), point)
 
     def linearize(self, point: FloatArray) -> tuple[float, Merit]:
         """Assess a design, and return its merit with what is known about it to first order."""
-        self._budget.take(self._most)
+        self._budget.take(self._maximum)
         began = spent(self.workers)
         assessed, merit = self.problem.linearize(point, self.workers if self.divides else InProcess())
         self._seconds = spent(self.workers) - began
@@ -98,18 +98,18 @@ class CountedMerit:
         """Assess designs, as far as the budget reaches; those in the memory cost nothing, and stay here."""
         results = divided(self.workers, _assess, self.problem, points[: self.left])
         for point in points:
-            self._budget.take(self._most)
+            self._budget.take(self._maximum)
             yield self._counted(next(results), point)
 
     @property
     def left(self) -> int:
         """Designs that may still be evaluated."""
-        return max(0, min(self._most, self._budget.total) - self._budget.used)
+        return max(0, min(self._maximum, self._budget.total) - self._budget.used)
 
     def replay(self, designs: Iterable[Design]) -> None:
         """Count designs that a worker assessed."""
         for assessed, point in designs:
-            self._budget.take(self._most)
+            self._budget.take(self._maximum)
             self._counted(assessed, point)
 
     def _counted(self, assessed: Assessed, point: FloatArray) -> float:
@@ -126,8 +126,8 @@ class CountedMerit:
     @property
     def levels(self) -> tuple[float, ...]:
         """Objectives at which walks ended that exceed the limits by hardly more than the best of them."""
-        least = min((own.violation for own, _ in self.ends), default=0.0) + SLACK
-        return tuple(own.objective for own, _ in self.ends if own.violation <= least)
+        minimum = min((own.violation for own, _ in self.ends), default=0.0) + SLACK
+        return tuple(own.objective for own, _ in self.ends if own.violation <= minimum)
 
     @property
     def best(self) -> Design | None:

@@ -199,8 +199,8 @@ def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
         if lacks_length(pair, name.removesuffix("_length")):
             raise InputError("by", name, "a relief that has a length", "Give the flank its length.")
     if not acts(name, checked):
-        advice = "Analyze the pair over the face width, and leave the effect at auto."
-        raise InputError("by", name, "a figure whose effect the table has", advice)
+        remedy = "Analyze the pair over the face width, and leave the effect at auto."
+        raise InputError("by", name, "a figure whose effect the table has", remedy)
 
 
 def _require_solved(solution: ContactSolution) -> None:

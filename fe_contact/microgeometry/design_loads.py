@@ -80,6 +80,6 @@ def _misalignments(given: Misalignments, loads: int) -> FloatArray:
     values = np.atleast_1d(np.asarray(given, dtype=object)).tolist()
     if len(values) not in (1, loads):
         raise InputError("misalignment", values, f"one number, or {loads}, one for each torque")
-    ends, advice = (-LARGEST_DEVIATION, LARGEST_DEVIATION), SiNote("In m: 10 µm is 1e-5.")
+    ends, remedy = (-LARGEST_DEVIATION, LARGEST_DEVIATION), SiNote("In m: 10 µm is 1e-5.")
     names = [f"misalignment[{i}]" for i in range(len(values))] if np.ndim(given) else ["misalignment"]
-    return np.array([within(*each, *ends, advice) for each in zip(names, values, strict=True)])
+    return np.array([within(*each, *ends, remedy) for each in zip(names, values, strict=True)])

@@ -45,7 +45,7 @@ class Assessed:
 class Merit(Protocol):
     """The merit of designs about one of them."""
 
-    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+    def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.pairs.pair_contact import pair_contact
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.effects import compose
@@ -31,7 +31,7 @@ from model_studies.stage_clock import StageClock
 class DesignStudy:
     """A pair whose designs can be assessed."""
 
-    decided: Decided
+    decision: Decision
     """Model and discretization, of all designs and all torques."""
     loads: DesignLoads
     """All T of them: those of the full analysis."""
@@ -64,7 +64,7 @@ class DesignSpace:
     """Equally spaced in a base pitch."""
     options: AnalysisOptions
     """Their `positions`, `receipt` and `on_violation` do not count."""
-    least: Mapping[str, float] = field(default_factory=dict)
+    minimum: Mapping[str, float] = field(default_factory=dict)
     """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
@@ -89,7 +89,7 @@ class DesignSpace:
     def _with_the_least_removed(self) -> ParallelAxes:
         """Return the pair with every variable at its lower bound, less what scatters."""
         present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
-        removed = present | dict(self.least)
+        removed = present | dict(self.minimum)
         deviation = {name: -amount for name, amount in self.scatter.modification.items()}
         return deviating(modified(self.pair, removed), deviation)
 
@@ -137,31 +137,31 @@ def design_study(
     own = DesignLoads.of(torques, space.misalignment)
     loads, counted = own.with_torques(further_torques)
     with clock.stage("planning"):
-        decided = _on_one_mesh(checked or space.check(torques, further_torques), run.cache)
+        decision = _on_one_mesh(checked or space.check(torques, further_torques), run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         report = partial(run.progress, "compliance")
-        contact = pair_contact(space.pair, decided.plan, run.cache, report=report)
+        contact = pair_contact(space.pair, decision.plan, run.cache, report=report)
     run.progress("compliance", 1.0)
     position, nodes = np.arange(space.positions) / space.positions, space.scatter.nodes()
     level = np.searchsorted(np.unique(loads.torque), loads.torque)  # the table has every torque once
-    force = decided.checked.request.load[level]
-    varied, choices = replace(contact, varied=True), decided.checked.decided
+    force = decision.checked.request.load[level]
+    varied, choices = replace(contact, varied=True), decision.checked.decision
     roots = None
     if limits.root_stress is not None:
         with clock.stage("root stress"):
             roots = RootInfluence.of(contact, run.cache)
     evaluator = Evaluator(varied, choices, position, force[counted], own.misalignment, nodes, roots)
-    return DesignStudy(decided, loads, force, counted, evaluator)
+    return DesignStudy(decision, loads, force, counted, evaluator)
 
 
-def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
+def _on_one_mesh(checked: Checked, cache: Path | None) -> Decision:
     """Return model and mesh by the requested accuracy, every effect decided for good."""
-    decided = decide(checked, cache)
-    request = decided.checked.request
-    options = replace(request.options, effects=decided.checked.decided)
+    decision = decide(checked, cache)
+    request = decision.checked.request
+    options = replace(request.options, effects=decision.checked.decision)
     fixed = replace(request, options=options, neglected={}, turned_on={})
-    return replace(decided, checked=checked_request(fixed, neglect=False))
+    return replace(decision, checked=checked_request(fixed, neglect=False))
 
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
@@ -171,6 +171,6 @@ def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter)
     if scatter.misalignment:
         shown[MISALIGNMENT] = request.named(MISALIGNMENT)
     for name, effect in shown.items():
-        if checked.decided[effect] == "off":
+        if checked.decision[effect] == "off":
             bound = f'"on" or "auto" where {name} is varied'
             raise InputError(f"effects.{effect}", "off", bound, "Or leave it out of the variables.")

@@ -29,7 +29,7 @@ class LinearMerit:
     penalty: float
     """Of exceeding them."""
 
-    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+    def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
         made = LinearProgram(self.by.shape[-1])
         nodes, loads = self.by.shape[0], self.by.shape[2]
@@ -44,7 +44,7 @@ class LinearMerit:
         (objective,) = made.columns(1)
         spread = self.node_weight[:, None, None] * self.load_weight.T  # S, L, R
         made.sums(spread.reshape(nodes * loads, -1).T, (top, bottom), objective)
-        exceeded = made.columns(len(self.limits), least=0.0)
+        exceeded = made.columns(len(self.limits), minimum=0.0)
         for column, (value, by) in zip(exceeded, self.limits, strict=True):
             made.below(value, by, reach, column)
         return made.solve(low, high, objective, exceeded, self.penalty)
@@ -54,17 +54,17 @@ class LinearProgram:
     """A linear program in `count` steps and further columns, row by row."""
 
     def __init__(self, count: int) -> None:
-        self._count, self._least = count, [-np.inf] * count
+        self._count, self._minimum = count, [-np.inf] * count
         self._row: list[IntArray] = []
         self._column: list[IntArray] = []
         self._value: list[FloatArray] = []
         self._right: list[FloatArray] = []
         self._rows = 0
 
-    def columns(self, count: int, least: float = -np.inf) -> list[int]:
-        """Return so many new columns, each at least `least`."""
-        first = len(self._least)
-        self._least += [least] * count
+    def columns(self, count: int, minimum: float = -np.inf) -> list[int]:
+        """Return so many new columns, each at least `minimum`."""
+        first = len(self._minimum)
+        self._minimum += [minimum] * count
         return list(range(first, first + count))
 
     def below(self, value: FloatArray, by: FloatArray, reach: FloatArray, column: int) -> None:
@@ -89,14 +89,14 @@ class LinearProgram:
         self, low: FloatArray, high: FloatArray, objective: int, exceeded: list[int], penalty: float
     ) -> tuple[FloatArray, float]:
         """Return the step of least merit and the merit; no step where none is found."""
-        cost = np.zeros(len(self._least))
+        cost = np.zeros(len(self._minimum))
         cost[objective], cost[exceeded] = 1.0, penalty
         value, row, column = (np.concatenate(each) for each in (self._value, self._row, self._column))
         matrix = coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
-        least, most = np.array(self._least), np.full(cost.size, np.inf)
-        least[: low.size], most[: high.size] = low, high
+        minimum, maximum = np.array(self._minimum), np.full(cost.size, np.inf)
+        minimum[: low.size], maximum[: high.size] = low, high
         rows = scipy.optimize.LinearConstraint(matrix, ub=np.concatenate(self._right))
-        bounds = scipy.optimize.Bounds(least, most)
+        bounds = scipy.optimize.Bounds(minimum, maximum)
         solution = scipy.optimize.milp(cost, constraints=rows, bounds=bounds)  # no column is an integer
         if solution.x is None:
             return np.zeros(low.size), np.inf

@@ -71,8 +71,8 @@ class OptimizationRequest:
         """The designs, by one in which every variable acts."""
         acting = {variable.name: variable.acting for variable in self.variables}
         scattered = self.scatter, self.misalignment
-        least = {variable.name: variable.low for variable in self.variables}
-        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options, least)
+        minimum = {variable.name: variable.low for variable in self.variables}
+        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options, minimum)
 
     @property
     def outside(self) -> tuple[str, ...]:
@@ -110,8 +110,8 @@ class OptimizationRequest:
             "objective": self.objective.to_json(),
             "limits": self.limits.to_json(),
             "search": self.search.to_json(),
-            "level": study.decided.mesh.level,
-            "effects": study.decided.checked.decided,
+            "level": study.decision.mesh.level,
+            "effects": study.decision.checked.decision,
         }
 
 

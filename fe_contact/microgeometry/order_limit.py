@@ -58,21 +58,23 @@ class OrderLimit:
 
     def check(self, pair: ParallelAxes, positions: int) -> None:
         """Refuse an order that the positions of a base pitch do not resolve, or teeth that differ already."""
-        if self.order > (most := highest_order(positions)):
-            advice = f"The {positions} positions of a base pitch resolve the mesh orders 1 to {most}."
-            raise InputError("limit.order", self.order, f"a mesh order of the spectrum, 1 to {most}", advice)
+        if self.order > (maximum := highest_order(positions)):
+            remedy = f"The {positions} positions of a base pitch resolve the mesh orders 1 to {maximum}."
+            raise InputError(
+                "limit.order", self.order, f"a mesh order of the spectrum, 1 to {maximum}", remedy
+            )
         if not self.gear:
             return
-        most = self.teeth(pair) // 2
-        if self.turns == 0 or abs(self.turns) > most or self.line(pair) <= 0:
-            bound = f"from 1 to {most} turns of the {self.gear}, upwards where the mesh order is 0"
+        maximum = self.teeth(pair) // 2
+        if self.turns == 0 or abs(self.turns) > maximum or self.line(pair) <= 0:
+            bound = f"from 1 to {maximum} turns of the {self.gear}, upwards where the mesh order is 0"
             raise InputError("limit.turns", self.turns, bound, "Half its teeth lead to the next mesh order.")
         for name in ("pinion", "wheel"):
             own: Toothing = getattr(pair, name)
             if own.deviates or not own.pitch_deviation.neutral:
-                advice = "The teeth are drawn: leave run-out, waves, pitches and flanks of teeth out."
+                remedy = "The teeth are drawn: leave run-out, waves, pitches and flanks of teeth out."
                 raise InputError(
-                    "limit.gear", self.name, f"a mesh order where teeth of the {name} differ", advice
+                    "limit.gear", self.name, f"a mesh order where teeth of the {name} differ", remedy
                 )
 
 

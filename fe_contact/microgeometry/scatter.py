@@ -16,7 +16,7 @@ from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
 
 MISALIGNMENT = "misalignment"
-MOST_NODES = 1024
+MAX_NODES = 1024
 
 
 class _ScatterRule(Protocol):
@@ -46,9 +46,9 @@ class GaussHermite:
 
     def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
         """Return the nodes, the last dimension running fastest."""
-        if self.points**dimensions > MOST_NODES:
-            advice = "Take fewer points, or a SobolSample."
-            raise InputError("scatter.rule.points", self.points, f"at most {MOST_NODES} nodes in all", advice)
+        if self.points**dimensions > MAX_NODES:
+            remedy = "Take fewer points, or a SobolSample."
+            raise InputError("scatter.rule.points", self.points, f"at most {MAX_NODES} nodes in all", remedy)
         point, weight = roots_hermitenorm(self.points)
         grid = np.meshgrid(*[point] * dimensions, indexing="ij")
         weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
@@ -60,7 +60,7 @@ class GaussHermite:
         That may be a rougher one, which overstates the error, or for a single point a sample.
         """
         for points in (1 + self.points + self.points // 2, self.points + 1, self.points - 1):
-            if points > 0 and points**dimensions <= MOST_NODES:
+            if points > 0 and points**dimensions <= MAX_NODES:
                 return GaussHermite(min(points, 33))
         return SobolSample(10)
 

@@ -71,18 +71,18 @@ class Search:
 
 def usual_designs(search: Search) -> float:
     """Return what a usual search takes, in assessments of a design at all positions."""
-    few, most, method = (
+    few, maximum, method = (
         min(search.exploration / search.positions, 1.0),
         float(search.evaluations),
         search.method,
     )
-    explored = EXPLORED * most
+    explored = EXPLORED * maximum
     if isinstance(method, DifferentialEvolution):
-        return search.starts * (few * explored + most - explored)
+        return search.starts * (few * explored + maximum - explored)
     if not isinstance(method, (SequentialLinearProgramming, StagedLinearProgramming)):
-        return search.starts * most
+        return search.starts * maximum
     explored = min(method.sample, explored)
-    walked = min((method.trials + 1) * (TRIED + 1) + FOLLOWED, most - explored)
+    walked = min((method.trials + 1) * (TRIED + 1) + FOLLOWED, maximum - explored)
     return search.starts * (few * explored + LINEARIZED * walked)
 
 

@@ -41,7 +41,7 @@ TRIED = 7
 """Steps of every start before the best of them is followed to its end."""
 
 
-ASIDE, LEAST_GAIN, MISSES = 0.05, 0.005, 3
+ASIDE, MIN_GAIN, MISSES = 0.05, 0.005, 3
 """Where a walk ends it is taken up again beside, so far away at most, until that gains less so often."""
 
 
@@ -212,7 +212,7 @@ def _beside(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> N
         asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
         for other in _each_followed(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
             draws.pop(0)
-            misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
+            misses = 0 if other.value < (1.0 - MIN_GAIN) * best.value else misses + 1
             if other.value < best.value:
                 best = other
                 break  # the others began beside another design
@@ -234,10 +234,10 @@ def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
     return replace(walk, value=value, linear=linear)
 
 
-def _followed(merit: CountedMerit, walk: _Walk, most: int | None = None) -> _Walk:
+def _followed(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _Walk:
     """Begin, and step until converged, or so often at most."""
     walk = _begun(merit, walk) if walk.linear is None else walk
-    for _ in range(most) if most is not None else count():
+    for _ in range(maximum) if maximum is not None else count():
         if not np.isfinite(walk.value) or walk.region <= SIMPLEX_SIZE:
             break
         further = _stepped(merit, walk)
@@ -251,7 +251,7 @@ def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
     """Take a step if one promises anything; shorten the region where it keeps too little of it."""
     ends = np.maximum(-walk.region, -walk.place), np.minimum(walk.region, 1.0 - walk.place)
     assert walk.linear is not None
-    step, promised = walk.linear.least(*ends)
+    step, promised = walk.linear.minimum(*ends)
     if walk.value - promised <= SIMPLEX_MERIT * walk.value:
         return None
     point = np.clip(walk.place + step, 0.0, 1.0)
@@ -264,12 +264,14 @@ def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
     return _Walk(point, region, value, linear) if value < walk.value else replace(walk, region=region)
 
 
-def _each_followed(merit: CountedMerit, walks: Sequence[_Walk], most: int | None = None) -> Iterator[_Walk]:
+def _each_followed(
+    merit: CountedMerit, walks: Sequence[_Walk], maximum: int | None = None
+) -> Iterator[_Walk]:
     """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""
     if len(walks) < 2 or not merit.divides:
-        yield from (_followed(merit, walk, most) for walk in walks)
+        yield from (_followed(merit, walk, maximum) for walk in walks)
         return
-    tasks = [(walk, most, merit.left + 1) for walk in walks]
+    tasks = [(walk, maximum, merit.left + 1) for walk in walks]
     for walk, designs in merit.workers.run(_walked, merit.problem, tasks):
         merit.replay(designs)
         yield walk
@@ -280,10 +282,10 @@ def _walked(problem: SearchProblem, task: tuple[_Walk, int | None, int]) -> tupl
 
     It may assess one design more than are left: the caller, who counts them, ends there as it would here.
     """
-    walk, most, designs = task
+    walk, maximum, designs = task
     merit = CountedMerit(problem, Budget(designs, never, unreported), designs)
     with suppress(BudgetUsed):
-        walk = _followed(merit, walk, most)
+        walk = _followed(merit, walk, maximum)
     return walk, merit.designs
 
 

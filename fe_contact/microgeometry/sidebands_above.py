@@ -46,7 +46,7 @@ from fe_contact.types import ComplexArray, FloatArray
 
 IN_A_TASK = 4
 """Pairs of a task."""
-_LEAST = 1e-15
+_MIN = 1e-15
 """Amplitude in m below which there is no level."""
 
 
@@ -201,7 +201,7 @@ def _indices(
     other = teeth.drawn(BASE_PAIRS, seed + 1, after=teeth.dimensions)
 
     def level(gears: DrawnTeeth) -> FloatArray:
-        amplitude = np.maximum(passing.amplitude(gears)[:, load], _LEAST)
+        amplitude = np.maximum(passing.amplitude(gears)[:, load], _MIN)
         return np.asarray(20.0 * np.log10(amplitude / limit.amplitude))[None]
 
     mixed = np.stack([level(one.changed(name, other.amount(name))) for name in teeth.widths])

@@ -44,15 +44,15 @@ class SweptQuantity:
     """
 
     @property
-    def least(self) -> int:
+    def minimum(self) -> int:
         """Index of the point of the least value."""
         return int(np.nanargmin(self.value))
 
     @property
     def like_least(self) -> BoolArray:
         """Points (N,) that differ from the least by no more than both errors."""
-        least = self.least
-        return np.asarray(self.value - self.value[least] <= self.error + self.error[least])
+        minimum = self.minimum
+        return np.asarray(self.value - self.value[minimum] <= self.error + self.error[minimum])
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ CONDITIONS = (TORQUE, MISALIGNMENT, CENTER_DISTANCE)
 """Operating conditions that a sweep can vary."""
 
 
-MOST_POINTS = 4096
+MAX_POINTS = 4096
 
 
 Values = Mapping[str, float]
@@ -140,5 +140,5 @@ class SweepRequest:
             if increasing(f"axes.{axis.name}", axis.values).size < 2:
                 raise InputError(f"axes.{axis.name}", list(axis.values), "at least two values")
         points = int(np.prod([len(axis.values) for axis in self.axes]))
-        if points > MOST_POINTS:
-            raise InputError("axes", points, f"at most {MOST_POINTS} points", "Take larger steps.")
+        if points > MAX_POINTS:
+            raise InputError("axes", points, f"at most {MAX_POINTS} points", "Take larger steps.")

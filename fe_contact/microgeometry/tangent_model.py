@@ -24,7 +24,7 @@ AT_ONCE = 4_000_000
 class TangentModel:
     """Tangents about T pairs at P positions and L loads, by d deviations."""
 
-    least: FloatArray
+    minimum: FloatArray
     """Deviations count from here: nothing is removed below zero, m. Shape (d,)."""
     state: FloatArray
     """The pairs, m. Shape (T, d)."""
@@ -36,16 +36,16 @@ class TangentModel:
     """What the least tangent is above in the mean, m. Shape (P, L)."""
 
     @classmethod
-    def of(cls, least: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:
+    def of(cls, minimum: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:
         """Return the least of tangents, with nothing taken off."""
-        return cls(least, np.maximum(state, least), value, by, np.zeros(value.shape[1:]))
+        return cls(minimum, np.maximum(state, minimum), value, by, np.zeros(value.shape[1:]))
 
     def with_further(self, other: TangentModel) -> TangentModel:
         """Return the least of these tangents and others."""
         state, value, by = (
             np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("state", "value", "by")
         )
-        return TangentModel(self.least, state, value, by, self.correction)
+        return TangentModel(self.minimum, state, value, by, self.correction)
 
     def corrected(self, deviation: FloatArray, ste: FloatArray) -> TangentModel:
         """Take off what it misses in the mean over pairs (n, d) whose curves (n, P, L) were solved."""
@@ -56,11 +56,11 @@ class TangentModel:
         """Return the same at one of the loads."""
         some = slice(load, load + 1)
         own = self.value[..., some], self.by[:, :, some], self.correction[:, some]
-        return TangentModel(self.least, self.state, *own)
+        return TangentModel(self.minimum, self.state, *own)
 
     def curves(self, deviation: FloatArray) -> Iterator[FloatArray]:
         """Yield the transmission error of pairs (n, d), some at a time, (m, P, L) in m."""
-        held = np.maximum(deviation, self.least)
+        held = np.maximum(deviation, self.minimum)
         shape = self.value.shape[1:]
         slopes = self.by.reshape(len(self.state), -1, self.state.shape[1])
         at_zero = self.value.reshape(len(self.state), -1) - np.einsum("tqd,td->tq", slopes, self.state)

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from bounds import MOST_BYTES, at_most
+from bounds import MAX_BYTES, at_most
 from bounds.brief import brief
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
@@ -227,8 +227,8 @@ class ToleranceRequest:
         if self.limit is not None:
             self.limit.check(self.pair, self.sampling.positions)
             if self.limit.gear and self.teeth is None:
-                advice = "State how much they differ: `iso1328_tooth_tolerances`."
-                raise InputError("limit.gear", self.limit.name, "a mesh order where teeth are alike", advice)
+                remedy = "State how much they differ: `iso1328_tooth_tolerances`."
+                raise InputError("limit.gear", self.limit.name, "a mesh order where teeth are alike", remedy)
         checked = self.space.check(self.torques)
         self._require_memory(checked.model.period)
         return checked
@@ -238,10 +238,10 @@ class ToleranceRequest:
         sampling, deviating = self.sampling, len(self.tolerances.widths)
         curve = 8 * period * sampling.positions * len(self.torques)
         needed = curve * (3 * sampling.solved + 2 * (sampling.tangents + 1) * deviating)
-        if needed > MOST_BYTES:
+        if needed > MAX_BYTES:
             words = f"{sampling.solved} pairs over {period} base pitches, {needed / 1e9:.1f} GB"
-            advice = "Analyze fewer pairs whole, fewer torques, or a shorter period."
-            raise InputError("exact", words, at_most(MOST_BYTES / 1e9, "GB"), advice)
+            remedy = "Analyze fewer pairs whole, fewer torques, or a shorter period."
+            raise InputError("exact", words, at_most(MAX_BYTES / 1e9, "GB"), remedy)
 
 
 def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
@@ -278,7 +278,7 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
             pairs = DrawnPairs(names, deviation, ste, held.start, model, distributions, period, sampling.seed)
             above = mesh_order_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
     with clock.stage("confirmation"):
-        table = full_table(nominal, {}, study.decided, run.cache)
+        table = full_table(nominal, {}, study.decision, run.cache)
         error = ripple_errors(table, nominal)[0]
     run.progress("confirmation", 1.0)
     return ToleranceStudy(
@@ -317,8 +317,8 @@ def tangents_about(
     """Return the tangents about pairs that deviate by (n, d); nothing is removed below zero."""
     pair = evaluator.contact.pair
     designed = [0.0 if name == MISALIGNMENT else figure(pair, name) for name in names]
-    least = np.array([least_deviation(*each) for each in zip(designed, names, strict=True)])
-    return TangentModel.of(least, deviation, ste, by)
+    minimum = np.array([least_deviation(*each) for each in zip(designed, names, strict=True)])
+    return TangentModel.of(minimum, deviation, ste, by)
 
 
 def _ripple(

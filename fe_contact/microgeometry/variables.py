@@ -93,8 +93,8 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
     for variable in variables:
         length = f"{variable.quantity}_length"
         if lacks_length(pair, variable.name) and f"{variable.gear}.{length}" not in names:
-            advice = f"Give {variable.gear}.{length} a value in the case, or make it a variable."
-            raise InputError(f"variables.{variable.name}", "free", "beside the length of that relief", advice)
+            remedy = f"Give {variable.gear}.{length} a value in the case, or make it a variable."
+            raise InputError(f"variables.{variable.name}", "free", "beside the length of that relief", remedy)
     for end in ("low", "high"):
         at_end = {variable.name: float(getattr(variable, end)) for variable in variables}
         try:

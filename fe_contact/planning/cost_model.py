@@ -70,7 +70,7 @@ _HELD_POSITIONS, _HELD_PART = 320, 2.5
 _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
 
-MOST_ROWS = 150_000
+MAX_ROWS = 150_000
 """Positions x alignments that a table may have."""
 POINTS_AT_ONCE = 2**18
 """Touching points of a part of the base pitches that is solved at once: enough that the rows of the
@@ -232,13 +232,13 @@ def _finer(pair: ParallelAxes, plan: Plan) -> float:
     lightest = float(plan.load.min()) / (pair.face_width * _RIPPLE_STIFFNESS)
     ripple = lightest * math.exp(-pair.overlap_ratio / _RIPPLE_OVERLAP)
     allowed = plan.nodes.tolerance * max(ripple, plan.nodes.least_ripple)
-    halved = 2.0 ** math.floor(math.log2(plan.nodes.most / plan.nodes.start))
+    halved = 2.0 ** math.floor(math.log2(plan.nodes.maximum / plan.nodes.start))
     return min(max(_ALLOWED / allowed, 1.0), halved) if allowed else halved
 
 
 def most_positions(plan: Plan, times: int) -> int:
     """Return how many positions a search may end with, in so many base pitches and alignments."""
-    return max(min(plan.nodes.most, MOST_ROWS // times), plan.nodes.start)
+    return max(min(plan.nodes.maximum, MAX_ROWS // times), plan.nodes.start)
 
 
 class _Cost(NamedTuple):

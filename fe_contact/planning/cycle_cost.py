@@ -8,7 +8,7 @@ from bounds import at_most, engineering
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.cost_model import MOST_ROWS, contact_seconds, memory_of_contact
+from fe_contact.planning.cost_model import MAX_ROWS, contact_seconds, memory_of_contact
 from fe_contact.planning.plan import Plan
 from fe_contact.types import Json
 
@@ -47,18 +47,18 @@ class CycleCost:
         return cls(model.period, positions, alignments[0] * alignments[1], seconds, memory)
 
     def refuse_too_long(self) -> None:
-        """Refuse a table of more than `MOST_ROWS` rows, saying what it would cost and what to ask for.
+        """Refuse a table of more than `MAX_ROWS` rows, saying what it would cost and what to ask for.
 
         Raises `InputError` of the field "pitches".
         """
-        if self.rows <= MOST_ROWS:
+        if self.rows <= MAX_ROWS:
             return
-        longest = MOST_ROWS // (self.positions * self.alignments)
+        longest = MAX_ROWS // (self.positions * self.alignments)
         note = f" with {self.positions} positions a pitch and {self.alignments} alignments"
-        advice = (
+        remedy = (
             f"The table would have {self.rows} rows, about "
             f"{engineering(self.cpu_seconds, 2)} CPU s and {engineering(1e-9 * self.memory_bytes, 2)} GB. "
             "Request fewer pitches (for example the teeth of one gear), positions or alignments, or give the "
             "deviations of one gear only."
         )
-        raise InputError("pitches", self.pitches, at_most(longest, note=note), advice)
+        raise InputError("pitches", self.pitches, at_most(longest, note=note), remedy)

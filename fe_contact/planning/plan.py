@@ -66,7 +66,7 @@ class NodeRule:
     """Equally spaced nodes to begin with."""
     tolerance: float
     """Interpolation error to keep, as a fraction of each load's peak-to-peak STE."""
-    most: int
+    maximum: int
     """Largest number of nodes."""
     assessed_pitches: int = 3
     """Base pitches of a longer period that are looked at."""
@@ -86,14 +86,14 @@ class NodeRule:
         """Return the rule by which positions take their share of a tolerance, and no more than usual."""
         wanted = POSITION_SHARE * allowed.relative / self.tolerance
         closer = min(max(wanted, CLOSEST), 1.0)
-        limit = round(self.most / math.sqrt(closer))
-        least = FLOOR_SHARE * allowed.least_scale * wanted / closer  # the floor is as asked, however close
-        return replace(self, tolerance=closer * self.tolerance, most=limit, least_ripple=least)
+        limit = round(self.maximum / math.sqrt(closer))
+        minimum = FLOOR_SHARE * allowed.least_scale * wanted / closer  # the floor is as asked, however close
+        return replace(self, tolerance=closer * self.tolerance, maximum=limit, least_ripple=minimum)
 
     def ripple(self, curves: FloatArray) -> FloatArray:
         """Return the peak-to-peak STE (C,) in m of curves (P, C) in m that the tolerance is a part of."""
-        least = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
-        return np.asarray(np.maximum(np.ptp(curves, axis=0), least))
+        minimum = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
+        return np.asarray(np.maximum(np.ptp(curves, axis=0), minimum))
 
 
 PLANE_NODES = NodeRule(64, 0.0015, 768, 64)

@@ -93,9 +93,9 @@ def mesh_for_time(
         predicted = seconds(option)
         if predicted <= budget:
             return MeshChoice(option, True, f"predicted {engineering(predicted, 2)} CPU s")
-    least = min(options, key=_effort)
-    reason = f"even the fastest mesh is predicted to take {engineering(seconds(least), 2)} CPU s"
-    return MeshChoice(least, False, reason)
+    minimum = min(options, key=_effort)
+    reason = f"even the fastest mesh is predicted to take {engineering(seconds(minimum), 2)} CPU s"
+    return MeshChoice(minimum, False, reason)
 
 
 def _effort(option: MeshOption) -> float:

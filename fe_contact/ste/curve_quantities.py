@@ -103,8 +103,8 @@ def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
 
 def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
     """Let peak-to-peak change at least by half the peak-to-peak of the difference (P, C)."""
-    least = 0.5 * np.ptp(difference, axis=0)
-    return np.concatenate([changes[:1], np.maximum(changes[1:2], least), changes[2:]])
+    minimum = 0.5 * np.ptp(difference, axis=0)
+    return np.concatenate([changes[:1], np.maximum(changes[1:2], minimum), changes[2:]])
 
 
 def missed_peaks(position: FloatArray, values: FloatArray, period: int) -> FloatArray:

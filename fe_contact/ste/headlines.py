@@ -15,7 +15,7 @@ from fe_contact.ste.curve import Curve
 from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
 
-MOST_LOADS = 4
+MAX_LOADS = 4
 """Loads whose figures are listed: spread over those of the table."""
 LONGEST_PERIOD = 32
 """Base pitches up to which the figures of all listed loads are computed; of longer tables one load's are."""
@@ -57,7 +57,7 @@ def _positions(table: SteFields) -> str:
 
 def _figures(table: SteFields, curve_at: Callable[..., Curve]) -> list[Row]:
     """Return mean, peak-to-peak and first harmonic at some of the loads, aligned or nearest to it."""
-    limit = MOST_LOADS if table.period <= LONGEST_PERIOD else 1
+    limit = MAX_LOADS if table.period <= LONGEST_PERIOD else 1
     chosen = np.unique(
         np.linspace(0, table.torque.size - 1, min(limit, table.torque.size)).round().astype(int)
     )

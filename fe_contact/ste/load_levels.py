@@ -29,7 +29,7 @@ _HALVINGS = 30
 
 
 # least compliance of a smooth curve over that of its step: a cubic may be flat inside
-_LEAST_COMPLIANCE = 0.1
+_MIN_COMPLIANCE = 0.1
 
 
 # power of the force in which the deflection of a smooth step is a cubic: of 0, 1/4, 1/2 and 1 the one with
@@ -134,8 +134,8 @@ def _smooth(levels: LoadLevels, k: int, force: FloatArray) -> Pair:
     growth = 6.0 * t * s * rise / width
     growth += s * (1.0 - 3.0 * t) * slope[..., :1] + t * (3.0 * t - 2.0) * slope[..., 1:]
     softness = straight + growth * _POWER * force ** (_POWER - 1.0)
-    least = _LEAST_COMPLIANCE * np.diff(lag, axis=-1) / (ends[1] - ends[0])
-    return deflection, 1.0 / np.maximum(softness, least)
+    minimum = _MIN_COMPLIANCE * np.diff(lag, axis=-1) / (ends[1] - ends[0])
+    return deflection, 1.0 / np.maximum(softness, minimum)
 
 
 def _straight_compliance(compliance: FloatArray, secant: FloatArray) -> FloatArray:

@@ -20,7 +20,7 @@ _LIFT_OFF_WEIGHT = 1e6
 
 
 # repaired neighbors stay apart by at least this part of the smallest stored tangent compliance
-_LEAST_COMPLIANCE = 0.1
+_MIN_COMPLIANCE = 0.1
 
 
 AXIS = "misalignment"
@@ -73,10 +73,10 @@ def monotone_table(table: Table) -> tuple[Table, Repair]:
     loaded = np.moveaxis(table.static_transmission_error, 1, -1)
     levels = np.concatenate([table.no_load_transmission_error[..., None], loaded], axis=-1)
     falling = np.argwhere(np.any(np.diff(levels, axis=-1) <= 0.0, axis=-1))
-    least = _LEAST_COMPLIANCE * float(table.tangent_compliance.min())
+    minimum = _MIN_COMPLIANCE * float(table.tangent_compliance.min())
     mended = levels.copy()
     for index in map(tuple, falling):
-        mended[index] = _isotonic(levels[index], table.force, least)
+        mended[index] = _isotonic(levels[index], table.force, minimum)
     change = np.moveaxis(np.abs(mended - levels)[..., 1:], -1, 1)
     worst = np.unravel_index(int(np.argmax(change)), change.shape)
     where = {name: float(getattr(table, name)[i]) for name, i in zip(GRID, worst, strict=True)}
@@ -106,9 +106,9 @@ def _complete_rows(failed: BoolArray) -> dict[str, IntArray]:
     return dict(zip(GRID, keep, strict=True))
 
 
-def _isotonic(levels: FloatArray, force: FloatArray, least: float) -> FloatArray:
-    """Nearest levels whose compliance is at least `least` everywhere."""
-    tilt = least * np.concatenate([[0.0], force])
+def _isotonic(levels: FloatArray, force: FloatArray, minimum: float) -> FloatArray:
+    """Nearest levels whose compliance is at least `minimum` everywhere."""
+    tilt = minimum * np.concatenate([[0.0], force])
     weights = np.ones_like(levels)
     weights[0] = _LIFT_OFF_WEIGHT
     return np.asarray(scipy.optimize.isotonic_regression(levels - tilt, weights=weights).x + tilt)

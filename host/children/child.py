@@ -17,7 +17,7 @@ from host.sessions import Ended, ending_signal, kill_group, never_wait_at
 
 _PIECE = 1 << 16
 """Bytes of one read: what a pipe of Linux holds."""
-_MOST_PIECES = 16
+_MAX_PIECES = 16
 """Reads of one look, so that a child that never rests does not keep its starter from others."""
 _POLL_S = 0.001
 
@@ -89,7 +89,7 @@ class Child:
         frames: list[Frame] = []
         if not poll.poll(math.ceil(1e3 * within_s)):
             return frames
-        for _ in range(_MOST_PIECES):
+        for _ in range(_MAX_PIECES):
             try:
                 piece = os.read(self.channel, _PIECE)
             except BlockingIOError:

@@ -25,7 +25,7 @@ from host.sessions import Ended, ending_signal, has_exited, reap
 
 _FORK_SERVER = (sys.executable, "-P", "-m", "host.children.fork_server")
 """Without the folder in which its starter was started: its modules may be another program's."""
-MOST_FORKS = 500
+MAX_FORKS = 500
 """Children of one warm process; then a new one takes its place."""
 WARM_WITHIN_S = 10.0
 """How long a child waits for a warm process, which takes two on an idle machine."""
@@ -167,7 +167,7 @@ class WarmProcess:
     @property
     def usable(self) -> bool:
         """Whether it runs and may fork once more."""
-        return not self._gone and self._forks < MOST_FORKS and self._process.poll() is None
+        return not self._gone and self._forks < MAX_FORKS and self._process.poll() is None
 
     @property
     def ready(self) -> bool:

@@ -51,8 +51,8 @@ def run_list(*, as_json: bool) -> None:
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
     """Remove what was not used for longest until the rest fits."""
-    most = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
-    removed = evict(cache_home(), most)
+    maximum = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
+    removed = evict(cache_home(), maximum)
     _tell(removed, as_json=as_json)
 
 

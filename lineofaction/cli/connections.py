@@ -18,7 +18,7 @@ from service.management.vitals import EventLoop, Vitals
 from service.routes.context import Context
 from service.routes.problem_answers import problem_of
 
-MOST_HEAD_BYTES = 65_536
+MAX_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0
 _STOPPING_S = 2
 _KEPT_S = 75
@@ -67,8 +67,8 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         super().data_received(data)
         if self.cycle is not before:
             self._head_is_there()
-        elif self._timer is not None and self._head > MOST_HEAD_BYTES:
-            self._refuse(HeadTooLarge(f"The head has more than {MOST_HEAD_BYTES} bytes."))
+        elif self._timer is not None and self._head > MAX_HEAD_BYTES:
+            self._refuse(HeadTooLarge(f"The head has more than {MAX_HEAD_BYTES} bytes."))
 
     def on_response_complete(self) -> None:
         """Count as idle, unless the next request is there already."""

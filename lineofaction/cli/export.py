@@ -26,7 +26,7 @@ from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import UM
 
-_MOST_POSITIONS = 256
+_MAX_POSITIONS = 256
 
 
 def run_export(
@@ -52,8 +52,8 @@ def _export_deformed(
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
     case = assessed_case(file, chosen)
     where = positions(at)
-    if len(where) > _MOST_POSITIONS:
-        raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
+    if len(where) > _MAX_POSITIONS:
+        raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MAX_POSITIONS} positions")
     if output.is_file() or output.suffix == ".vtu":
         raise BadInput.of("output", str(output), "a folder", "It gets pinion.vtu and wheel.vtu.")
     if not output.is_dir() and not output.parent.is_dir():

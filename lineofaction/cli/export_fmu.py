@@ -29,8 +29,8 @@ def export_mesh_fmu(
     """Write the mesh force of a table as a functional mock-up unit."""
     for name, instead in _INPUTS_INSTEAD.items():
         if point[name] is not None:
-            advice = f"The whole table goes in; set {instead}."
-            raise BadInput.of(f"--{name.replace('_', '-')}", point[name], "left out for an FMU", advice)
+            remedy = f"The whole table goes in; set {instead}."
+            raise BadInput.of(f"--{name.replace('_', '-')}", point[name], "left out for an FMU", remedy)
     check_writable(output)
     if not (math.isfinite(damping) and damping >= 0.0):
         raise BadInput.of("--damping-n-s-per-m", damping, "0 or above")

@@ -37,11 +37,11 @@ if TYPE_CHECKING:
 
 Report = Callable[[str, float], None]
 
-_MOST_HEADLINES = 2
+_MAX_HEADLINES = 2
 FOUND = "bold"
 """Style of the line that says what was found."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
-_WIDEST, _GAP, _INDENT, _MOST_LINES = 24, 2, "  ", 2
+_WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
 """Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
 
 The last: lines that a text in the last column takes beside its row.
@@ -102,7 +102,7 @@ class _Column:
         """Width in which nothing wraps."""
         return max(len(line) for part in (self.head, *self.cells) for line in part.split("\n"))
 
-    def least(self, widest: int) -> int:
+    def minimum(self, widest: int) -> int:
         """Return the width in which no word of the head and no cell is cut; a wider text may wrap."""
         parts = (self.head, *self.cells) if self.text else (self.head,)
         longest = max(len(word) for part in parts for word in in_lines(part, 1).split("\n"))
@@ -157,7 +157,7 @@ def _is_long(shown: Sequence[_Column], width: int) -> bool:
     """Whether the last column is a text that would wrap into many lines beside the others."""
     *others, last = shown
     left = width - sum(own.whole + _GAP for own in others)
-    return bool(others) and last.text and last.whole > max(_WIDEST, _MOST_LINES * left)
+    return bool(others) and last.text and last.whole > max(_WIDEST, _MAX_LINES * left)
 
 
 def aligned(cells: Sequence[str]) -> list[str]:
@@ -178,7 +178,7 @@ def _blocks(shown: Sequence[_Column], width: int) -> list[_Block]:
     """
     keys = max(1, next((k for k, own in enumerate(shown) if not own.text), 1))
     tried = [
-        _divided([(own, own.least(widest)) for own in shown], keys, width) for widest in (width, _WIDEST)
+        _divided([(own, own.minimum(widest)) for own in shown], keys, width) for widest in (width, _WIDEST)
     ]
     blocks = min(tried, key=lambda blocks: (max(0, *(_wide(block) - width for block in blocks)), len(blocks)))
     return [_grown(block, width) for block in blocks]
@@ -211,7 +211,7 @@ def _grown(block: _Block, width: int) -> _Block:
 def print_headlines(headlines: Sequence[Headline]) -> None:
     """Begin with the main results, a line each and two at most."""
     out = console()
-    for headline in headlines[:_MOST_HEADLINES]:
+    for headline in headlines[:_MAX_HEADLINES]:
         band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
         line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
         out.print(line, soft_wrap=True, style=FOUND)
@@ -293,5 +293,5 @@ def check_netcdf_output(output: Path) -> None:
     """
     check_writable(output)
     if output.suffix not in ("", ".nc", ".nc4"):
-        advice = "Write the netCDF file; `loa report FILE.nc -o PAGE.html` draws it."
-        raise BadInput.of("output", str(output), "a file ending in .nc", advice)
+        remedy = "Write the netCDF file; `loa report FILE.nc -o PAGE.html` draws it."
+        raise BadInput.of("output", str(output), "a file ending in .nc", remedy)

@@ -118,8 +118,8 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         # strict models take JSON's lists for tuples only from text
         case = Case.model_validate_json(json.dumps(database.metadata.case))
     except ValidationError:
-        advice = "It was made in Python: write the file with flank_results(...).to_netcdf, and name it."
-        raise BadInput.of("--flank", True, "given with the database of a case file", advice) from None
+        remedy = "It was made in Python: write the file with flank_results(...).to_netcdf, and name it."
+        raise BadInput.of("--flank", True, "given with the database of a case file", remedy) from None
     misalignment, change = aligned(database)
     point = FlankPoint(
         normal_force_n=float(database.force[headline_load(database, nominal_force(read))]),

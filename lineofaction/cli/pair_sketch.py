@@ -110,8 +110,8 @@ def _ring_addendum(pinion: Gear, ring_teeth: int, distance: float) -> float:
     """Return the addendum in modules of a ring whose tip meets the pinion on its involute, at most 0.9."""
     ratio = ring_teeth / pinion.teeth
     tangent = distance * MM * math.sin(pinion.transverse_pressure_angle)
-    least = math.hypot(ratio * pinion.base_radius, tangent + pinion.form_roll_length)
-    free = (ratio * pinion.reference_radius - least) / pinion.normal_module
+    minimum = math.hypot(ratio * pinion.base_radius, tangent + pinion.form_roll_length)
+    free = (ratio * pinion.reference_radius - minimum) / pinion.normal_module
     return min(0.9, math.floor(20.0 * (free - 0.02)) / 20.0)
 
 

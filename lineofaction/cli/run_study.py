@@ -58,7 +58,7 @@ from model_studies.workers import Workers
 
 Writer = Callable[[Any, Path], object]
 
-_MOST_SAID = 2
+_MAX_SAID = 2
 """First lines of a study among which a main result may stand already."""
 
 
@@ -260,7 +260,7 @@ def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float)
     """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
     shown = presentation_of(study)
     parts = list(shown.text(result))
-    said = {part for part in parts[:_MOST_SAID] if isinstance(part, str)}
+    said = {part for part in parts[:_MAX_SAID] if isinstance(part, str)}
     headlines = shown.page(result).headlines
     print_headlines(
         [line for line in headlines if said.isdisjoint((line.value, f"{line.name}: {line.value}"))]

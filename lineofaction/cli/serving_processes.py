@@ -36,7 +36,7 @@ from service.store.write_check import WriteCheck
 from service.worker.process import default_registry
 
 logger = structlog.get_logger(__name__)
-LEAST_LIFE_S = 5.0
+MIN_LIFE_S = 5.0
 """Processes that end earlier are replaced only after so long: what they lack may be there by then."""
 STOPPING_S = 3.5
 """After which serving processes that do not stop are killed."""
@@ -117,13 +117,13 @@ class ServingProcesses:
     _starts: deque[float] = field(default_factory=deque)
 
     def replace_dead(self) -> None:
-        """Start what is missing; `number` starts are at least `LEAST_LIFE_S` apart."""
+        """Start what is missing; `number` starts are at least `MIN_LIFE_S` apart."""
         for process in [process for process in self._alive if not process.is_alive()]:
             logger.warning("serving process ended", pid=process.pid, code=process.exitcode)
             mark_process_dead(process.pid, os.environ[_METRICS])  # type: ignore[no-untyped-call]
             self._alive.remove(process)
         while len(self._alive) < self.number:
-            if len(self._starts) == self.number and time.monotonic() < self._starts[0] + LEAST_LIFE_S:
+            if len(self._starts) == self.number and time.monotonic() < self._starts[0] + MIN_LIFE_S:
                 return
             self._starts = deque([*self._starts, time.monotonic()], maxlen=self.number)
             self._alive.append(self._started())

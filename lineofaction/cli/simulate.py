@@ -52,8 +52,8 @@ def run_simulate(
     output = output_of(named, file.project, RUN)
     check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
-        advice = "There is none. Omit --resume to start a run."
-        raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
+        remedy = "There is none. Omit --resume to start a run."
+        raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", remedy)
     if not as_json:
         costs = [simulation_cost(scene, folder)]
         announce_cost("simulate", costs if service else [*costs, tables_cost(scene, folder)])

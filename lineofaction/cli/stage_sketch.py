@@ -19,7 +19,7 @@ from lineofaction.gearbox.units import DEGREE
 
 PLANETS = 3
 
-_LEAST_TEETH = 18
+_MIN_TEETH = 18
 """Of a planet: with fewer, teeth without profile shift are undercut."""
 
 
@@ -30,10 +30,10 @@ def planetary_stage(wanted: PairWishes) -> StageSketch:
     """
     module, teeth, helix = wanted.module or 2.0, wanted.teeth or 24, wanted.helix or 0.0
     wished = 0.5 * teeth * ((wanted.ratio or 5.0) - 2.0)
-    fitting = [count for count in range(_LEAST_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
-    if not fitting or wished < _LEAST_TEETH:
-        least = 2.0 + 2.0 * _LEAST_TEETH / teeth
-        bound = f"at least {least:.3g} with {teeth} teeth of the sun"
+    fitting = [count for count in range(_MIN_TEETH, int(wished) + 4) if (teeth + count) % PLANETS == 0]
+    if not fitting or wished < _MIN_TEETH:
+        minimum = 2.0 + 2.0 * _MIN_TEETH / teeth
+        bound = f"at least {minimum:.3g} with {teeth} teeth of the sun"
         raise BadInput.of("--ratio", wanted.ratio, bound, "Or leave it out.")
     planet = min(fitting, key=lambda count: abs(count - wished))
     width = wanted.width or face_width(module, helix)

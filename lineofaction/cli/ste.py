@@ -86,16 +86,16 @@ def open_ste(file: Path) -> SteDatabase:
             "file", str(file), "an STE database", "Check the path, or make one with: loa analyze"
         )
     if file.suffix in (".toml", ".json"):
-        advice = f"Make one with: loa analyze {file} -o ste.nc"
-        raise BadInput.of("file", str(file), "an STE database (netCDF)", advice)
+        remedy = f"Make one with: loa analyze {file} -o ste.nc"
+        raise BadInput.of("file", str(file), "an STE database (netCDF)", remedy)
     return SteDatabase.from_netcdf(file)
 
 
 def _arguments(point: dict[str, float | None], database: SteDatabase) -> dict[str, Any]:
     torque, force, misalignment_um, center_distance_change_mm = point.values()
     if torque is not None and force is not None:
-        advice = "Leave out one of them, or both for the highest load."
-        raise BadInput.of("--torque", f"{torque:g} --force {force:g}", "the only load", advice)
+        remedy = "Leave out one of them, or both for the highest load."
+        raise BadInput.of("--torque", f"{torque:g} --force {force:g}", "the only load", remedy)
     force = float(database.force[-1]) if torque is None and force is None else force
     for name, value in point.items():
         if value is not None and not math.isfinite(value):

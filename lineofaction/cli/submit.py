@@ -178,8 +178,8 @@ def _write_case(case: Case, output: Path, *, as_json: bool) -> None:
 
 def _ended(client: LineOfActionClient, job: str, *, wait: bool) -> Result:
     if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
-        advice = "loa submit prints the first two."
-        raise BadInput.of("name", job, "the identifier of a job, a content hash or an address", advice)
+        remedy = "loa submit prints the first two."
+        raise BadInput.of("name", job, "the identifier of a job, a content hash or an address", remedy)
     try:
         return _waited(client, job) if wait else client.result(job)
     except ResultNotReady as error:

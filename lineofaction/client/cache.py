@@ -104,9 +104,9 @@ class ResultCache:
                 finally:
                     Path(stream.name).unlink(missing_ok=True)
         except OSError as error:
-            bound, advice = "a folder that can be written", "Give cache_dir, or set XDG_CACHE_HOME."
+            bound, remedy = "a folder that can be written", "Give cache_dir, or set XDG_CACHE_HOME."
             raise BadInput.of(
-                "cache_dir", str(self._directory), bound, f"{error.strerror}. {advice}"
+                "cache_dir", str(self._directory), bound, f"{error.strerror}. {remedy}"
             ) from None
 
 

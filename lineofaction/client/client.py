@@ -66,8 +66,8 @@ def _host(base_url: str) -> str:
     except httpx2.InvalidURL:
         url = httpx2.URL()
     if url.scheme not in ("http", "https") or not url.host:
-        advice = "Begin it with http:// or https://."
-        raise BadInput.of("service", base_url, "an address such as http://127.0.0.1:8321", advice)
+        remedy = "Begin it with http:// or https://."
+        raise BadInput.of("service", base_url, "an address such as http://127.0.0.1:8321", remedy)
     return url.host
 
 

@@ -17,7 +17,7 @@ from lineofaction.gearbox.study import Study
 _SUBJECTS = "lineofaction.gearbox.subjects"
 """Declares the fields of a case; loaded with the first call."""
 
-_ADVICE = (
+_REMEDY = (
     "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
     "job.figures(), job.report() and job.file() do not."
 )
@@ -74,7 +74,7 @@ def libraries() -> Iterator[None]:
     except ModuleNotFoundError as error:
         if type(error) is not ModuleNotFoundError:
             raise
-        raise ModuleNotFoundError(f"{error.name} is not installed. {_ADVICE}", name=error.name) from None
+        raise ModuleNotFoundError(f"{error.name} is not installed. {_REMEDY}", name=error.name) from None
 
 
 def _read(module: str, kind: str, file: Path) -> Any:

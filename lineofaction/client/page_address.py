@@ -66,8 +66,8 @@ class PageAddress:
             name, value = _word(part)
             (names if name in _NAMES else views)[name] = value
         if "unit" in views and not names and "case" not in views:
-            advice = "Save the file from the page and read it with: loa open FILE"
-            raise BadInput.of("unit", None, "beside a case, a database or a job", advice)
+            remedy = "Save the file from the page and read it with: loa open FILE"
+            raise BadInput.of("unit", None, "beside a case, a database or a job", remedy)
         return cls(origin, names, _unpacked(views["case"]) if "case" in views else None, views)
 
     @property
@@ -98,13 +98,13 @@ def _origin(page: str) -> Origin:
 def _word(part: str) -> tuple[str, str]:
     """Return name and value of a part of the fragment."""
     if len(part) > LONGEST_WORD:
-        advice = "Save the case from the page as a file."
-        raise BadInput.of(_FIELD, part, f"made of words of at most {LONGEST_WORD} characters", advice)
+        remedy = "Save the case from the page as a file."
+        raise BadInput.of(_FIELD, part, f"made of words of at most {LONGEST_WORD} characters", remedy)
     name, _, value = (unquote(piece) for piece in part.partition("="))
     pattern = _WORDS.get(name)
     if pattern is None:
-        advice = f"{_COPY} Was it made by another version of the page?"
-        raise BadInput.of(_FIELD, unquote(part), "made of words of the page, such as database=HASH", advice)
+        remedy = f"{_COPY} Was it made by another version of the page?"
+        raise BadInput.of(_FIELD, unquote(part), "made of words of the page, such as database=HASH", remedy)
     if not re.fullmatch(pattern, value, re.ASCII):
         raise BadInput.of(name, value, _BOUNDS.get(pattern, "as the page writes it"), _COPY)
     return name, value
@@ -161,8 +161,8 @@ class PageCalls(Surface):
                     return schemas.validated(schemas.Case, case)
         if missing is not None:
             raise missing
-        advice = "Open it in a browser, and save the case there."
-        raise BadInput.of(_FIELD, "&".join(page.names), "one that shows a case", advice)
+        remedy = "Open it in a browser, and save the case there."
+        raise BadInput.of(_FIELD, "&".join(page.names), "one that shows a case", remedy)
 
     @operation
     def result_at(self, address: str) -> Steps[str]:
@@ -176,9 +176,9 @@ class PageCalls(Surface):
             return page.result
         example = None if page.case else (yield from self._example())
         if example is None or not example["stored"]:
-            advice = "Fetch its case with -o case.toml, then: loa analyze case.toml -o ste.nc"
+            remedy = "Fetch its case with -o case.toml, then: loa analyze case.toml -o ste.nc"
             words = "&".join(page.views) or str(page.origin)
-            raise BadInput.of(_FIELD, words, "one with a result, database=HASH or a job", advice)
+            raise BadInput.of(_FIELD, words, "one with a result, database=HASH or a job", remedy)
         return str(example["hash"])
 
     def _at(self, address: str) -> PageAddress:
@@ -189,10 +189,10 @@ class PageCalls(Surface):
         except ValueError:
             same = False
         if not same:
-            advice = (
+            remedy = (
                 "No access key leaves its service: set the service to that of the address if it is meant."
             )
-            raise BadInput.of("service", own, f"that of the address, {page.origin}", advice)
+            raise BadInput.of("service", own, f"that of the address, {page.origin}", remedy)
         return page
 
     def _example(self) -> Steps[dict[str, Any]]:

@@ -44,7 +44,7 @@ def _connected(scheduler: str) -> Iterator[Workers]:
         raise BadInput.of("--scheduler", scheduler, "left out without the extra dask", f"{error}.") from None
     except WorkersLost as error:
         bound = "the address of a running Dask scheduler, such as tcp://host:8786, or its file"
-        advice = f"{error} Start one: dask scheduler; and workers: dask worker ADDRESS --nthreads 1"
-        raise BadInput.of("--scheduler", scheduler, bound, advice) from None
+        remedy = f"{error} Start one: dask scheduler; and workers: dask worker ADDRESS --nthreads 1"
+        raise BadInput.of("--scheduler", scheduler, bound, remedy) from None
     with cluster.client:
         yield cluster

@@ -151,5 +151,5 @@ def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
     return chosen
 
 
-def _no_place(override: Override, bound: str, advice: str) -> BadInput:
-    return BadInput.of(override.path, override.value, bound, advice)
+def _no_place(override: Override, bound: str, remedy: str) -> BadInput:
+    return BadInput.of(override.path, override.value, bound, remedy)

@@ -65,8 +65,8 @@ class MeshTables:
     def _in_file(self, field: str, name: str) -> SteDatabase:
         file = self._folder / name
         if not file.is_file():
-            advice = "Check the path, or make one with: loa analyze"
-            raise BadInput.of(field, str(file), "an STE database", advice)
+            remedy = "Check the path, or make one with: loa analyze"
+            raise BadInput.of(field, str(file), "an STE database", remedy)
         from fe_contact.ste import SteDatabase  # noqa: PLC0415 (clients are light)
 
         return SteDatabase.from_netcdf(file)

@@ -6,11 +6,11 @@ import math
 
 from lineofaction.gearbox.problems import BadInput
 
-MOST = 10_000
+MAX = 10_000
 
 _BOUND = "FIRST:LAST:STEP, or increasing numbers separated by commas"
 
-_ADVICE = "For example 100:3000:50 or 300,600,900."
+_REMEDY = "For example 100:3000:50 or 300,600,900."
 
 _ROUNDING = 1e-9  # of a step
 
@@ -26,14 +26,14 @@ def number_list(option: str, text: str) -> list[float]:
             return _range(option, text, first, last, step)
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise BadInput.of(option, text, _BOUND, _ADVICE) from None
+        raise BadInput.of(option, text, _BOUND, _REMEDY) from None
 
 
 def _range(option: str, text: str, first: float, last: float, step: float) -> list[float]:
     usable = all(math.isfinite(value) for value in (first, last, step)) and step > 0.0 and last >= first
     if not usable:
-        raise BadInput.of(option, text, "a range FIRST:LAST:STEP that rises by a step above 0", _ADVICE)
+        raise BadInput.of(option, text, "a range FIRST:LAST:STEP that rises by a step above 0", _REMEDY)
     count = math.floor((last - first) / step * (1.0 + _ROUNDING) + _ROUNDING) + 1
-    if count > MOST:
-        raise BadInput.of(option, text, f"at most {MOST} values", "Take a wider step.")
+    if count > MAX:
+        raise BadInput.of(option, text, f"at most {MAX} values", "Take a wider step.")
     return [first + step * index for index in range(count)]

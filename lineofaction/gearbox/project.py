@@ -57,8 +57,8 @@ def files_of(named: InputFile, subject: str) -> list[InputFile]:
 def only(files: Sequence[Named], project: Path, kind: str) -> Named:
     """Return the file, of a folder; raises `BadInput`: there are several."""
     if len(files) > 1:
-        advice = f"Name one: {_listed(files)}."
-        raise BadInput.of(kind, str(project), f"a folder of one {kind}", advice)
+        remedy = f"Name one: {_listed(files)}."
+        raise BadInput.of(kind, str(project), f"a folder of one {kind}", remedy)
     return files[0]
 
 
@@ -122,8 +122,8 @@ def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path | Non
     }
     tables = {name: table if table.is_file() else None for name, table in paths.items()}
     if not any(tables.values()):
-        advice = f"Make them with: loa analyze {named}"
-        raise BadInput.of("file", str(named), "a folder with an STE database in it", advice)
+        remedy = f"Make them with: loa analyze {named}"
+        raise BadInput.of("file", str(named), "a folder with an STE database in it", remedy)
     return tables
 
 

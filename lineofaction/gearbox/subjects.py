@@ -80,9 +80,9 @@ def _table(field: str, source: object) -> dict[str, Any]:
     """Return a table; raises `BadInput` for what is none, such as a path as text."""
     if isinstance(source, Mapping):
         return dict(source)
-    advice = "A file is given as pathlib.Path."
+    remedy = "A file is given as pathlib.Path."
     said = source if isinstance(source, str) else repr(source)
-    raise BadInput.of(field, said[:80], f"a Path, a dictionary or a model of a {field}", advice)
+    raise BadInput.of(field, said[:80], f"a Path, a dictionary or a model of a {field}", remedy)
 
 
 def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:
@@ -130,8 +130,8 @@ def _portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInp
     for index, mesh in enumerate(scene.meshes):
         field = f"meshes[{index}]"
         if mesh.database_file is not None:
-            advice = "Give case_file or database_hash, or run the scene here without a service."
-            raise BadInput.of(f"{field}.database_file", mesh.database_file, "left out for a service", advice)
+            remedy = "Give case_file or database_hash, or run the scene here without a service."
+            raise BadInput.of(f"{field}.database_file", mesh.database_file, "left out for a service", remedy)
         meshes.append(with_case(mesh, field, folder))
     return without_modes_files(scene.model_copy(update={"meshes": tuple(meshes)}))
 

@@ -129,8 +129,8 @@ class ComputedTables:
     def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Refuse: only a service knows hashes."""
         yield from ()
-        advice = "Name the service that holds it: --service http://127.0.0.1:8321"
-        raise BadInput.of("database_hash", key, "used together with a service", advice)
+        remedy = "Name the service that holds it: --service http://127.0.0.1:8321"
+        raise BadInput.of("database_hash", key, "used together with a service", remedy)
 
     def by_case(self, case: Case) -> Steps[SteDatabase]:
         """Compute."""

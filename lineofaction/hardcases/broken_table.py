@@ -50,9 +50,9 @@ def _broken_monotonicity() -> Sequence[Measured]:
             None,
             1,
         ),
-        Measured("least growth of STE after repair, m", float(np.diff(ste, axis=1).min()), least=1e-15),
-        Measured("largest change over the noise", report.largest_change / (2.0 * _AMPLITUDE), most=1.0),
-        Measured("error of the repaired over that of the noisy table", errors[1] / errors[0], most=1.0),
+        Measured("least growth of STE after repair, m", float(np.diff(ste, axis=1).min()), minimum=1e-15),
+        Measured("largest change over the noise", report.largest_change / (2.0 * _AMPLITUDE), maximum=1.0),
+        Measured("error of the repaired over that of the noisy table", errors[1] / errors[0], maximum=1.0),
         Measured(
             "reported change over that of the receipt",
             report.largest_change / stored["largest_change"],
@@ -60,7 +60,9 @@ def _broken_monotonicity() -> Sequence[Measured]:
             1.0,
         ),
         Measured(
-            "least change of force with approach, N", float(np.diff(sample.force, axis=1).min()), least=-1e-9
+            "least change of force with approach, N",
+            float(np.diff(sample.force, axis=1).min()),
+            minimum=-1e-9,
         ),
     )
 

@@ -41,10 +41,10 @@ def _square_wave_ste() -> Sequence[Measured]:
     depth = np.linspace(0.0, 1.2 * ste.max(), 400)
     force = table.force_at(x[::50, None], depth).force
     return (
-        Measured("overshoot over the wave", over, most=1e-12),
+        Measured("overshoot over the wave", over, maximum=1e-12),
         *_inverse(table, x),
         Measured(
-            "least change of force as teeth approach, N", float(np.diff(force, axis=1).min()), least=-1e-9
+            "least change of force as teeth approach, N", float(np.diff(force, axis=1).min()), minimum=-1e-9
         ),
         _slope_error(table),
     )
@@ -68,13 +68,16 @@ def _two_loads() -> Sequence[Measured]:
         loads = f"{force.size} load" + "s" * (force.size > 1)
         stored = between >= table.force[0]
         figures += [
-            *(Measured(f"{f.name}, {loads}", f.value, f.most, f.least) for f in _inverse(table, position)),
+            *(
+                Measured(f"{f.name}, {loads}", f.value, f.maximum, f.minimum)
+                for f in _inverse(table, position)
+            ),
             Measured(
                 f"from the lowest load on, off the straight law, {loads}",
                 off(table.ste(table.position[:, None], between[stored]), straight[:, stored]),
                 1e-12,
             ),
-            Measured(f"least growth of STE with load, {loads}, m", float(growth.min()), least=1e-9),
+            Measured(f"least growth of STE with load, {loads}, m", float(growth.min()), minimum=1e-9),
         ]
     return figures
 
@@ -95,15 +98,17 @@ def _lift_off() -> Sequence[Measured]:
     below, at, above = (table.force_at(x, first + step) for step in (-1e-12, 0.0, 1e-12))
     near = table.force_at(x, first + 1e-9)
     return (
-        Measured("force at and below lift-off, N", float(max(below.force.max(), at.force.max())), most=0.0),
+        Measured(
+            "force at and below lift-off, N", float(max(below.force.max(), at.force.max())), maximum=0.0
+        ),
         Measured(
             "stiffness at and below lift-off, N/m", float(max(below.stiffness.max(), at.stiffness.max())), 0.0
         ),
-        Measured("force 1 pm above it, N", float(above.force.max()), most=1e-6, least=0.0),
+        Measured("force 1 pm above it, N", float(above.force.max()), maximum=1e-6, minimum=0.0),
         Measured(
-            "force 1 nm above it over the secant's", float(near.force.max() * COMPLIANCE / 1e-9), most=1.0
+            "force 1 nm above it over the secant's", float(near.force.max() * COMPLIANCE / 1e-9), maximum=1.0
         ),
-        Measured("least force 1 nm above it, N", float(near.force.min()), least=1e-12),
+        Measured("least force 1 nm above it, N", float(near.force.min()), minimum=1e-12),
         *_inverse(table, x),
     )
 
@@ -130,12 +135,12 @@ def _queries_outside() -> Sequence[Measured]:
         _refused(table, *query) for query in ((np.nan, 1e-5), (0.0, np.nan), (np.inf, 1e-5), (0.0, np.inf))
     )
     return (
-        Measured("a million pitches away, relative change", float(far), most=1e-9),
-        Measured("12345 pitches back, relative change", float(behind), most=1e-11),
-        Measured("beyond the top, off the straight continuation", off(beyond.force, straight), most=1e-9),
-        Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
-        Measured("flags inside", float(np.count_nonzero(inside.validity)), most=0.0),
-        Measured("of four queries that are no numbers, refused", float(refused), least=4.0),
+        Measured("a million pitches away, relative change", float(far), maximum=1e-9),
+        Measured("12345 pitches back, relative change", float(behind), maximum=1e-11),
+        Measured("beyond the top, off the straight continuation", off(beyond.force, straight), maximum=1e-9),
+        Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), minimum=float(x.size)),
+        Measured("flags inside", float(np.count_nonzero(inside.validity)), maximum=0.0),
+        Measured("of four queries that are no numbers, refused", float(refused), minimum=4.0),
         *_along_the_axis(table, x),
     )
 
@@ -160,9 +165,9 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
             max(off(values, np.full(x.size, f)) for values, f in zip(at, factor, strict=True)), 1e-12,
         ),
         Measured("force likewise", max(off(values, np.full(x.size, 2500.0)) for values in force), 1e-9),
-        Measured("STE between two misalignments over that at the lower one", float(between.min()), least=1.0),
-        Measured("over that at the higher one", float(between.max() / 1.5), most=1.0),
-        Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
+        Measured("STE between two misalignments over STE at the lower", float(between.min()), minimum=1.0),
+        Measured("over that at the higher one", float(between.max() / 1.5), maximum=1.0),
+        Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), minimum=float(x.size)),
     )  # fmt: skip
 
 
@@ -183,12 +188,12 @@ def _nearly_parallel() -> Sequence[Measured]:
     levels = table.ste(x[:, None], np.r_[0.0, force])
     return (
         Measured(
-            "least distance of neighboring curves, m", float(np.diff(levels, axis=1).min()), least=1e-13
+            "least distance of neighboring curves, m", float(np.diff(levels, axis=1).min()), minimum=1e-13
         ),
         Measured(
             "curves off their knots, m",
             float(np.abs(table.ste(position[:, None], force) - ste).max()),
-            most=0.0,
+            maximum=0.0,
         ),
         *_inverse(table, x),
     )
@@ -204,7 +209,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
     rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
     off = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]
-    return (Measured("force of the STE of a force, off by", float(off.max()), most=1e-9),)
+    return (Measured("force of the STE of a force, off by", float(off.max()), maximum=1e-9),)
 
 
 def _slope_error(table: SteDatabase) -> Measured:
@@ -216,7 +221,7 @@ def _slope_error(table: SteDatabase) -> Measured:
     sides = [table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0)]
     stated = table.force_at(x, deflection).stiffness
     off = np.abs((sides[1] - sides[0]) / (2.0 * step) - stated) / stated.max()
-    return Measured("stiffness off the difference of forces", float(off.max()), most=1e-3)
+    return Measured("stiffness off the difference of forces", float(off.max()), maximum=1e-3)
 
 
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:

@@ -23,34 +23,34 @@ class Measured:
     name: str
     """What it is, with its unit unless it is a pure number."""
     value: float
-    most: float | None = None
-    least: float | None = None
-    """`most`, `least`: The figure passes within them, both included."""
+    maximum: float | None = None
+    minimum: float | None = None
+    """`maximum`, `minimum`: The figure passes within them, both included."""
 
     @property
     def passed(self) -> bool:
         """Whether it is a number, and within its bounds."""
-        low = -math.inf if self.least is None else self.least
-        high = math.inf if self.most is None else self.most
+        low = -math.inf if self.minimum is None else self.minimum
+        high = math.inf if self.maximum is None else self.maximum
         return math.isfinite(self.value) and low <= self.value <= high
 
     @property
     def bound(self) -> str:
         """The bounds in words; empty if there are none."""
-        low = "" if self.least is None else f">= {self.least:.3g}"
-        high = "" if self.most is None else f"<= {self.most:.3g}"
+        low = "" if self.minimum is None else f">= {self.minimum:.3g}"
+        high = "" if self.maximum is None else f"<= {self.maximum:.3g}"
         return " and ".join(part for part in (low, high) if part)
 
     @property
     def use(self) -> float | None:
         """Part of its bound that a figure uses; None for a bound of zero or one met exactly (a count)."""
-        if self.value in (self.most, self.least):
+        if self.value in (self.maximum, self.minimum):
             return None
         uses = []
-        if self.most is not None and self.most > 0.0 and self.value >= 0.0:
-            uses.append(self.value / self.most)
-        if self.least is not None and self.least > 0.0 and self.value > 0.0:
-            uses.append(self.least / self.value)
+        if self.maximum is not None and self.maximum > 0.0 and self.value >= 0.0:
+            uses.append(self.value / self.maximum)
+        if self.minimum is not None and self.minimum > 0.0 and self.value > 0.0:
+            uses.append(self.minimum / self.value)
         return max(uses) if uses else None
 
     def __str__(self) -> str:

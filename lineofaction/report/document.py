@@ -73,8 +73,8 @@ def read_stored(study: Study, file: Path) -> Any:
     except (FeContactError, DynamicsError) as error:
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", f"{error}.") from None
     except ValueError:
-        advice = "Something is missing or not as written."
-        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
+        remedy = "Something is missing or not as written."
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", remedy) from None
 
 
 def page_beside(study: Study, result: object, database: SteDatabase | None) -> Page:
@@ -121,8 +121,8 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     for file in files:
         study, kind = _kind(file)
         if kind in by_kind:
-            advice = "One page shows one file of each kind."
-            raise BadInput.of("file", str(file), f"the only {kind}", advice)
+            remedy = "One page shows one file of each kind."
+            raise BadInput.of("file", str(file), f"the only {kind}", remedy)
         by_kind[kind] = study, file
     warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
     read = {kind: _read(file, kind) for kind, (study, file) in by_kind.items() if study is None}
@@ -181,8 +181,8 @@ def file_attributes(file: Path) -> dict[str, str]:
         what = "It is a folder" if file.is_dir() else "There is no such file"
         raise BadInput.of("file", str(file), _BOUND, f"{what}. Check the path.")
     if file.suffix == ".json":
-        advice = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
-        raise BadInput.of("file", str(file), _BOUND, advice)
+        remedy = "JSON is for programs. Name the netCDF file: the verb writes it with -o FILE.nc."
+        raise BadInput.of("file", str(file), _BOUND, remedy)
     try:
         with opened_netcdf(file) as content:
             return {name: str(value) for name, value in content.attrs.items()}
@@ -449,5 +449,5 @@ def _study_of(result: Any) -> Study:
         if isinstance(result, tuple if get_origin(kind) is tuple else kind):
             return study
     kind = type(result).__name__
-    advice = "Tables and runs: write them to netCDF, then loa report."
-    raise BadInput.of("result", kind, "the result of a study", advice)
+    remedy = "Tables and runs: write them to netCDF, then loa report."
+    raise BadInput.of("result", kind, "the result of a study", remedy)

@@ -33,8 +33,8 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Any
     path = Path(file)
     result = path.suffix == ".nc"
     if overrides and (result or path.name.lower().endswith(UNITS)):
-        advice = "Leave them out; loa.open_unit takes those of the scene of a unit."
-        raise BadInput.of("overrides", ", ".join(overrides), "those of a case or a scene", advice)
+        remedy = "Leave them out; loa.open_unit takes those of the scene of a unit."
+        raise BadInput.of("overrides", ", ".join(overrides), "those of a case or a scene", remedy)
     if result:
         from lineofaction.report.document import read_file  # noqa: PLC0415 (start-up time: it draws)
 

@@ -55,10 +55,10 @@ def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | Non
     shape = excess - excess.mean(axis=(1, 2), keepdims=True)
     worst = int(np.argmax(np.ptp(shape, axis=(1, 2))))
     angle = Axis(f"roll angle of the {name}, °")
-    middle, most = excess[:, :, _FACES // 2], float(np.abs(excess).max())
+    middle, maximum = excess[:, :, _FACES // 2], float(np.abs(excess).max())
     of_one = float(np.abs(shape[worst]).max())
     rolled = roll / gear.base_radius / DEGREE
-    all_teeth = HeatMap(np.arange(1.0, gear.teeth + 1.0), rolled, middle.T, _LABEL, most, -most)
+    all_teeth = HeatMap(np.arange(1.0, gear.teeth + 1.0), rolled, middle.T, _LABEL, maximum, -maximum)
     panels = [Panel(Axis("tooth"), angle, title="All teeth at mid-face", shade=all_teeth)]
     if of_one > 0.0:
         one = HeatMap(face / MM, rolled, shape[worst], _LABEL, of_one, -of_one)

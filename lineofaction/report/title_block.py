@@ -68,9 +68,9 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
     words = []
     for one, value in _meant(required, headlines):
         low, high, stated = _band(one, value)
-        met = value <= required.limit if required.most else value >= required.limit
+        met = value <= required.limit if required.maximum else value >= required.limit
         verdict = "Open within the error" if low < required.limit < high else "Met" if met else "Not met"
-        limit = f"{'at most' if required.most else 'at least'} {required.limit:g} {required.unit}".rstrip()
+        limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
         result = f"{one.value.removesuffix(required.unit).strip()}{stated} {required.unit}".rstrip()
         words.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
     return words

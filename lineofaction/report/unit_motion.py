@@ -18,7 +18,7 @@ from lineofaction.report.document import of_the_store, read_stored
 
 STATIONS = 33
 """Along a shaft."""
-MOST_FACETS = 60_000
+MAX_FACETS = 60_000
 """Of a surface: one with more is drawn by the corners of its triangles."""
 VELOCITY_REFERENCE = 5e-8
 """m/s, root mean square, of 0 dB: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
@@ -78,7 +78,7 @@ def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
     """Return nodes and facets of a surface with its motion; a large one by its corners alone."""
     from dynamics.housings.drawn_surface import node_normals  # noqa: PLC0415 (start-up time)
 
-    facets = surface.facets if len(surface.facets) <= MOST_FACETS else surface.triangles[:, :3]
+    facets = surface.facets if len(surface.facets) <= MAX_FACETS else surface.triangles[:, :3]
     used, facets = np.unique(facets, return_inverse=True)
     points, motion, facets = surface.points[used], surface.motion[used], facets.reshape(-1, 3)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(motion))):

@@ -283,7 +283,7 @@ class OrHere:
 # Which work is divided: what costs more than the start of a process.
 
 
-def _least(workers: Workers) -> float:
+def _minimum(workers: Workers) -> float:
     return START_SECONDS * AWAKE if workers.cost.tasks else START_SECONDS
 
 
@@ -302,7 +302,7 @@ def divided(
     `Workers.run`, and what the function raises.
     """
     done, expected = 0, seconds or 0.0
-    while len(items) - done > 1 and expected <= _least(workers):
+    while len(items) - done > 1 and expected <= _minimum(workers):
         began = cpu_seconds()
         result = function(shared, items[done])
         last, done = cpu_seconds() - began, done + 1
@@ -314,7 +314,7 @@ def divided(
 
 def pays(workers: Workers, seconds: float) -> bool:
     """Return whether work of so many predicted CPU seconds goes to workers, if it is not `divided`."""
-    return not isinstance(workers, InProcess) and seconds > _least(workers)
+    return not isinstance(workers, InProcess) and seconds > _minimum(workers)
 
 
 def spent(workers: Workers) -> float:

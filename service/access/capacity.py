@@ -23,8 +23,8 @@ NOBODY = ""
 
 logger = structlog.get_logger(__name__)
 _MINUTE_S = 60.0
-_MOST_CONNECTIONS = 800
-_LEAST_CONNECTIONS = 32
+_MAX_CONNECTIONS = 800
+_MIN_CONNECTIONS = 32
 _OTHER_FILES = 192
 """Kept for all else: up to four files in each of the 40 threads of handlers, pipes to workers, the rest."""
 _FILES_OF_A_WORKER = 4
@@ -49,11 +49,11 @@ class Held:
         """Return how many a holder has."""
         return self._held[name]
 
-    def refuse_beyond(self, name: str, most: int | None) -> None:
-        """Raise `TooManyHeld` if a holder has `most`, `TooManyRequests` if all together have theirs."""
-        if most is not None and self._held[name] >= most:
+    def refuse_beyond(self, name: str, maximum: int | None) -> None:
+        """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have theirs."""
+        if maximum is not None and self._held[name] >= maximum:
             who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
-            text = f"{who} {most} {self._what}, the limit. End one of them, or try again."
+            text = f"{who} {maximum} {self._what}, the limit. End one of them, or try again."
             raise TooManyHeld.after(_AGAIN_S, text)
         if self._in_all is not None and self._held.total() >= self._in_all:
             raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")
@@ -116,7 +116,7 @@ class Capacity:
     `connections`: open HTTP connections on which requests are under way.
     """
 
-    connections: int = _MOST_CONNECTIONS
+    connections: int = _MAX_CONNECTIONS
 
     @property
     def comfortable_connections(self) -> int:
@@ -141,11 +141,11 @@ def capacity(workers: int) -> Capacity:
     """
     files = most_open_files()
     kept = _OTHER_FILES + _FILES_OF_A_WORKER * workers
-    if files - kept < _LEAST_CONNECTIONS:
-        bound = f"at least {kept + _LEAST_CONNECTIONS}, and {kept + _MOST_CONNECTIONS} for all connections"
+    if files - kept < _MIN_CONNECTIONS:
+        bound = f"at least {kept + _MIN_CONNECTIONS}, and {kept + _MAX_CONNECTIONS} for all connections"
         raise BadInput.of("open files", int(files), bound, RAISE)
-    bearable = Capacity(int(min(files - kept, _MOST_CONNECTIONS)))
-    if bearable.connections < _MOST_CONNECTIONS:
+    bearable = Capacity(int(min(files - kept, _MAX_CONNECTIONS)))
+    if bearable.connections < _MAX_CONNECTIONS:
         facts = {"connections": bearable.connections, "requests": bearable.requests, "share": bearable.share}
         logger.warning("limits lowered", open_files=int(files), **facts, remedy=RAISE)
     return bearable

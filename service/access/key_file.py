@@ -22,7 +22,7 @@ SOON = timedelta(days=7)
 """A key that ends within this is mentioned in the log."""
 _DURATION = re.compile(r"([1-9][0-9]{0,4})([hdw])")
 _UNITS = {"h": timedelta(hours=1), "d": timedelta(days=1), "w": timedelta(weeks=1)}
-LEAST = {"highest_priority": -9}
+MIN = {"highest_priority": -9}
 """Of limits; of others 1."""
 PREFIX = "loa_"
 """Beginning of every key."""
@@ -65,7 +65,7 @@ def _record_of(entry: dict[str, Any]) -> AccessKey:
     if key.expires is not None:
         instant_of(key.expires)
     for name, limit in key.limits.items():
-        if limit is not None and (not isinstance(limit, int) or limit < LEAST.get(name, 1)):
+        if limit is not None and (not isinstance(limit, int) or limit < MIN.get(name, 1)):
             raise ValueError(entry)
     return key
 
@@ -108,8 +108,8 @@ class KeyFile:
             raise BadInput.of("name", name, bound, "For example: test-bench-3")
         known = self.read()
         if any(key.name == name for key in known):
-            advice = f"Renew it with: loa keys rotate {name}; or take it back first: loa keys remove {name}"
-            raise BadInput.of("name", name, "new", advice)
+            remedy = f"Renew it with: loa keys rotate {name}; or take it back first: loa keys remove {name}"
+            raise BadInput.of("name", name, "new", remedy)
         holder = Holder(name=name, **_chosen(rights))
         secret, key = _made(holder, None if expires is None else _duration("expires", expires))
         self._write((*known, key))
@@ -190,9 +190,9 @@ def _chosen(rights: dict[str, Any]) -> dict[str, Any]:
     """Return rights as a holder has them; raise of what is none."""
     chosen = {name: value for name, value in rights.items() if value is not None}
     for field in LIMITS:
-        least = LEAST.get(field, 1)
-        if chosen.get(field, least) < least:
-            raise BadInput.of(field, chosen[field], f"at least {least}", "Leave it out for no limit.")
+        minimum = MIN.get(field, 1)
+        if chosen.get(field, minimum) < minimum:
+            raise BadInput.of(field, chosen[field], f"at least {minimum}", "Leave it out for no limit.")
     project = chosen.get("project", COMMON)
     if project != COMMON and PROJECT.fullmatch(project) is None:
         bound = "1 to 63 small letters, digits, dashes or underscores, the first a letter or a digit"

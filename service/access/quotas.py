@@ -19,7 +19,7 @@ class Quota:
 
     name: str
     """Of the policy, letters and hyphens."""
-    most: int
+    maximum: int
     """The quota."""
     left: int
     """What remains of it."""
@@ -35,7 +35,7 @@ class Quota:
         """The share as an item of RateLimit-Policy."""
         unit = f';qu="{self.unit}"' if self.unit else ""
         window = "" if self.window_s is None else f";w={self.window_s}"
-        return f'"{self.name}";q={self.most}{unit}{window}'
+        return f'"{self.name}";q={self.maximum}{unit}{window}'
 
     @property
     def limit(self) -> str:

@@ -15,7 +15,7 @@ from service.store.files import PARTIAL
 
 logger = structlog.get_logger(__name__)
 
-MOST_BYTES = 200_000_000
+MAX_BYTES = 200_000_000
 
 
 class KeptAnswers:
@@ -29,7 +29,7 @@ class KeptAnswers:
         What it holds at most.
     """
 
-    def __init__(self, folder: Path, most_bytes: int = MOST_BYTES) -> None:
+    def __init__(self, folder: Path, most_bytes: int = MAX_BYTES) -> None:
         self._folder, self._most_bytes = folder, most_bytes
 
     def find(self, tag: str) -> bytes | None:

@@ -21,7 +21,7 @@ from service.live.answer import propagated
 from service.live.child import Share
 from service.live.question_pool import QuestionPool
 from service.live.turns import Limits, Question
-from service.settings import LEAST_MEMORY_MB, Settings
+from service.settings import MIN_MEMORY_MB, Settings
 from service.worker.usage import machine_memory_mb
 
 _LAUNCH = partial(start_child, "service.live.child")
@@ -215,7 +215,7 @@ def _superseded() -> ServiceError:
 def live_pool(settings: Settings) -> QuestionPool:
     """Return the pool of live questions of a service; a worker may have as much memory as one computation."""
     share = settings.memory_limit_mb or machine_memory_mb() // settings.workers
-    memory = max(share, LEAST_MEMORY_MB)
+    memory = max(share, MIN_MEMORY_MB)
     remove_left(settings.data_directory / "live")
     workers = [LiveWorker(settings.data_directory, memory) for _ in range(WORKERS)]
     return QuestionPool(workers, LIMITS, "live requests", for_submissions=1)

@@ -120,8 +120,8 @@ class Turns:
         busy = self._busy()
         for line in sorted(self._lines, key=lambda line: not line.submits):
             name, question = next(iter(self._lines[line].items()))
-            most = math.inf if line.key == NOBODY else self._limits.answered
-            if busy[line] < most and fits(question):
+            maximum = math.inf if line.key == NOBODY else self._limits.answered
+            if busy[line] < maximum and fits(question):
                 self._take(line, name)
                 self._answered[id(question)] = question
                 return question
@@ -149,10 +149,10 @@ class Turns:
         return Counter(map(_line_of, self._answered.values()))
 
     def _refuse_beyond(self, line: _Line) -> None:
-        most = self._limits.submissions if line.submits else self._limits.held
+        maximum = self._limits.submissions if line.submits else self._limits.held
         held = self._busy()[line] + len(self._lines.get(line, ()))
-        if line.key != NOBODY and held >= most:
-            text = f"Key {line.key!r} has {most} {self._what} in work and waiting. Try again soon."
+        if line.key != NOBODY and held >= maximum:
+            text = f"Key {line.key!r} has {maximum} {self._what} in work and waiting. Try again soon."
             raise TooManyHeld.after(_AGAIN_S, text)
         if sum(map(len, self._lines.values())) + len(self._answered) >= self._limits.in_all:
             text = f"{self._limits.in_all} {self._what} are in work and waiting. Try again soon."

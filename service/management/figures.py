@@ -59,7 +59,7 @@ def _of_scheduler(scheduler: Scheduler) -> Iterable[Metric]:
     age = "Seconds since the scheduler's last turn"
     for name, text, value in (
         ("loa_workers_busy", "Workers that run", scheduler.busy),
-        ("loa_workers_limit", "Workers that may run at the same time", scheduler.most),
+        ("loa_workers_limit", "Workers that may run at the same time", scheduler.maximum),
         ("loa_scheduler_up", "Whether the scheduler's thread runs", scheduler.alive),
         ("loa_scheduler_turn_age_seconds", age, scheduler.turn_age_s),
     ):

@@ -21,7 +21,7 @@ from lineofaction.gearbox.problems import BadInput
 from service.management.vitals import Vitals
 
 METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
-_MOST_REQUESTS = 16
+_MAX_REQUESTS = 16
 """Answered at once; a connection beyond them is closed."""
 _PATIENCE_S = 5.0
 """For the next piece of a request."""
@@ -57,8 +57,8 @@ class ManagementServer:
         try:
             self._server = _Server(host, port, paths)
         except OSError as error:
-            advice = f"{error.strerror}. Choose another with LOA_MANAGEMENT_PORT, or 0 for a free one."
-            raise BadInput.of("management_port", port, "a free port", advice) from None
+            remedy = f"{error.strerror}. Choose another with LOA_MANAGEMENT_PORT, or 0 for a free one."
+            raise BadInput.of("management_port", port, "a free port", remedy) from None
         self._thread = threading.Thread(target=self._server.serve_forever, name="management", daemon=True)
 
     @property
@@ -89,7 +89,7 @@ class _Server(ThreadingMixIn, TCPServer):
     def __init__(self, host: str, port: int, paths: dict[str, Callable[[], _Answer]]) -> None:
         family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         self.address_family, self.paths = family, paths
-        self._room = threading.BoundedSemaphore(_MOST_REQUESTS)
+        self._room = threading.BoundedSemaphore(_MAX_REQUESTS)
         super().__init__(address, _Handler)  # type: ignore[arg-type]  # an IPv6 address has four parts
 
     def process_request(self, request: Any, client_address: Any) -> None:

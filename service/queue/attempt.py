@@ -34,7 +34,7 @@ files_read = on_demand("service.worker.preparations:files_read")
 
 _START = "start"
 """Stage before the first report: the process starts and loads its program."""
-_MOST_STAGES = 200
+_MAX_STAGES = 200
 """Spans of one attempt; what is reported after them belongs to the last."""
 
 
@@ -51,7 +51,7 @@ class _AttemptTrace:
         end_span(begun_span("queue", claim.traceparent, min(begun, launched), facts), launched)
         facts |= {f"process.{name}": value for name, value in named.items()}
         self._attempt = begun_span(f"attempt {claim.process}", claim.traceparent, launched, facts)
-        self._name, self._cpu_s, self._left = "", 0.0, _MOST_STAGES
+        self._name, self._cpu_s, self._left = "", 0.0, _MAX_STAGES
         self._stage = self._begun(_START, launched, 0.0)
 
     def _begun(self, name: str, at_s: float, cpu_s: float) -> Span:

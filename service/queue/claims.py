@@ -21,7 +21,7 @@ from service.store.database import instant, now, reading, writing
 from service.store.retries import retried
 from service.version import solver_version
 
-MOST_LOST_RUNS = 10
+MAX_LOST_RUNS = 10
 """So many runs in a row may be lost; then the work is what ends its server."""
 SUSPECT_FROM = 3
 """After so many lost runs in a row a computation runs without others: what ends the server is found so."""
@@ -214,9 +214,9 @@ def _waited_long_enough() -> ColumnElement[bool]:
     table, time = computations.c, datetime.now(UTC)
     due = [
         (table.lost_runs == lost) & (table.updated <= instant(time - timedelta(seconds=wait_s(lost))))
-        for lost in range(1, MOST_LOST_RUNS)
+        for lost in range(1, MAX_LOST_RUNS)
     ]
-    return or_(table.lost_runs == 0, *due, table.lost_runs >= MOST_LOST_RUNS)
+    return or_(table.lost_runs == 0, *due, table.lost_runs >= MAX_LOST_RUNS)
 
 
 def _claimed(row: Row[Any]) -> Claim:

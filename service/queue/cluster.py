@@ -131,14 +131,14 @@ class Task:
 class Cluster:
     """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
 
-    `most` jobs run at the same time: one for each thread of its workers; 0 while they are away.
+    `maximum` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """
 
     keeps = True
 
     def __init__(self, address: str, deployment: str) -> None:
         self._address, self._name = address, f"loa-{deployment[:12]}"
-        self.most = 0
+        self.maximum = 0
         self._tasks: dict[str, Task] = {}
         self._known: set[str] = set()
         self._away = ""
@@ -178,7 +178,7 @@ class Cluster:
                 self._known.add(worker)
             else:
                 fault = f"of workers with {program()}: {worker} has {versions}"
-        self.most = 0 if fault else sum(threads.values())
+        self.maximum = 0 if fault else sum(threads.values())
         return fault, f"Start them: {start}, from an installation of this version with its extras."
 
     def start(self, heard: Callable[[], None]) -> None:
@@ -228,7 +228,7 @@ class Cluster:
             except Exception as error:  # noqa: BLE001 (the next connection may do)
                 self._say(f"the scheduler {self._address} is lost: {error or type(error).__name__}")
                 await asyncio.sleep(_LOOK_S)
-            self.most = 0
+            self.maximum = 0
 
     async def _serve(self, client: Client) -> None:
         """Submit what is wanted, cancel what is not; end when the connection is lost."""

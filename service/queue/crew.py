@@ -11,7 +11,7 @@ import structlog
 
 from host.children.launcher import Launcher
 from service.queue.cluster import Cluster, Task
-from service.settings import LEAST_MEMORY_MB, Settings
+from service.settings import MIN_MEMORY_MB, Settings
 from service.worker.order import WorkOrder
 from service.worker.usage import machine_memory_mb
 from service.worker.worker import WORK, Worker
@@ -27,8 +27,8 @@ class Children:
     keeps = False
 
     def __init__(self, settings: Settings, modules: Iterable[str]) -> None:
-        self.most = settings.workers
-        self._memory_mb = max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+        self.maximum = settings.workers
+        self._memory_mb = max(MIN_MEMORY_MB, machine_memory_mb() // settings.workers)
         log = settings.data_directory / "log" / "warm.log"
         self._launcher = Launcher(WORK, modules, log, logger.warning)
 

@@ -9,7 +9,7 @@ from typing import Any
 from service.schemas.answers import Difference, Differences, Value
 
 Json = dict[str, Any]
-_MOST = 12
+_MAX = 12
 _LONGEST_LIST, _LONGEST_TEXT = 16, 200
 NOT_COMPARED = Differences(since=None, first=[], number=0)
 
@@ -25,7 +25,7 @@ def differences_between(reference: Json, inputs: Json, since: str | None = None)
     differing = [path for path, (old, new) in pairs.items() if type(old) is not type(new) or old != new]
     first = [
         Difference(field=path, before=_short(pairs[path][0]), value=_short(pairs[path][1]))
-        for path in differing[:_MOST]
+        for path in differing[:_MAX]
     ]
     return Differences(since=since, first=first, number=len(differing))
 

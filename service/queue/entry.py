@@ -148,9 +148,9 @@ class Entry:
         waiting = {case.key for case in cases if shared[case.key] is None and not case.stored}
         unfinished = sum(not case.stored for case in cases)
         _refuse_more(len(waiting), self._queue_limit, "new cases: so many may wait (LOA_QUEUE_LIMIT)")
-        most = self._caller.unfinished_jobs
-        if most is not None:
-            _refuse_more(unfinished, most, "unfinished jobs of this key")
+        maximum = self._caller.unfinished_jobs
+        if maximum is not None:
+            _refuse_more(unfinished, maximum, "unfinished jobs of this key")
         if unfinished:
             _refuse_if_busy(connection, self._caller, unfinished)
         if waiting:
@@ -198,8 +198,8 @@ def _is_entered(connection: Connection, which: ColumnElement[bool], works: Seque
     entered = connection.execute(known.where(which).order_by(jobs.c.place)).all()
     named_alike = all(row.program == solver_version() for row in entered)  # others name work differently
     if entered and named_alike and [row.key for row in entered] != [work.key for work in works]:
-        advice = "Give a request with other inputs another."
-        raise BadInput.of("Idempotency-Key", None, "the name of one request", advice)
+        remedy = "Give a request with other inputs another."
+        raise BadInput.of("Idempotency-Key", None, "the name of one request", remedy)
     return entered != []
 
 
@@ -210,9 +210,9 @@ def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[D
         yield differences_between(before.inputs, case.inputs, name)
 
 
-def _refuse_more(number: int, most: int, of_what: str) -> None:
-    if number > most:
-        raise BadInput.of("jobs", f"{number} jobs", f"at most {most} {of_what}", "Split the batch.")
+def _refuse_more(number: int, maximum: int, of_what: str) -> None:
+    if number > maximum:
+        raise BadInput.of("jobs", f"{number} jobs", f"at most {maximum} {of_what}", "Split the batch.")
 
 
 def _refuse_if_full(connection: Connection, limit: int, further: int = 1) -> None:

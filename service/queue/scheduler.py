@@ -124,9 +124,9 @@ class Scheduler:
         return len(self._running)
 
     @property
-    def most(self) -> int:
+    def maximum(self) -> int:
         """Workers that may run at the same time."""
-        return self._crew.most
+        return self._crew.maximum
 
     def wake(self) -> None:
         """Look at the table now: something was submitted or dismissed."""
@@ -182,7 +182,7 @@ class Scheduler:
         self._note_progress()
         self._clear()
         self._claims.advance_batches()
-        while len(self._running) < self._crew.most and (claim := self._next()) is not None:
+        while len(self._running) < self._crew.maximum and (claim := self._next()) is not None:
             self._begin(claim)
 
     def _next(self) -> Claim | None:

@@ -11,7 +11,7 @@ from typing import Any
 import structlog
 
 from service.queue.attempt import Attempt
-from service.queue.claims import MOST_LOST_RUNS, SUSPECT_FROM, Claim, Claims
+from service.queue.claims import MAX_LOST_RUNS, SUSPECT_FROM, Claim, Claims
 from service.store.results import ResultStore
 from service.tracing import begun_span, end_span
 from service.worker.order import Outcome
@@ -87,12 +87,12 @@ class Settlement:
 
     def again_or_fail(self, claim: Claim, reason: str) -> bool:
         """Give work that died another attempt, as long as there are any; return whether there is one."""
-        most = self.most_attempts
-        if claim.attempts < most:
-            text = f"{reason} Waits for attempt {claim.attempts + 1} of {most}."
+        maximum = self.most_attempts
+        if claim.attempts < maximum:
+            text = f"{reason} Waits for attempt {claim.attempts + 1} of {maximum}."
             self.claims.put_back(claim, text, counted=True)
             return True
-        self.claims.fail(claim, f"{reason} That was attempt {claim.attempts} of {most}.")
+        self.claims.fail(claim, f"{reason} That was attempt {claim.attempts} of {maximum}.")
         return False
 
     def free_or_fail(self, claim: Claim, reason: str, lost_runs: int) -> bool:
@@ -100,7 +100,7 @@ class Settlement:
 
         The evidence is who ran: this work so many times in a row, in the end without others.
         """
-        if lost_runs < MOST_LOST_RUNS:
+        if lost_runs < MAX_LOST_RUNS:
             text = f"{reason} Waits to be begun again, which is no attempt."
             self.claims.put_back(claim, text, counted=False, lost_runs=lost_runs)
             return True

@@ -23,7 +23,7 @@ from service.worker.usage import begin_work
 
 LONGEST_S = 30
 """Time after which it ends, whatever it waits for."""
-MOST_ANSWER_BYTES = 100_000_000
+MAX_ANSWER_BYTES = 100_000_000
 FIELD = "reading"
 """Kind of a message whose body is the field of the file that is read next."""
 _NICENESS = 5
@@ -56,8 +56,8 @@ def _answer(channel: BinaryIO) -> Frame:
         return Frame("memory")
     announce("")
     answer = answer_of(order, Path.cwd(), announce, note=_note, write=json_body_or_memory_error)
-    if len(answer.body) > MOST_ANSWER_BYTES:
-        return problem(TooLarge(f"What the files hold has more than {MOST_ANSWER_BYTES} bytes as JSON."))
+    if len(answer.body) > MAX_ANSWER_BYTES:
+        return problem(TooLarge(f"What the files hold has more than {MAX_ANSWER_BYTES} bytes as JSON."))
     return answer
 
 

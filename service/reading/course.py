@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 from host import READING, Ended, ending_signal
 from host.children.frames import Frame
-from service.reading.child import FIELD, LONGEST_S, MOST_ANSWER_BYTES
+from service.reading.child import FIELD, LONGEST_S, MAX_ANSWER_BYTES
 
-MOST_BYTES = MOST_ANSWER_BYTES + 1_000_000
+MAX_BYTES = MAX_ANSWER_BYTES + 1_000_000
 """Of an answer and of the fields before it."""
 _LONGEST_FIELD = 1_000
 _KILL = "SIGKILL"

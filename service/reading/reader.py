@@ -26,7 +26,7 @@ from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Limits, Question
 from service.reading.child import LONGEST_S
-from service.reading.course import MOST_BYTES, Course
+from service.reading.course import MAX_BYTES, Course
 from service.reading.refusal import refusal
 
 WORK = "service.reading.child"
@@ -139,7 +139,7 @@ def _followed(child: Child, folder: Path) -> Course:
     """Return what a child sends, until it ends, or takes more time or writes more than it may."""
     watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
     course, look, overrun = Course(), time.monotonic() + LOOK_S, ""
-    while not child.closed and not overrun and child.received <= MOST_BYTES:
+    while not child.closed and not overrun and child.received <= MAX_BYTES:
         course.take(child.receive(max(look - time.monotonic(), 0.0)))
         if time.monotonic() >= look and not child.closed:
             look = time.monotonic() + LOOK_S
@@ -182,8 +182,8 @@ def require_confinement() -> None:
     """Raise `BadInput` where the system lacks a protection that confines the readers of files."""
     if missing := missing_protections():
         bound = f"left out on this system, which lacks protections of readers: {', '.join(missing)}"
-        advice = "Use Linux 5.13 or later with Landlock (boot parameter lsm) and seccomp, on x86-64 or ARM64."
-        raise BadInput.of("require_confinement", True, bound, advice)
+        remedy = "Use Linux 5.13 or later with Landlock (boot parameter lsm) and seccomp, on x86-64 or ARM64."
+        raise BadInput.of("require_confinement", True, bound, remedy)
 
 
 def reading_pool(data_directory: Path) -> QuestionPool:

@@ -9,7 +9,7 @@ from lineofaction.gearbox.problems import BadInput
 
 _TEXTS = ("toml", "csv", "rexs_base64")
 _SHOWN = 20
-_ADVICE = (
+_REMEDY = (
     "Export it again, or heal it in the program that wrote it; if it is large, leave out what is not needed."
 )
 
@@ -19,7 +19,7 @@ def refusal(inputs: Mapping[str, Any], field: str, bound: str) -> BadInput:
     sources = dict(_sources(inputs))
     texts = [name for name in sources if name.rpartition(".")[2] in _TEXTS]
     name = field if field in sources else next(iter([*texts, *sources]), "inputs")
-    return BadInput.of(name, sources.get(name), bound, _ADVICE)
+    return BadInput.of(name, sources.get(name), bound, _REMEDY)
 
 
 def _sources(value: object, path: str = "") -> Iterator[tuple[str, str]]:

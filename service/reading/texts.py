@@ -48,10 +48,10 @@ def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Annou
     return find
 
 
-def _written(file: FileContentInput, folder: Path, field: str, most: int) -> Path:
+def _written(file: FileContentInput, folder: Path, field: str, maximum: int) -> Path:
     """Write a file of at most so many bytes into a folder, and return where it is."""
     try:
-        content = file.unpacked(most)
+        content = file.unpacked(maximum)
     except ValueError as error:
         raise BadInput.of(f"{field}.content", file.name, str(error)) from None
     place = folder / own_name(file.name)

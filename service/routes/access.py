@@ -101,8 +101,8 @@ class Access:
             await self._app(scope, receive, send)
             return
         if not closed or scope["path"] in OPEN_PATHS or scope["path"].startswith(OPEN_FOLDER):
-            most = self._admission.share if closed else None
-            with self._admission.admitted(scope, receive, NOBODY, most) as received:
+            maximum = self._admission.share if closed else None
+            with self._admission.admitted(scope, receive, NOBODY, maximum) as received:
                 await self._app(scope, received, send)
             return
         visit = _Visit(scope, send)
@@ -120,21 +120,21 @@ class Access:
         bind_contextvars(caller=key.name)
         if key.expired:
             raise KeyExpired.of(f"Key {key.name!r} has expired ({key.expires}). Ask for a new one.")
-        most = key.connections or self._admission.share
-        scope["state"]["quotas"] = partial(self._quotas, key, most)
+        maximum = key.connections or self._admission.share
+        scope["state"]["quotas"] = partial(self._quotas, key, maximum)
         wait_s = self._rates.wait_s(key)
         if wait_s:
             text = f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
             raise RateExceeded.after(wait_s, text)
         with ExitStack() as held:
-            received = held.enter_context(self._admission.admitted(scope, receive, key.name, most))
+            received = held.enter_context(self._admission.admitted(scope, receive, key.name, maximum))
             scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
             await self._app(scope, received, for_one_caller(visit.send))
 
-    def _quotas(self, key: Holder, most: int) -> list[Quota]:
+    def _quotas(self, key: Holder, maximum: int) -> list[Quota]:
         """Return the shares of a key, as its answer begins."""
         rate = self._rates.quota(key)
-        return [*([] if rate is None else [rate]), self._admission.quota(key.name, most)]
+        return [*([] if rate is None else [rate]), self._admission.quota(key.name, maximum)]
 
 
 def _presented(scope: Scope) -> str | None:

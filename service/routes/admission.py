@@ -24,12 +24,12 @@ class Admission:
         self._answered = Held("requests under way", capacity.requests)
         self._awaited = Held("bodies under way", capacity.requests)
 
-    def quota(self, name: str, most: int) -> Quota:
+    def quota(self, name: str, maximum: int) -> Quota:
         """Return what a caller has left of the requests that it may have answered at once."""
-        return Quota("concurrent", most, most - self._answered.number(name), unit="concurrent-requests")
+        return Quota("concurrent", maximum, maximum - self._answered.number(name), unit="concurrent-requests")
 
     @contextmanager
-    def admitted(self, scope: Scope, receive: Receive, name: str, most: int | None) -> Iterator[Receive]:
+    def admitted(self, scope: Scope, receive: Receive, name: str, maximum: int | None) -> Iterator[Receive]:
         """Hold a place among bodies until there is no more of it to come, then one among requests.
 
         Raises `TooManyHeld`, `TooManyRequests`: the caller has as many as it may, or all together have;
@@ -49,7 +49,7 @@ class Admission:
         Receive
             What the request is to be read with.
         """
-        self._answered.refuse_beyond(name, most)
+        self._answered.refuse_beyond(name, maximum)
         headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3
         follows = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
         with ExitStack() as place:
@@ -57,7 +57,7 @@ class Admission:
                 place.enter_context(self._answered.one(name))
                 yield receive
                 return
-            self._awaited.refuse_beyond(name, most)
+            self._awaited.refuse_beyond(name, maximum)
             place.enter_context(self._awaited.one(name))
             whole = False
 

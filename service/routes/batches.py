@@ -10,7 +10,7 @@ import structlog
 from fastapi import APIRouter, Response
 
 from lineofaction.gearbox.problems import BadInput, Fault, QueueFull
-from lineofaction.gearbox.schemas.model import MOST_FAULTS
+from lineofaction.gearbox.schemas.model import MAX_FAULTS
 from lineofaction.gearbox.schemas.reading import validated
 from service.access.holder import Scope
 from service.queue.entry import BatchCase
@@ -86,7 +86,7 @@ def _checked_inputs(context: Context, process: Process, request: BatchRequest) -
             inputs.append(process.prepare(model, context.store))
         except BadInput as error:
             faults.append(_of_job(index, error))
-    if sum(map(len, faults)) > MOST_FAULTS:
+    if sum(map(len, faults)) > MAX_FAULTS:
         faults = [of_job[:1] for of_job in faults]
     if faults:
         raise BadInput(fault for of_job in faults for fault in of_job)

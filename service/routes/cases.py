@@ -35,7 +35,7 @@ from service.worker.process import ANALYZE
 
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
 """What a reader of foreign bytes answers beside faults of the bytes."""
-_MOST_FILES = 16
+_MAX_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
 case_json = on_demand("lineofaction.gearbox.convert.case:case_json")
@@ -69,7 +69,7 @@ class CaseText(TomlBody):
 
     files: Annotated[tuple[FileContentInput, ...], Strict(False)] = Field(
         default=(),
-        max_length=_MOST_FILES,
+        max_length=_MAX_FILES,
         description="The files that the text names, found by their names without folders",
         examples=[[]],
     )

@@ -42,15 +42,15 @@ class JobEvent(NamedTuple):
 class Streams:
     """A count with a bound, of one event loop, so without a lock.
 
-    `most`: streams that may be open at once.
+    `maximum`: streams that may be open at once.
     """
 
-    most: int = 256
+    maximum: int = 256
     _open: int = 0
 
     def enter(self) -> bool:
         """Count one more; False: there is no room."""
-        if self._open >= self.most:
+        if self._open >= self.maximum:
             return False
         self._open += 1
         return True

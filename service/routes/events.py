@@ -64,7 +64,7 @@ async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None)
     if event.last and event.id == last_event_id:
         return Response(status_code=204)
     if not context.streams.enter():
-        text = f"{context.streams.most} event streams are open. Poll the status, or try again."
+        text = f"{context.streams.maximum} event streams are open. Poll the status, or try again."
         raise _TooManyStreams(text)
     headers = {"Cache-Control": NO_STORE, "X-Accel-Buffering": "no"}
     return _Stream(context.streams, _changes(context, job, event, last_event_id), headers)

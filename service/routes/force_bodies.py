@@ -68,8 +68,8 @@ def _points_of_cbor(body: bytes, _columns: Sequence[str]) -> FloatArray:
     except ValidationError as error:
         _refuse(error, "valid CBOR")
     except (cbor2.CBORError, ValueError, MemoryError, RecursionError, OverflowError):
-        advice = "Send a map of the names of the JSON body to numbers, arrays and typed arrays (tag 86)."
-        raise BadInput.of("body", f"{len(body)} bytes", "valid CBOR without other tags", advice) from None
+        remedy = "Send a map of the names of the JSON body to numbers, arrays and typed arrays (tag 86)."
+        raise BadInput.of("body", f"{len(body)} bytes", "valid CBOR without other tags", remedy) from None
 
 
 def _points_of_raw(body: bytes, columns: Sequence[str]) -> FloatArray:

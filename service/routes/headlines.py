@@ -17,7 +17,7 @@ from service.worker.process import ANALYZE
 logger = structlog.get_logger(__name__)
 headline_json = on_demand("lineofaction.gearbox.convert.answers:headline_json")
 
-MOST_AT_ONCE = 4
+MAX_AT_ONCE = 4
 """Tables that one list reads; the next list goes on."""
 LARGEST_BYTES = 8_000_000
 """Of a table that is read for it: those of long periods take seconds."""
@@ -26,7 +26,7 @@ LARGEST_BYTES = 8_000_000
 def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:
     """Return jobs with the headlines of their tables; of a few that have none it is computed and kept."""
     lacking = {job.key for job in jobs if job.process == ANALYZE.id and _ended_without(job)}
-    lines = context.store.without_headline(lacking, ANALYZE.kind, MOST_AT_ONCE) if lacking else []
+    lines = context.store.without_headline(lacking, ANALYZE.kind, MAX_AT_ONCE) if lacking else []
     made = {line.key: _kept(line.key, line.size, context) for line in lines}
     return [replace(job, headline=made.get(job.key) or job.headline) for job in jobs]
 

@@ -51,6 +51,6 @@ def mark_of(cursor: str | None) -> Mark | None:
         text = ""
     match = _MARK.match(text)
     if match is None:
-        advice = "Follow the link next of a page, or leave it out for the first page."
-        raise BadInput.of("cursor", cursor, "taken from a page of this list", advice)
+        remedy = "Follow the link next of a page, or leave it out for the first page."
+        raise BadInput.of("cursor", cursor, "taken from a page of this list", remedy)
     return Mark(*match.groups())

@@ -27,7 +27,7 @@ from service.routes.media_types import CBOR, EVENT_STREAM, RAW, media_type
 from service.routes.problem_answers import problem_of
 from service.tracing import TRACEPARENT, current_traceparent, trace_facts, valid_traceparent
 
-_MOST = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
+_MAX = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
 """Largest number of what each sign begins, in JSON or in the TOML that it carries.
 
 A scene of a wind turbine has some hundred tables, two free-form flanks have a thousand lists, a reduced
@@ -35,7 +35,7 @@ housing six thousand. Numbers are not counted: a flank may have 250 000.
 """
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
-PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
+PATIENCE_S, MIN_BYTES_PER_S = 30.0, 10_000.0
 """A body is to be there after so long, and longer by what has come at this rate."""
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
@@ -68,15 +68,17 @@ class _Extent:
     """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
 
     def __init__(self, content_type: str) -> None:
-        self._found = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MOST, 0)
+        self._found = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MAX, 0)
 
     def add(self, piece: bytes) -> None:
         """Count the parts of a piece; raises `TooLarge`."""
         for sign in self._found:
             self._found[sign] += piece.count(sign)
-            most, parts = _MOST[sign]
-            if self._found[sign] > most:
-                text = f"The body has more than {most} {parts}, the limit of this service. Send less at once."
+            maximum, parts = _MAX[sign]
+            if self._found[sign] > maximum:
+                text = (
+                    f"The body has more than {maximum} {parts}, the limit of this service. Send less at once."
+                )
                 raise TooLarge(text)
 
 
@@ -172,7 +174,7 @@ class _Exchange:
         """Pass on a piece of the body, counting; once it is whole wait as long as it takes."""
         if self._whole:
             return await self._receive()
-        left = PATIENCE_S + self._received / LEAST_BYTES_PER_S - (time.perf_counter() - self._begin)
+        left = PATIENCE_S + self._received / MIN_BYTES_PER_S - (time.perf_counter() - self._begin)
         try:
             async with asyncio.timeout(left):
                 message = await self._receive()

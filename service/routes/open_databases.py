@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from fe_contact.ste.compiled_force import CompiledForce
 
 
-_MOST_OPEN = 16
+_MAX_OPEN = 16
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,6 @@ class OpenDatabases:
         opened = _OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
         with self._lock:
             self._open[store.project, key] = opened
-            while len(self._open) > _MOST_OPEN:
+            while len(self._open) > _MAX_OPEN:
                 self._open.popitem(last=False)
         return opened

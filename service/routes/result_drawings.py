@@ -38,7 +38,7 @@ COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
 _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
 """Of a page that a browser opens at its address: nothing in it runs."""
 MOTION = "lineofaction.report.unit_motion:stored_motion"
-_MOST_MOTIONS = 1_000_000
+_MAX_MOTIONS = 1_000_000
 SOUND = "lineofaction.report.run.sound:stored_sound"
 HEARD = ("run", "recording")
 """Kinds of results that have a sound."""
@@ -130,7 +130,7 @@ async def result_motion(
     context: Ctx,
     number: Annotated[
         int | None,
-        Query(ge=0, lt=_MOST_MOTIONS, description="Of the motion among those listed, from 0; left out: none"),
+        Query(ge=0, lt=_MAX_MOTIONS, description="Of the motion among those listed, from 0; left out: none"),
     ] = None,
 ) -> Response:
     """Return how shafts move in a mode or under a load case, and how the surface of a housing does."""

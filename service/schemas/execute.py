@@ -22,7 +22,7 @@ _FORMAT = {"mediaType", "encoding", "schema"}
 Priority = Annotated[int, Field(ge=-9, le=9)]
 Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _LINK = {"href", "rel", "type", "hreflang", "title"}
-MOST_JOBS = 200
+MAX_JOBS = 200
 """Of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
 _DEEPEST = 32
 
@@ -153,7 +153,7 @@ class BatchRequest(BoundaryModel):
     jobs: tuple[dict[str, Any], ...] = Field(
         strict=False,
         min_length=1,
-        max_length=MOST_JOBS,
+        max_length=MAX_JOBS,
         description="For each job its differences from the shared inputs, as a JSON merge patch",
         examples=[[{"case": {"load": {"torque_n_m": [100.0]}}}]],
     )

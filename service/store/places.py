@@ -43,8 +43,8 @@ def result_files(
         return DirectoryFiles(data_directory / RESULTS_DIRECTORY)
     parts = urlsplit(results_url)
     if "@" in parts.netloc:
-        advice = "Credentials come from results_access_key_id and results_secret_access_key."
-        raise BadInput.of("results_url", "(not shown)", "an address without credentials", advice)
+        remedy = "Credentials come from results_access_key_id and results_secret_access_key."
+        raise BadInput.of("results_url", "(not shown)", "an address without credentials", remedy)
     if parts.scheme == "file" and parts.netloc in ("", "localhost") and parts.path.startswith("/"):
         return DirectoryFiles(Path(unquote(parts.path)))
     if parts.scheme == "s3" and parts.netloc:

@@ -8,7 +8,7 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
-LEAST_FREE = 16_000_000
+MIN_FREE = 16_000_000
 """Bytes below which a folder counts as full: four times the longest body of a submission, which the database
 writes more than once."""
 
@@ -16,10 +16,10 @@ writes more than once."""
 def shortage(folder: Path | None) -> str:
     """Return that there is no space left in a folder, in a sentence without its name; empty if there is."""
     with suppress(OSError):  # what cannot be looked at is told by who writes there
-        free = LEAST_FREE if folder is None else shutil.disk_usage(folder).free
-        if free < LEAST_FREE:
+        free = MIN_FREE if folder is None else shutil.disk_usage(folder).free
+        if free < MIN_FREE:
             state = (
-                f"{free / 1e6:.3g} MB are free where the service writes, and it needs {LEAST_FREE / 1e6:g} MB"
+                f"{free / 1e6:.3g} MB are free where the service writes, and it needs {MIN_FREE / 1e6:g} MB"
             )
             return f"There is no space left: {state}. Make room on its disk."
     return ""

@@ -21,7 +21,7 @@ from service.store.dialects import dialect_of
 from service.store.retries import retried
 
 LEASE_S = 30.0
-MOST_ATTEMPTS = 8
+MAX_ATTEMPTS = 8
 FIRST_PAUSE_S, GROWTH, LONGEST_PAUSE_S = 5.0, 4.0, 3600.0
 EVENTS: Mapping[str, tuple[str, ...]] = {
     "inProgress": ("running",),
@@ -108,7 +108,7 @@ class Calls:
 
     def fail(self, call: Call, message: str, *, final: bool = False) -> None:
         """Note that a call was not taken: it is made again after a pause, a bounded number of times."""
-        over = final or call.attempts >= MOST_ATTEMPTS
+        over = final or call.attempts >= MAX_ATTEMPTS
         pause = min(FIRST_PAUSE_S * GROWTH ** (call.attempts - 1), LONGEST_PAUSE_S)
         self._settle(call, {"state": "given up" if over else "waiting", "message": message}, pause)
 

@@ -21,7 +21,7 @@ from fe_contact.cache_reads import CacheReads
 from host.children.launcher import ChildProcess, Ends, Launcher
 from host.directories import data_home
 from host.extras import MODULES
-from service.settings import LEAST_MEMORY_MB
+from service.settings import MIN_MEMORY_MB
 from service.version import solver_version
 from service.worker.order import PARTS, Outcome, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage, machine_memory_mb
@@ -104,7 +104,7 @@ def _order_here(
         data_directory=data,
         scheduler=worker.scheduler.address,
         stored={key: folder / "stored" / key for key in files},
-        memory_limit_mb=order.memory_limit_mb or max(LEAST_MEMORY_MB, of_worker // worker.state.nthreads),
+        memory_limit_mb=order.memory_limit_mb or max(MIN_MEMORY_MB, of_worker // worker.state.nthreads),
     )
 
 

@@ -85,7 +85,7 @@ def test_an_unknown_job_has_no_stream(client: TestClient) -> None:
 def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
     streams = client.app.state.context.streams  # type: ignore[attr-defined]
     location = execute(client, text="table")
-    streams.most = 1
+    streams.maximum = 1
     assert client.get(f"{location}/events").status_code == 200
     streams.enter()
     answer = client.get(f"{location}/events")

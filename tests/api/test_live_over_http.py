@@ -200,8 +200,8 @@ def test_a_passage_meets_what_all_pairs_carry(client: TestClient, key: str) -> N
         passage, shares = curve["passage"], np.array(curve["load_share"])
         pressure = np.array(passage["pressure_mpa"])[:, 0]
         place = passage["first_place"] + passage["step"] * np.arange(pressure.size)
-        most = max(curve["flanks"]["largest_pressure_mpa"], curve["flanks"]["edge_pressure_mpa"])
-        assert pressure.max() == pytest.approx(most, rel=0.03)
+        maximum = max(curve["flanks"]["largest_pressure_mpa"], curve["flanks"]["edge_pressure_mpa"])
+        assert pressure.max() == pytest.approx(maximum, rel=0.03)
         # a pair carries where it meets pressure: at every position, by its place
         at = np.array(curve["position"])[:, None] + np.array(curve["pair"])
         met = np.interp(at, place, pressure, left=0.0, right=0.0)

@@ -58,7 +58,7 @@ END-ISO-10303-21;
 _STEP = {"a document": "{canary}", "an address": "file://{canary}"}
 TABLE = "cd" * 32
 SLOW = "1," * 2_000_000
-LEAST = 40
+MIN = 40
 
 
 class _Reads:
@@ -271,7 +271,7 @@ def test_no_question_brings_the_canary(place: Place) -> None:
     data = folder / "data"
     canary = write_canary(data)
     answers = {question[0]: _answered(http, question) for question in questions(folder, canary, TABLE)}
-    assert len(answers) >= LEAST
+    assert len(answers) >= MIN
     assert {name for name, text in answers.items() if SECRET in text} == set()
     places = [data / "reading", data / "work", folder / "temporary"]
     hidden = [str(place).encode() for place in (*places, sys.prefix, Path(__file__).parents[2])]

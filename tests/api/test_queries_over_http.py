@@ -19,7 +19,7 @@ from sliced_face import sliced_database
 
 from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
-from lineofaction.gearbox.schemas.query import LIMITS, MOST_POINTS
+from lineofaction.gearbox.schemas.query import LIMITS, MAX_POINTS
 from service.app import create_app
 from service.settings import Settings
 
@@ -219,9 +219,9 @@ def test_a_value_that_is_no_number_or_too_large_is_named(
 
 @pytest.mark.parametrize("sent", BODIES)
 def test_too_many_points_are_one_clear_error(client: TestClient, sent: str) -> None:
-    given = dict.fromkeys(("position", "deflection_um"), [0] * (MOST_POINTS + 1))
+    given = dict.fromkeys(("position", "deflection_um"), [0] * (MAX_POINTS + 1))
     (fault,) = problem(ask(client, *BODIES[sent](given)), 422)["errors"][:1]
-    assert (fault["field"], fault["bound"]) == ("position", f"a list of at most {MOST_POINTS}")
+    assert (fault["field"], fault["bound"]) == ("position", f"a list of at most {MAX_POINTS}")
 
 
 @pytest.mark.parametrize(

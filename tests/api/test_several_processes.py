@@ -179,9 +179,9 @@ def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch:
         processes.replace_dead()
         clock[0] += 0.2
     assert (
-        2 * 20.0 / serving_processes.LEAST_LIFE_S
+        2 * 20.0 / serving_processes.MIN_LIFE_S
         <= len(started)
-        <= 2 * (20.0 / serving_processes.LEAST_LIFE_S + 1)
+        <= 2 * (20.0 / serving_processes.MIN_LIFE_S + 1)
     )
 
 

@@ -74,8 +74,8 @@ def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings: Settings) ->
 def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings: Settings) -> None:
     """All callers are one; what carries no body is answered."""
     app = create_app(settings, REGISTRY, works=False)
-    most = Capacity().requests
-    with served(app) as port, stalled(port, "none", ATTACKERS, most, b"503"), client(port) as http:
+    maximum = Capacity().requests
+    with served(app) as port, stalled(port, "none", ATTACKERS, maximum, b"503"), client(port) as http:
         assert http.get("/v1/jobs").status_code == 200
         refused = http.post(EXECUTION, json=BODY)
         assert refused.status_code == 503 and "bodies under way" in refused.json()["detail"]

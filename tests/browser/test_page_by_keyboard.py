@@ -27,9 +27,9 @@ def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
     seen.page.close()
 
 
-def stops(page: Page, most: int) -> list[dict[str, object]]:
+def stops(page: Page, maximum: int) -> list[dict[str, object]]:
     found = []
-    for _ in range(most):
+    for _ in range(maximum):
         page.keyboard.press("Tab")
         found.append(page.evaluate(FOCUS))
     return found

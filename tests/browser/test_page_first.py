@@ -150,12 +150,12 @@ def test_a_phone_has_slider_and_curve_together_and_labels_within_plots(visit: Vi
     page.set_viewport_size({"width": 400, "height": 900})
     expect(page.locator("#results-body[aria-busy=false]")).to_have_count(1)
     unfold(page)
-    for title, least in {"Ripple": 4, "Orders": 4}.items():
+    for title, minimum in {"Ripple": 4, "Orders": 4}.items():
         tab(page, title)
         figures = page.locator("[role=tabpanel]:not([hidden]) .report .plot")
         for plot in figures.all():
             expect(plot).to_have_attribute("data-drawn", "yes")
-        assert page.locator(".report .annotation-text").count() > least
+        assert page.locator(".report .annotation-text").count() > minimum
     assert page.evaluate(OUTSIDE) == []
     page.close()
 

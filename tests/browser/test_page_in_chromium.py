@@ -44,12 +44,12 @@ FIGURES = (
 )
 
 
-def tab_to(page: Page, target: str, most: int = 120) -> None:
-    for _ in range(most):
+def tab_to(page: Page, target: str, maximum: int = 120) -> None:
+    for _ in range(maximum):
         page.keyboard.press("Tab")
         if page.evaluate("selector => document.activeElement?.matches(selector)", target):
             return
-    raise AssertionError(f"{target} is not reached by {most} tabs")
+    raise AssertionError(f"{target} is not reached by {maximum} tabs")
 
 
 @pytest.fixture(scope="module")
@@ -98,9 +98,9 @@ def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
     page = visit.page
     control(page, "#live-wheel-tip_relief_um").focus()
     page.keyboard.press("End")
-    most = page.locator("#live-wheel-tip_relief_um").input_value()
+    maximum = page.locator("#live-wheel-tip_relief_um").input_value()
     page.get_by_role("button", name="Take these flanks").press("Enter")
-    expect(page.locator("#f-pair-wheel-tip_relief_um")).to_have_value(most)
+    expect(page.locator("#f-pair-wheel-tip_relief_um")).to_have_value(maximum)
     assert float(page.locator("#f-pair-wheel-tip_relief_length_mm").input_value()) > 0.0
 
 

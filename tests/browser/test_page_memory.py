@@ -81,14 +81,14 @@ def test_moves_of_a_slider_leave_nothing_behind(
         browser.open(f"{address}/#database={analyzed}", SIZE, before=HELD)
         browser.evaluate(SHOWN)
         browser.evaluate(STOP)  # a frame for each answer is enough
-        counts, labels, most = [], set[str](), 0
+        counts, labels, maximum = [], set[str](), 0
         for _ in range(2):
             for _ in range(MOVES):
                 browser.evaluate(MOVE)
                 shown = browser.evaluate(LABELS)
                 labels.update(shown)
-                most = max(most, len(shown))
+                maximum = max(maximum, len(shown))
             counts.append(browser.evaluate(COUNTED))
         assert counts[0]["Texture"] > 0
         assert counts[1] == counts[0]
-        assert most > 5 and len(labels) < 0.5 * MOVES * most, "plotly.js keeps each label at each place"
+        assert maximum > 5 and len(labels) < 0.5 * MOVES * maximum, "plotly.js keeps each label at each place"

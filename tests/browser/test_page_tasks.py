@@ -14,7 +14,7 @@ from running_service import until
 ROOT = Path(__file__).parents[2]
 UNIT = ROOT / "examples" / "two_stage_gearbox.rexs"
 TASKS = (ROOT / "docs" / "how-to" / "in-the-browser.md").read_text(encoding="utf-8").split("\n## ")
-MOST = 15
+MAX = 15
 PAIR = {
     "normal_module_mm": "2", "center_distance_mm": "45", "pinion-teeth": "21", "wheel-teeth": "24",
     "pinion-face_width_mm": "10", "wheel-face_width_mm": "10", "pinion-bore_diameter_mm": "20",
@@ -54,7 +54,7 @@ class Hand:
     def did(self, task: str) -> None:
         """See that a task took the actions of the documentation, and few."""
         (text,) = (part for part in TASKS if part.startswith(f"{task}\n"))
-        assert self.actions == len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < MOST
+        assert self.actions == len(re.findall(r"^\d+\. ", text, re.MULTILINE)) < MAX
 
 
 @pytest.fixture
@@ -102,10 +102,10 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
     expect(page.locator("#live-torque_n_m-exact")).to_have_value("80")
     relief = "#live-pinion-tip_relief_um"
     along = dragged(hand, relief, ["0", "5", "10", "15", "20"])
-    least = min(along, key=lambda step: along[step])
-    page.locator(f"{relief}-exact").fill(least)  # where the hand lets go
-    until(lambda: tone(page) == along[least])
-    assert along[least] < along["0"] and least != "20", "the least lies within the slider"
+    minimum = min(along, key=lambda step: along[step])
+    page.locator(f"{relief}-exact").fill(minimum)  # where the hand lets go
+    until(lambda: tone(page) == along[minimum])
+    assert along[minimum] < along["0"] and minimum != "20", "the least lies within the slider"
     (cost,) = dragged(hand, "#live-torque_n_m", ["20"]).values()
     expect(page.locator("#live-figures")).to_contain_text(re.compile(r"first harmonic.*[+−][\d.]+ dB"))
     assert cost > 0.0
@@ -114,7 +114,7 @@ def test_an_own_pair_is_typed_analyzed_relieved_and_sent(seen: Visit, browser: B
     expect(page).to_have_url(re.compile("live=.*name=own%20pair|name=own%20pair.*live="))
     other = opened(browser, page.url).page
     answered(other)
-    for control, value in ((relief, least), ("#live-torque_n_m", "20")):
+    for control, value in ((relief, minimum), ("#live-torque_n_m", "20")):
         expect(other.locator(f"{control}-exact")).to_have_value(value)
     other.close()
 

@@ -46,11 +46,11 @@ def _resumed(scene: Scene, path: Path, progress: Callable[..., None]) -> Json:
 class _Counted:
     """Progress that does something at its first calls, and says how often it did."""
 
-    def __init__(self, does: Callable[[], object], most: int) -> None:
-        self.does, self.most, self.calls = does, most, 0
+    def __init__(self, does: Callable[[], object], maximum: int) -> None:
+        self.does, self.maximum, self.calls = does, maximum, 0
 
     def __call__(self, *_: object) -> None:
-        if self.calls < self.most:
+        if self.calls < self.maximum:
             self.calls += 1
             self.does()
 

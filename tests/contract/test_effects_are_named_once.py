@@ -42,7 +42,7 @@ REMAINS = {
     ("fe_contact/ste/curve_errors.py", "finite_width"): "source of an error in stored tables",
     ("lineofaction/gearbox/convert/scene.py", "shaft_deflection"): "the ledger of a stored table",
 }
-CHOSEN_BY = ("choices", "decided", "effect", "effects", "ledger", "neglected", "turned_on")
+CHOSEN_BY = ("choices", "decision", "effect", "effects", "ledger", "neglected", "turned_on")
 
 
 def files_of(effects: Sequence[object]) -> set[Path]:
@@ -251,11 +251,11 @@ def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_witho
 ) -> None:
     whole = everything()
     scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
-    decided = decide_effects(replace(scene, tolerance=0.05))
+    decision = decide_effects(replace(scene, tolerance=0.05))
     assert "gyroscopic" in estimate_influences(scene)
     off = simulate(replace(scene, tolerance=0.05))
     left = {entry["effect"] for entry in off.effect_ledger["entries"] if not entry["on"]}
-    assert set(decided.neglected) <= left
+    assert set(decision.neglected) <= left
     assert "gyroscopic" in left
     remaining = tuple(effect for effect in OF_DYNAMICS if effect.name not in left)
     monkeypatch.setattr(assemble, "EFFECTS", remaining)

@@ -18,9 +18,9 @@ ROOT = Path(__file__).parents[2]
 
 LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
-MOST_PRIVATE = 60
+MAX_PRIVATE = 60
 """Imports of names with an underscore by tests, at most: the number may only fall."""
-MOST_SECOND_HEADS = 5
+MAX_SECOND_HEADS = 5
 """Comments of their own between the definitions of the product's files, at most: the number may only fall."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
@@ -142,7 +142,7 @@ def test_a_file_has_one_head() -> None:
         for file in structure.files_of(house)
     }
     heads = [f"{file.relative_to(ROOT)}: {head}" for file, found in files.items() for head in found]
-    assert len(heads) <= MOST_SECOND_HEADS, heads
+    assert len(heads) <= MAX_SECOND_HEADS, heads
 
 
 def test_constants_stand_above_the_first_definition() -> None:
@@ -159,7 +159,7 @@ def test_constants_stand_above_the_first_definition() -> None:
 def test_tests_import_fewer_and_fewer_private_names() -> None:
     imported = (name for file in (ROOT / "tests").rglob("*.py") for name in structure.imported(file))
     private = [name for name in imported if name.rpartition(".")[2].startswith("_")]
-    assert len(private) <= MOST_PRIVATE, private
+    assert len(private) <= MAX_PRIVATE, private
 
 
 @pytest.mark.law

@@ -55,7 +55,7 @@ def extreme_inputs(process: str, draw: Random) -> Json:
     if process in STUDIES:
         for name, field in STUDIES[process].inputs.model_fields.items():
             if draw.random() < 0.4:
-                inputs |= _least(name, field, inputs.get(name), draw)
+                inputs |= _minimum(name, field, inputs.get(name), draw)
     if "scene" in inputs:
         for extreme in draw.sample(SCENE_EXTREMES, draw.randint(0, 3)):
             extreme(inputs["scene"], draw)
@@ -93,16 +93,16 @@ def _tables(parts: Any) -> list[Json]:
     )
 
 
-def _least(name: str, field: FieldInfo, value: Any, draw: Random) -> Json:
+def _minimum(name: str, field: FieldInfo, value: Any, draw: Random) -> Json:
     """Return a field at an end of what it declares; nothing where it declares none."""
     own = field.get_default(call_default_factory=True) if value is None and not field.is_required() else value
-    least = next((bound for bound in field.metadata if isinstance(bound, Ge | Gt)), None)
+    minimum = next((bound for bound in field.metadata if isinstance(bound, Ge | Gt)), None)
     if get_origin(field.annotation) is Literal:
         return {name: draw.choice(get_args(field.annotation))}
     if isinstance(own, bool):
         return {name: not own}
-    if least is not None and own is not None:
-        return {name: least.ge if isinstance(least, Ge) else 1e-6}
+    if minimum is not None and own is not None:
+        return {name: minimum.ge if isinstance(minimum, Ge) else 1e-6}
     if isinstance(value, list) and value:
         return {name: value[:1]}
     return {}
@@ -155,7 +155,7 @@ def _outputs(scene: Json, draw: Random) -> None:
     scene["outputs"] = {"sample_rate_hz": draw.choice((20000.0, 100.0, 1.0))}
     for name, field in fields:
         if draw.random() < 0.5:
-            scene["outputs"] |= _least(name, field, None, draw)
+            scene["outputs"] |= _minimum(name, field, None, draw)
 
 
 def _effects(scene: Json, draw: Random) -> None:

@@ -31,11 +31,11 @@ class Fields:
         self._validators: dict[str, jsonschema_rs.Draft202012Validator] = {}
 
     @st.composite
-    def varied(draw: st.DrawFn, self: Fields, body: Json, schema: Json, most: int) -> Json:  # noqa: N805
-        """Draw a body that differs in up to `most` fields, those that it leaves out among them."""
+    def varied(draw: st.DrawFn, self: Fields, body: Json, schema: Json, maximum: int) -> Json:  # noqa: N805
+        """Draw a body that differs in up to `maximum` fields, those that it leaves out among them."""
         places = list(self.places(schema, body))
         found = copy.deepcopy(body)
-        chosen = draw(st.lists(st.sampled_from(places), max_size=most))
+        chosen = draw(st.lists(st.sampled_from(places), max_size=maximum))
         for place, field in sorted(chosen, key=lambda one: -len(one[0])):  # tables after what is in them
             _put(found, place, draw(self.value(field)))
         assume(self.allows(schema, found))
@@ -107,8 +107,8 @@ class Fields:
             required = schema.get("required", [])
             return st.fixed_dictionaries({name: self.value(schema["properties"][name]) for name in required})
         if schema.get("type") == "array":
-            least = schema.get("minItems", 0)
-            return st.lists(self.value(schema["items"]), min_size=least, max_size=least + 1)
+            minimum = schema.get("minItems", 0)
+            return st.lists(self.value(schema["items"]), min_size=minimum, max_size=minimum + 1)
         return st.booleans() if schema.get("type") == "boolean" else st.just(schema.get("default", "name"))
 
 
@@ -209,8 +209,8 @@ def _racks(draw: st.DrawFn) -> dict[str, float]:
 
 
 @st.composite
-def _gears(draw: st.DrawFn, rack: dict[str, float], least: int, most: int) -> Gear:
-    module, teeth = rack["normal_module"], draw(st.integers(least, most))
+def _gears(draw: st.DrawFn, rack: dict[str, float], minimum: int, maximum: int) -> Gear:
+    module, teeth = rack["normal_module"], draw(st.integers(minimum, maximum))
     sizes = {"face_width": draw(st.floats(4.0, 15.0)) * module, "bore_diameter": 0.4 * teeth * module}
     shift = draw(st.floats(0.4 if teeth < 17 else -0.2, 0.6))
     try:
@@ -243,7 +243,7 @@ def _written(part: Any, declared: Any, names: tuple[str, ...]) -> Json:
 
 
 JSON = "application/json"
-MOST_CHANGES = 2
+MAX_CHANGES = 2
 
 
 class FeasibleBodies:
@@ -262,7 +262,7 @@ class FeasibleBodies:
             return None
         schema = content[JSON]["schema"]
         bodies = cases().map(lambda case: about(example, case))
-        return bodies.flatmap(lambda body: self._fields.varied(body, schema, MOST_CHANGES))
+        return bodies.flatmap(lambda body: self._fields.varied(body, schema, MAX_CHANGES))
 
 
 def about(example: Json, case: Json) -> Json:

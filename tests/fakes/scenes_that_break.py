@@ -12,11 +12,11 @@ from lineofaction.hardcases import HardScene, Measured
 
 
 def good() -> list[Measured]:
-    return [Measured("one", 1.0, most=1.0, least=1.0), Measured("for information", 5.0)]
+    return [Measured("one", 1.0, maximum=1.0, minimum=1.0), Measured("for information", 5.0)]
 
 
 def out_of_bounds() -> list[Measured]:
-    return [Measured("two", 2.0, most=1.0)]
+    return [Measured("two", 2.0, maximum=1.0)]
 
 
 def no_number() -> list[Measured]:

@@ -354,7 +354,7 @@ def _vibration_columns(figures: Json) -> dict[str, Sequence[Any]]:
 
 NUMBER = r"-?[\d.]+"
 FEW_ORDERS: Json = {"speed_rpm": [300.0], "orders": 3}
-HEARD_LEAST: Json = {
+HEARD_MIN: Json = {
     "heard": FEW_ORDERS,
     "search": {"evaluations": 8, "sample": 4, "trials": 1, "positions": 16},
 }
@@ -368,7 +368,7 @@ ROWS = (
     StudyRow("sensitivity", "case", _sensitivity, columns=_sensitivity_columns, own=("name",)),
     StudyRow("root-stress", "case", _root_stress, columns=_root_columns, ends=(r"\S.*: [\d.]+ MPa",)),
     StudyRow("optimize", "case", _optimum),
-    StudyRow("optimize", "scene", _heard_optimum, HEARD_LEAST),
+    StudyRow("optimize", "scene", _heard_optimum, HEARD_MIN),
     StudyRow("scatter", "case", _scatter),
     StudyRow("sweep", "case", _sweep, columns=_sweep_columns),
     StudyRow(

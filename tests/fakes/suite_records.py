@@ -21,7 +21,7 @@ import psutil
 import pytest
 from suite_selection import COSTS, PASSED, ROOT, SLOW, digest, read_costs, read_passed
 
-LEAST = 0.3
+MIN = 0.3
 """Tests below this (s) are not on record: they are as good as free."""
 _PROPERTY, _SHARED = "cpu_seconds", "shared_cpu_seconds"
 
@@ -82,7 +82,7 @@ class SuiteRecords:
         before = read_costs()
         left = {t: s for t, s in before.items() if t not in self.seconds and _file(t) not in gone}
         now = {test: max(s, before.get(test, 0.0) / 2) for test, s in self.seconds.items()}
-        costs = left | {test: s for test, s in now.items() if s >= LEAST}
+        costs = left | {test: s for test, s in now.items() if s >= MIN}
         _write(COSTS, ("test", "cpu_seconds"), ((test, f"{s:.1f}") for test, s in costs.items()))
         slow = {_file(test) for test, s in costs.items() if s > SLOW}
         whole = ran - {_file(test) for test, s in left.items() if s > SLOW}

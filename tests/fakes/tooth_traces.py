@@ -78,7 +78,7 @@ def sampled_gap(pair, model, candidates, meeting, samples: int):
         for term in model.gaps
         if not term.along_profile
     )
-    least = np.full(roll_1.size, np.inf)
+    minimum = np.full(roll_1.size, np.inf)
     for part in np.linspace(0.0, 1.0, samples):
         x = first + part * (last - first)
         rolls = (
@@ -88,5 +88,5 @@ def sampled_gap(pair, model, candidates, meeting, samples: int):
         gap = x * (slope + 0.5 * curvature * x)
         gap = gap + sum(term(pair, *rolls, face) for term in model.gaps if term.along_profile)
         gap = gap + model.gap_of_teeth(MeetingTeeth(pair, teeth, *rolls, face))
-        least = np.minimum(least, gap)
-    return at, plain.gap[at] + steady + least
+        minimum = np.minimum(minimum, gap)
+    return at, plain.gap[at] + steady + minimum

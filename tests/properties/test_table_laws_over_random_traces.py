@@ -95,11 +95,11 @@ def true_no_load(case: Solved) -> np.ndarray:
     x = np.maximum(touch.low, -reach) * (1.0 - part) + np.minimum(touch.high, reach) * part
     rolls = rolls_at(pair, touch.s_1 + x, touch.s_2 - x)
     parted = touch.gap + x * (touch.slope + 0.5 * touch.curvature * x)
-    least = [
+    minimum = [
         parted + case.model.gap_of_teeth(MeetingTeeth(pair, pitch - plain.pair, *rolls, np.zeros(())))
         for pitch in case.pitches
     ]
-    return np.concatenate([gap.min(axis=(0, 2)) for gap in least])
+    return np.concatenate([gap.min(axis=(0, 2)) for gap in minimum])
 
 
 @pytest.mark.parametrize("seed", range(4))

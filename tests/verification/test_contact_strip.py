@@ -184,16 +184,16 @@ def test_touching_points_are_where_the_gap_is_least():
         rng.choice([0.0, -5.0, 20.0], (n, 3)),
     )  # fmt: skip
     place = touching_places(about, about.low, about.high)
-    least, there = moved_gap(about, place)
+    minimum, there = moved_gap(about, place)
     for i in range(n):
         one = Gap(*(part[i : i + 1] for part in about))
         moved = Gap(*(part[i : i + 1] for part in there))
         x = np.union1d(np.linspace(one.low[0], one.high[0], 20001), one.place[0])
         values = height(one, x)
-        assert least[i] == pytest.approx(values.min(), abs=1e-9)
-        assert least[i] <= values.min() + 1e-15
+        assert minimum[i] == pytest.approx(values.min(), abs=1e-9)
+        assert minimum[i] <= values.min() + 1e-15
         beside = np.linspace(moved.low[0], moved.high[0], 41)[1:-1]
-        assert height(moved, beside) + least[i] == pytest.approx(height(one, beside + place[i]), abs=1e-15)
+        assert height(moved, beside) + minimum[i] == pytest.approx(height(one, beside + place[i]), abs=1e-15)
 
 
 def test_load_grows_with_the_strip_where_its_end_stays_at_a_kink():

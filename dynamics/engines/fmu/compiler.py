@@ -43,11 +43,11 @@ def find_compiler() -> list[str]:
     for command in [requested] if requested else [[name] for name in COMPILERS]:
         if shutil.which(command[0]) is not None:
             return command
-    advice = (
+    remedy = (
         "Install one (Debian: apt-get install gcc), name one in CC, or write the sources alone: "
         "export_fmu(..., binary=False)."
     )
-    raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", advice)
+    raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", remedy)
 
 
 def compile_library(folder: Path, sources: Sequence[str], library: str) -> None:

@@ -177,8 +177,8 @@ def export_fmu(
     if binary:  # refused before the work is done
         find_compiler()
         if binary_folder() is None:
-            advice = "FMI 2.0 names no folder for its binaries."
-            raise InputError("binary", True, "False on this machine", advice)
+            remedy = "FMI 2.0 names no folder for its binaries."
+            raise InputError("binary", True, "False on this machine", remedy)
     content = _content(element, name)
     if binary:
         content = {**content, **_binary(content, name)}

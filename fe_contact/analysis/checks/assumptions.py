@@ -25,7 +25,7 @@ from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 
-LEAST_BACKLASH = 1e-9
+MIN_BACKLASH = 1e-9
 """m; teeth without a thickness allowance have none but rounding."""
 
 
@@ -158,20 +158,22 @@ def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     room = []
     for point, (_, solution) in zip(run.places.places, run.solved, strict=True):
         pair = point.contact.pair
-        if pair.transverse_base_backlash <= LEAST_BACKLASH:
+        if pair.transverse_base_backlash <= MIN_BACKLASH:
             reason = "the teeth have no stated backlash: coast flanks were not assessed"
             yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
             return
         room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(point))
-    least = 1e6 * min(room)
-    reason = f"the least clearance is {least:.3g} µm" if least > 0 else f"the teeth jam by {-least:.3g} µm"
-    yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
+    minimum = 1e6 * min(room)
+    reason = (
+        f"the least clearance is {minimum:.3g} µm" if minimum > 0 else f"the teeth jam by {-minimum:.3g} µm"
+    )
+    yield Assumption("", "coast flanks stay apart", minimum > 0, float("nan"), reason)
 
 
 def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
     """Nominal teeth that jam by no more than rounding of printed data have no backlash."""
     pair = run.places.places[0].contact.pair
-    if pair.rounding_jam > LEAST_BACKLASH:
+    if pair.rounding_jam > MIN_BACKLASH:
         rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
         reason = (
             f"jam of {engineering(1e6 * pair.rounding_jam, 2)} µm "

@@ -111,7 +111,7 @@ def toggled(checked: Checked, name: str, choice: str) -> Checked:
     Raises `InputError`: the model cannot be had, as a plane with what acts across the face.
     """
     request = checked.request
-    choices = flipped(request.registry, checked.decided, name, choice)
+    choices = flipped(request.registry, checked.decision, name, choice)
     face, _ = request.model_effects
     # choices of every effect are explicit now, so that an explicit model has no say about them any more
     plane_stress = request.options.model == "plane_stress" and choices[face] == "off"

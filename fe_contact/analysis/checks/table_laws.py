@@ -182,14 +182,14 @@ class _Place:
         chord = chord / np.diff(np.concatenate([[0.0], force]))
         largest = np.where(np.isfinite(ste), ste, self._no_load[:, None]).max(axis=1)
         bent, exact = STRAIGHT + self._softening(largest)[:, None], self._exact[:, None]
-        least = np.where(exact, np.maximum(1.0 - bent, ONE_TO_ONE), ONE_TO_ONE) * tangent
+        minimum = np.where(exact, np.maximum(1.0 - bent, ONE_TO_ONE), ONE_TO_ONE) * tangent
         upper = np.where(exact, 1.0 + bent, np.inf) * tangent
 
         def at(position: int, load: int) -> str:
             return place_words(t, position, m, d, float(force[load]))
 
         good = np.isfinite(ste) & np.isfinite(chord)
-        yield _RISING.above(np.where(good, chord, 1.0), np.where(good, least, 0.0), at)
+        yield _RISING.above(np.where(good, chord, 1.0), np.where(good, minimum, 0.0), at)
         if force.size > 1:
             good = good[:, 1:] & good[:, :-1]
             yield _STIFFENING.below(
@@ -218,8 +218,8 @@ class _Place:
         force, load = solution.force, solution.load
         first = len(force)
         good = self._good[:first]
-        least = np.minimum(force.min(axis=2), 0.0) / load
-        yield _PUSHING.below(np.where(good, -least, 0.0), BALANCE, self._at)
+        minimum = np.minimum(force.min(axis=2), 0.0) / load
+        yield _PUSHING.below(np.where(good, -minimum, 0.0), BALANCE, self._at)
         moment = np.einsum("pfm,pm->pf", force, candidates.torque_share[:first]) / load - 1.0
         yield _BALANCE.below(np.where(good, np.abs(moment), 0.0), BALANCE, self._at)
         residual = np.nan_to_num(self.table.residuals[:, :, self.m, self.d, 0])
@@ -230,8 +230,8 @@ class _Place:
         t, m, d = self.table, self.m, self.d
         share = t.load_share[:, :, m, d]
         yield _SHARES.below(np.where(self._good, np.abs(share.sum(axis=2) - 1.0), 0.0), BALANCE, self._at)
-        least = np.where(self._good, np.maximum(-share.min(axis=2), 0.0), 0.0)
-        yield _PUSHING.below(least, BALANCE, self._at)
+        minimum = np.where(self._good, np.maximum(-share.min(axis=2), 0.0), 0.0)
+        yield _PUSHING.below(minimum, BALANCE, self._at)
         pair = self.point.contact.pair
         off = np.where(self._good, np.abs(t.face_centroid[:, :, m, d] - pair.common_face_center), 0.0)
         yield _ARM.below(off, 0.5 * pair.face_width * (1.0 + BALANCE), self._at)
@@ -263,8 +263,8 @@ class _Place:
             pressure = peak_pressure(
                 line_load, radii.max(axis=2)[:, None, :] / flattest, self.problem.modulus
             )
-        least = (1.0 - STRAIGHT) * np.nan_to_num(pressure, posinf=0.0).max(axis=3)
-        return np.asarray(least.reshape(share.shape[:2]))
+        minimum = (1.0 - STRAIGHT) * np.nan_to_num(pressure, posinf=0.0).max(axis=3)
+        return np.asarray(minimum.reshape(share.shape[:2]))
 
     def _steps(self) -> Iterator[LawCheck]:
         """Bound steps between neighboring positions; without tip edges pairs come and go at once."""

@@ -33,9 +33,9 @@ from fe_contact.types import FloatArray, IntArray, Json, Status
 
 PART_OF_TOLERANCE = 0.4
 """That derivatives may take where one is requested: meshes and slices are planned to use the rest."""
-MOST_GROWN = 1.25
+MAX_GROWN = 1.25
 """Of the pressure of a pair of teeth over that in the state whose tangent counts."""
-_MOST_POINTS = 0.99
+_MAX_POINTS = 0.99
 
 _ARM, _CENTROID, _SHARES = 0, 1, 2
 _EDGE_OF_PAIR = "edge pressure of pair"
@@ -111,7 +111,7 @@ class DerivedPitches:
     @classmethod
     def of(cls, envelope: Envelope, ste: FloatArray) -> DerivedPitches:
         """Take those of an envelope whose transmission error (T, P, L) is known."""
-        states = envelope.least.state.copy()
+        states = envelope.minimum.state.copy()
         states[envelope.pitches] = 1 + np.arange(envelope.pitches.size)[:, None, None]
         exact = [envelope.kept[name] for name in _CURVES]
         curves = np.stack([ste, envelope.sum(_ARM)], axis=-1)
@@ -255,7 +255,7 @@ def derived_cycle(
 
 def _errors(envelope: Envelope) -> DerivedErrors:
     band = np.where(envelope.solved[:, None, None], 0.0, envelope.missed.error)
-    band = np.broadcast_to(band, envelope.least.ste.shape)
+    band = np.broadcast_to(band, envelope.minimum.ste.shape)
     return DerivedErrors(
         _flat(band), envelope.quantity_errors, envelope.sum_errors(_ARM), *_missed_in_drawn(envelope)
     )
@@ -263,7 +263,7 @@ def _errors(envelope: Envelope) -> DerivedErrors:
 
 def _arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
     """Return the arrays of a table (T, P, L, ...) by name, in pitches that were solved as they are."""
-    share, flank, edge = _shares_and_pressures(envelope, envelope.least)
+    share, flank, edge = _shares_and_pressures(envelope, envelope.minimum)
     # those that may be largest were solved: none is told to be larger
     flank = np.minimum(flank, envelope.kept["max_pressure"][1:].max(axis=(0, 1))[:, None])
     derived = {
@@ -280,18 +280,18 @@ def _arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
     return derived | _without_solution(envelope)
 
 
-def _shares_and_pressures(envelope: Envelope, least: LeastTangents) -> tuple[FloatArray, ...]:
+def _shares_and_pressures(envelope: Envelope, minimum: LeastTangents) -> tuple[FloatArray, ...]:
     """Return shares and the largest pressures on flanks and at edges, Pa, of the pairs (t, P, L, J).
 
-    A pair that grows beyond `MOST_GROWN` of its pressure spreads along the face, as one that begins to carry.
+    A pair that grows beyond `MAX_GROWN` of its pressure spreads along the face, as one that begins to carry.
     """
-    share = np.maximum(least.sums[..., _SHARES:], 0.0)
+    share = np.maximum(minimum.sums[..., _SHARES:], 0.0)
     share /= share.sum(axis=3, keepdims=True)
-    p, load = np.indices(least.state.shape[1:])
+    p, load = np.indices(minimum.state.shape[1:])
     names = "load_share", "pair_pressure", _EDGE_OF_PAIR
-    before, *of_pair = (envelope.kept[name][least.state, p, load] for name in names)
+    before, *of_pair = (envelope.kept[name][minimum.state, p, load] for name in names)
     grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
-    flank, edge = (pressure * np.minimum(grown, MOST_GROWN) for pressure in of_pair)
+    flank, edge = (pressure * np.minimum(grown, MAX_GROWN) for pressure in of_pair)
     return share, flank, edge
 
 
@@ -301,13 +301,13 @@ def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
     drawn = slice(1, 1 + envelope.drawn.size)
     exact, pressure = (envelope.kept[name][drawn] for name in ("load_share", "max_pressure"))
     errors = np.abs(share - exact).max(axis=3), np.abs(flank.max(axis=3) - pressure) / pressure.max()
-    of_share, of_pressure = (float(np.quantile(error, _MOST_POINTS)) for error in errors)
+    of_share, of_pressure = (float(np.quantile(error, _MAX_POINTS)) for error in errors)
     return of_share, of_pressure
 
 
 def _with_pressed(envelope: Envelope) -> Envelope:
     """Solve the pitches, too, in which the pressure is largest by what the others tell."""
-    _, flank, edge = _shares_and_pressures(envelope, envelope.least)
+    _, flank, edge = _shares_and_pressures(envelope, envelope.minimum)
     largest = np.maximum(flank, edge).max(axis=(1, 2, 3))
     pressed = np.argsort(-np.where(envelope.solved, 0.0, largest), kind="stable")[:BATCH]
     return envelope.about(np.sort(pressed))
@@ -320,7 +320,7 @@ def _support_arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[An
 
 def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
     """Return what a receipt says of the contact in pitches that were not solved."""
-    shape = envelope.least.ste.shape
+    shape = envelope.minimum.ste.shape
     return {
         "status": np.full(shape, int(Status.CONVERGED)),
         "iterations": envelope.nearest("iterations"),

@@ -179,7 +179,7 @@ class Envelope:
     """
     kept: Mapping[str, NDArray[Any]]
     """Arrays (1 + K, P, L, ...) of all states by name."""
-    least: LeastTangents
+    minimum: LeastTangents
     """In all pitches."""
     drawn: IntArray
     """Pitches that were drawn: the first of the states. Shape (C,)."""
@@ -191,10 +191,10 @@ class Envelope:
         """Begin with the nominal gears and `DRAWN` pitches of a cycle that has as many."""
         gaps, state = contact.nominal()
         tangent = nominal_tangent(gaps, state)
-        least = LeastTangents.of(tangent, gaps, np.arange(contact.pitches))
+        minimum = LeastTangents.of(tangent, gaps, np.arange(contact.pitches))
         drawn = np.random.default_rng(0).choice(contact.pitches, DRAWN, replace=False)
         without = LeastTangents.of(tangent, gaps, drawn)
-        none = np.empty((0, *least.ste.shape[1:]))
+        none = np.empty((0, *minimum.ste.shape[1:]))
         return cls(
             contact,
             keep,
@@ -202,9 +202,9 @@ class Envelope:
             tangent.value.mean(axis=0),
             np.empty(0, dtype=np.int64),
             none,
-            np.empty((0, *least.sums.shape[1:])),
+            np.empty((0, *minimum.sums.shape[1:])),
             {name: values[None] for name, values in keep(state).items()},
-            least,
+            minimum,
             drawn,
             without,
         ).about(drawn)
@@ -223,12 +223,12 @@ class Envelope:
         return envelope
 
     def _about(self, pitches: IntArray) -> Envelope:
-        contact, gaps, least, without = self.contact, self.gaps, self.least, self.without
+        contact, gaps, minimum, without = self.contact, self.gaps, self.minimum, self.without
         state, every = contact.solved(pitches), np.arange(contact.pitches)
         tangents, nowhere = pitch_tangents(gaps, state, pitches), np.zeros(contact.pitches, dtype=bool)
         for k, tangent in enumerate(tangents):
             number = 1 + self.pitches.size + k
-            least = least.and_of(number, tangent, gaps, every, nowhere)
+            minimum = minimum.and_of(number, tangent, gaps, every, nowhere)
             # its own tangent is no test of a pitch
             without = without.and_of(number, tangent, gaps, self.drawn, self.drawn == pitches[k])
         added = {name: contact.by_pitch(values) for name, values in self.keep(state).items()}
@@ -238,7 +238,7 @@ class Envelope:
             exact=np.concatenate([self.exact, [each.value for each in tangents]]),
             exact_sums=np.concatenate([self.exact_sums, [each.sums.value for each in tangents]]),
             kept={name: np.concatenate([known, added[name]]) for name, known in self.kept.items()},
-            least=least,
+            minimum=minimum,
             without=without,
         )
 
@@ -257,7 +257,7 @@ class Envelope:
         """
         ends = self._beyond.max(axis=(0, 2))
         ends = np.argsort(-ends, kind="stable")[: min(BATCH // 2, np.count_nonzero(ends > 0.0))]
-        far = np.argsort(-self.least.furthest, kind="stable")
+        far = np.argsort(-self.minimum.furthest, kind="stable")
         chosen, solved = list[int](), self.solved
         for pitch in [*ends.tolist(), *far.tolist()]:
             if len(chosen) < BATCH and not solved[pitch] and all(abs(pitch - k) > 1 for k in chosen):
@@ -278,18 +278,18 @@ class Envelope:
 
     def _missed(self, errors: FloatArray) -> DrawnPitches:
         order = np.argsort(self.without.furthest, kind="stable")
-        left = self.least.furthest[~self.solved].max()
+        left = self.minimum.furthest[~self.solved].max()
         count = max(int(np.count_nonzero(self.without.furthest <= left)), FEWEST)
         return DrawnPitches(errors[order[:count]], self.contact.position)
 
     @property
     def ste(self) -> FloatArray:
         """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
-        return self.exact_in(self.least.ste - self.missed.correction, self.exact)
+        return self.exact_in(self.minimum.ste - self.missed.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
         """Return one quantity that is followed in the same way, (T, P, L)."""
-        values = self.least.sums[..., q] - self.missed_sum(q).correction
+        values = self.minimum.sums[..., q] - self.missed_sum(q).correction
         return self.exact_in(values, self.exact_sums[..., q])
 
     def exact_in(self, values: NDArray[Any], exact: NDArray[Any]) -> NDArray[Any]:
@@ -300,8 +300,8 @@ class Envelope:
 
     def nearest(self, name: str) -> NDArray[Any]:
         """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
-        p, load = np.indices(self.least.state.shape[1:])
-        return np.asarray(self.kept[name][self.least.state, p, load])
+        p, load = np.indices(self.minimum.state.shape[1:])
+        return np.asarray(self.kept[name][self.minimum.state, p, load])
 
     @property
     def quantity_errors(self) -> FloatArray:
@@ -324,8 +324,8 @@ class Envelope:
         Above a tangent nothing lies but what drawn pitches show, below it no more than is missed at most.
         """
         errors, known = self.missed.missed, self.exact
-        above = self.least.ste.max(axis=1) + np.maximum(-errors.min(axis=(0, 1)), 0.0)
-        below = self.least.ste.min(axis=1) - errors.max(axis=(0, 1))
+        above = self.minimum.ste.max(axis=1) + np.maximum(-errors.min(axis=(0, 1)), 0.0)
+        below = self.minimum.ste.min(axis=1) - errors.max(axis=(0, 1))
         beyond = np.stack([above - known.max(axis=(0, 1)), known.min(axis=(0, 1)) - below])
         return np.where(self.solved[:, None], 0.0, np.maximum(beyond, 0.0))
 

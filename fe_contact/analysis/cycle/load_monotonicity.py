@@ -8,7 +8,7 @@ from fe_contact.analysis.cycle.envelope import Envelope
 from fe_contact.analysis.cycle.tangents import ToothGaps
 from fe_contact.types import FloatArray
 
-_LEAST_COMPLIANCE = 0.1
+_MIN_COMPLIANCE = 0.1
 """Of the smallest that is stored: what loads stay apart by."""
 
 
@@ -29,7 +29,7 @@ def rising_deflection(
     tangents = [
         part.kept["tangent_compliance"].min() for part in (envelope, beside) if part.contact.load.size
     ]
-    step = _LEAST_COMPLIANCE * min(tangents) * np.diff(force[order])
+    step = _MIN_COMPLIANCE * min(tangents) * np.diff(force[order])
     tables = np.flatnonzero(kind[order] == 1)
     rising = levels.copy()
     for k in range(tables[0] - 1, -1, -1):

@@ -16,7 +16,7 @@ from fe_contact.analysis.database.contact_receipt import contact_receipt
 from fe_contact.analysis.estimates.assessed_table import AssessedTable, assessed_table, unassessed_table
 from fe_contact.analysis.estimates.tolerance_shares import tolerance_receipt
 from fe_contact.analysis.request.influences import Influences, estimated_influences
-from fe_contact.analysis.request.model_choice import Decided
+from fe_contact.analysis.request.model_choice import Decision
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.tables import SolvedTable, condensed_bodies, solve_table
 from fe_contact.options import Run
@@ -37,10 +37,10 @@ class _Computed:
     """A table, and what it was computed with: effects that turned out to be needed included."""
 
     table: SteDatabase
-    decided: Decided
+    decision: Decision
 
 
-def compute_database(checked: Checked, case: Json, run: Run, choice: Decided | None = None) -> SteDatabase:
+def compute_database(checked: Checked, case: Json, run: Run, choice: Decision | None = None) -> SteDatabase:
     """Compute the table of a checked request; parameters of `compute_pass`."""
     return compute_pass(checked, case, run, choice).table
 
@@ -49,7 +49,7 @@ def compute_pass(
     checked: Checked,
     case: Json,
     run: Run,
-    decided: Decided | None = None,
+    decision: Decision | None = None,
     clock: StageClock | None = None,
 ) -> _Computed:
     """Compute the table of a checked request once.
@@ -67,7 +67,7 @@ def compute_pass(
         That of the workers' cost, with what was spent on this pass before it began; default: a new one.
     """
     clock, before = clock or StageClock(run.workers.cost), replace(run.workers.cost)
-    planned = solve_table(checked, clock, run, decided=decided)
+    planned = solve_table(checked, clock, run, decision=decision)
     made, assumptions, repeated = settled(
         planned,
         check_assumptions,
@@ -104,7 +104,7 @@ def compute_pass(
         tolerance_use = tolerance_receipt(table, tolerance, made.checked.request)
         metadata.receipt["tolerance"] = tolerance_use
         metadata.receipt["choice"]["met"] = tolerance_use["met"]
-    return _Computed(table, made.decided)
+    return _Computed(table, made.decision)
 
 
 def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iterator[Influences]:
@@ -164,11 +164,11 @@ def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]
 
 def _planned(made: SolvedTable) -> Json:
     """Return what was chosen and expected of the run before it began, to stand beside what happened."""
-    error = made.decided.mesh.option.error.to_json()
+    error = made.decision.mesh.option.error.to_json()
     planned = {
         "plan": made.plan.to_json(),
         "prediction": made.prediction.to_json() | {"error": error},
-        "choice": made.decided.to_json(),
+        "choice": made.decision.to_json(),
     }
     if made.derived is not None:
         planned["cycle"] = made.derived.to_json()

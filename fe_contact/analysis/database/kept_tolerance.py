@@ -12,7 +12,7 @@ from fe_contact.analysis.database.compute_database import compute_pass
 from fe_contact.analysis.database.refinement import Refinement, next_pass
 from fe_contact.analysis.database.run_passes import Pass, of_all_passes
 from fe_contact.analysis.estimates.tolerance_shares import bought_shares, error_shares
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
 from fe_contact.options import Run
@@ -20,7 +20,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 from model_studies.stage_clock import StageClock
 
-MOST_PASSES = 4
+MAX_PASSES = 4
 
 OnDraft = Callable[[SteDatabase, str], None]
 """Called with the table of a pass that is refined, and what is refined in words."""
@@ -40,22 +40,22 @@ class _Passes:
         with clock.stage("planning"):
             choice = decide(checked, self.run.cache, tried=True)
         done = compute_pass(choice.checked, self.case, self.run, choice, clock)
-        return Pass(done.decided, done.table.metadata.receipt, done.table)
+        return Pass(done.decision, done.table.metadata.receipt, done.table)
 
     def refined(self, made: Refinement, clock: StageClock) -> Pass:
         """Run a refinement; one that fails or is interrupted says so."""
-        choice = made.decided
+        choice = made.decision
         try:
             done = compute_pass(choice.checked, self.case, self.run, choice, clock)
         except KeyboardInterrupt:
             return Pass(choice, clock.to_json(), None, made, "interrupted")
         except (FeContactError, MemoryError) as error:
             return Pass(choice, clock.to_json(), None, made, str(error) or "out of memory")
-        return Pass(done.decided, done.table.metadata.receipt, done.table, made)
+        return Pass(done.decision, done.table.metadata.receipt, done.table, made)
 
 
 def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
-    """Compute the table of a request with a tolerance, in at most `MOST_PASSES` passes.
+    """Compute the table of a request with a tolerance, in at most `MAX_PASSES` passes.
 
     Raises `MeshError`, `SolveError`, `WorkersLost` of the first pass; a later one that fails keeps the table
     before it.
@@ -108,7 +108,7 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
 
 
 def _following(table: SteDatabase, last: Pass) -> Refinement | str:
-    tolerance = last.decided.checked.request.options.allowed
+    tolerance = last.decision.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"
     if table.n_failed:
@@ -116,15 +116,15 @@ def _following(table: SteDatabase, last: Pass) -> Refinement | str:
     at_nodes = table.metadata.receipt["tolerance"]["used_at_nodes"]
     if at_nodes is not None and at_nodes <= 1.0:
         return _beyond_between(table)
-    bought, _ = bought_shares(error_shares(table, tolerance), last.decided.checked.request)
-    measured = next_pass(last.decided, bought)
-    behind = last.decided.behind
+    bought, _ = bought_shares(error_shares(table, tolerance), last.decision.checked.request)
+    measured = next_pass(last.decision, bought)
+    behind = last.decision.behind
     if behind and last.refinement is None and (isinstance(measured, str) or measured.expected > 1.0):
         return _behind_trial(behind, last)
     return measured
 
 
-def _behind_trial(behind: Decided, trial: Pass) -> Refinement:
+def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
     """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
     expected = behind.mesh.option.error.bought / behind.checked.request.options.allowed.relative
     name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
@@ -150,13 +150,13 @@ def _interval_words(entry: Json) -> str:
 
 def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     """Say why a refinement does not begin, of passes or of time; empty if it may."""
-    if len(passes) == MOST_PASSES:
-        return f"the limit is {MOST_PASSES} passes"
-    budget = made.decided.checked.request.options.time_budget
+    if len(passes) == MAX_PASSES:
+        return f"the limit is {MAX_PASSES} passes"
+    budget = made.decision.checked.request.options.time_budget
     if budget is None:
         return ""
     left = budget - sum(done.cost["cpu_seconds"] for done in passes)
-    needed = made.decided.predicted(cache).cpu_seconds
+    needed = made.decision.predicted(cache).cpu_seconds
     if needed <= left:
         return ""
     return (

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds import engineering
-from fe_contact.analysis.request.model_choice import Decided, next_model
+from fe_contact.analysis.request.model_choice import Decision, next_model
 from fe_contact.options import LEVELS
 from fe_contact.planning.discretization import (
     FINER_SLICES,
@@ -51,7 +51,7 @@ class Refinement:
     and `expected` is the part of the tolerance that the pass is predicted to use.
     """
 
-    decided: Decided
+    decision: Decision
     source: str
     steps: tuple[str, ...]
     expected: float
@@ -69,7 +69,7 @@ class _Resolution:
     `shares` (6, ...) are parts of the tolerance by source, `level_left` mesh levels may yet be gone up.
     """
 
-    decided: Decided
+    decision: Decision
     level: str
     slices: int
     nodes: NodeRule
@@ -89,17 +89,19 @@ class _Resolution:
 
     def step(self, source: int) -> _Resolution | None:
         """Return the next finer resolution of a source; None if there is none."""
-        plan = self.decided.plan
+        plan = self.decision.plan
         across_face = isinstance(plan.discretization, FaceDiscretization)
         if source == _MESH:
             return self._next_level(across_face=across_face)
         if source == _SLICES and across_face:
             return self._more_slices()
         if source == _POSITION and plan.positions is None:
-            usual = self.decided.usual_nodes.tolerance
+            usual = self.decision.usual_nodes.tolerance
             if self.nodes.tolerance * CLOSER < usual * CLOSEST:
                 return None
-            nodes = replace(self.nodes, tolerance=CLOSER * self.nodes.tolerance, most=2 * self.nodes.most)
+            nodes = replace(
+                self.nodes, tolerance=CLOSER * self.nodes.tolerance, maximum=2 * self.nodes.maximum
+            )
             step = (
                 f"positions {engineering(100 * self.nodes.tolerance, 2)} "
                 f"-> {engineering(100 * nodes.tolerance, 2)} % of the ripple"
@@ -129,7 +131,7 @@ class _Resolution:
         return finer and (finer if finer.slices > self.slices else finer._more_slices())
 
     def _slices_that_fit(self, slices: int, level: str) -> int:
-        return face_discretization(self.decided.checked.request.pair, level, slices).slices
+        return face_discretization(self.decision.checked.request.pair, level, slices).slices
 
     def _in_slices(self, count: int) -> _Resolution:
         if count == self.slices:
@@ -144,7 +146,7 @@ class _Resolution:
         return replace(self, shares=shares, steps=(*self.steps, step))
 
 
-def next_pass(choice: Decided, shares: FloatArray) -> Refinement | str:
+def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
 
     A pass goes up one mesh level at most, since the level between costs a third of the finer one.
@@ -200,16 +202,16 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
     return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
-def _of_model(model: Decided, begun: _Resolution) -> Refinement:
+def _of_model(model: Decision, begun: _Resolution) -> Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
-    step = f"model {begun.decided.checked.model_name} -> {model.checked.model_name}"
+    step = f"model {begun.decision.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.bought / tolerance, begun.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 
 def _no_way(finest: _Resolution, source: int) -> str:
-    plan = finest.decided.plan
+    plan = finest.decision.plan
     fixed = f"{plan.positions} positions were requested; leave positions out or request more"
     why = {
         _MESH: f"mesh {finest.level} is the finest",

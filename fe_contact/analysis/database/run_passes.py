@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from fe_contact.analysis.database.refinement import Refinement
-from fe_contact.analysis.request.model_choice import Decided
+from fe_contact.analysis.request.model_choice import Decision
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 
@@ -15,7 +15,7 @@ from fe_contact.types import Json
 class Pass:
     """One run of the table on one discretization."""
 
-    decided: Decided
+    decision: Decision
     """Model and discretization."""
     cost: Json
     """Times by stage and memory, as in a receipt."""
@@ -35,14 +35,14 @@ class Pass:
     @property
     def name(self) -> str:
         """Model, mesh and slices in words."""
-        return f"{self.decided.checked.model_name}, {self.decided.mesh.option.name}"
+        return f"{self.decision.checked.model_name}, {self.decision.mesh.option.name}"
 
     def to_json(self) -> Json:
         """Return what ran, what it cost, what it used, and what was refined before it and why."""
-        mesh, made, table = self.decided.mesh, self.refinement, self.table
+        mesh, made, table = self.decision.mesh, self.refinement, self.table
         failed = {"failure": self.failure} if self.failure else {}
         return failed | {
-            "model": self.decided.checked.model_name,
+            "model": self.decision.checked.model_name,
             "level": mesh.level,
             "slices": mesh.slices,
             "positions": None if table is None else int(table.position.size),

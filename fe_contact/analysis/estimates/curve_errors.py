@@ -151,8 +151,8 @@ def _changes(
     if balance:
         about = np.nan_to_num(first - second).reshape(rows, -1)
         about = np.abs(about - mean_of_curves(sample.knots, about, sample.period))
-        least = balance * mean_of_curves(sample.knots, about, sample.period)
-        change[MEAN] = np.maximum(change[MEAN], least)
+        minimum = balance * mean_of_curves(sample.knots, about, sample.period)
+        change[MEAN] = np.maximum(change[MEAN], minimum)
     change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
     return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
 
@@ -200,5 +200,5 @@ def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
 def _shared(change: FloatArray, helical: float) -> FloatArray:
     """Let every harmonic of a helical pair change (23, ...) by its share of peak-to-peak at least."""
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
-    least = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
-    return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
+    minimum = helical * HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
+    return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], minimum)])

@@ -38,7 +38,7 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 MIDDLE, QUARTERS = (0.5,), (0.25, 0.5, 0.75)
 """Held-out alignments in parts of an interval. Between three nodes or more the error of a cubic may vanish in
 the middle; with a goal the quarters are solved once the middle meets it."""
-MOST_HALVINGS = 5
+MAX_HALVINGS = 5
 """Halvings of an interval of requested alignments: 20 um become intervals of 0.6 um."""
 
 
@@ -73,12 +73,12 @@ class HeldOutAlignments:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
         limit = ""
-        for left in range(MOST_HALVINGS, -1, -1):
+        for left in range(MAX_HALVINGS, -1, -1):
             further = self._further(made, truths)
             if not further.size:
                 break
             if not left:
-                limit = halvings_reached(MOST_HALVINGS)
+                limit = halvings_reached(MAX_HALVINGS)
                 break
             more = with_inserted_nodes(made, self.axis, further)
             if more is None:
@@ -114,8 +114,8 @@ class HeldOutAlignments:
         goal = self.goal_of(made.table)
         # of (2, F, M, D), which has quantities in the place of positions
         allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
-        least = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
-        share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / least).max(axis=(0, 2, 3))
+        minimum = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
+        share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / minimum).max(axis=(0, 2, 3))
         return np.asarray(share > goal.shares(self.axis))
 
     def _missing(

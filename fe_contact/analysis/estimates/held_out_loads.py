@@ -38,7 +38,7 @@ than four intervals the middles alone: those are short."""
 AWAY = 1.4
 """Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
 lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
-MOST_HALVINGS = 8
+MAX_HALVINGS = 8
 """Halvings of an interval of requested loads: a factor of five becomes one of 1.006. The error at a kink
 falls in proportion to the interval that holds it."""
 
@@ -75,13 +75,13 @@ class HeldOutLoads:
         force = self.table.force.tolist()
         probes, support, table = self._solved(self._missing(force, np.empty(0))), None, self.table
         limit = ""
-        for left in range(MOST_HALVINGS, -1, -1):
+        for left in range(MAX_HALVINGS, -1, -1):
             further = self._middles(table, probes, goal)
             if not further:
                 break
             more = self._everywhere(np.array(further)) if left else None
             if more is None:
-                limit = "a load between them has no solution" if left else halvings_reached(MOST_HALVINGS)
+                limit = "a load between them has no solution" if left else halvings_reached(MAX_HALVINGS)
                 break
             support = more if support is None else _joined(support, more)
             table = with_support_loads(self.table, self._first_pitch(support))
@@ -163,8 +163,8 @@ class HeldOutLoads:
         shares = np.zeros(probes.force.size)
         for low, high in pairwise(self.table.force.tolist()):
             inside = _inside(probes.force, low, high)
-            least = allowed[:, (force >= low) & (force <= high)].min(axis=1)
-            shares[inside] = (change[[MEAN, PEAK_TO_PEAK]][:, inside] / least[:, None]).max(axis=0)
+            minimum = allowed[:, (force >= low) & (force <= high)].min(axis=1)
+            shares[inside] = (change[[MEAN, PEAK_TO_PEAK]][:, inside] / minimum[:, None]).max(axis=0)
         return shares
 
     @cached_property

@@ -67,7 +67,7 @@ def alignment_points(made: SolvedTable, axes: Alignments) -> OperatingPoints:
         misalignment=axes[MISALIGNMENT],
         center_distance_change=axes[CENTER_DISTANCE],
     )
-    points = operating_points(scene, made.checked.decided, made.places.nominal, made.places.workers)
+    points = operating_points(scene, made.checked.decision, made.places.nominal, made.places.workers)
     distances = made.table.center_distance_change.tolist()
     known = dict(zip(distances, (place.contact for place in made.places.places), strict=False))
     places = [

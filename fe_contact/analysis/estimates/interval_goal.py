@@ -12,7 +12,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import BETWEEN_NODES
 from fe_contact.types import FloatArray
 
-LEAST_SHARE = 0.1
+MIN_SHARE = 0.1
 """Part of a tolerance that an interval may always take: errors at nodes that leave less are refined first."""
 
 
@@ -37,7 +37,7 @@ class IntervalGoal:
         by_interval = np.maximum(by_node[1:], by_node[:-1])
         several = sum(size > 1 for size in self.used.shape)
         left = np.sqrt(np.maximum(1.0 - by_interval**2, 0.0) / several)
-        return np.where(by_interval < 1.0, np.maximum(left, LEAST_SHARE), 1.0)
+        return np.where(by_interval < 1.0, np.maximum(left, MIN_SHARE), 1.0)
 
 
 GoalOf = Callable[[SteDatabase], IntervalGoal]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.estimates.interval_goal import LEAST_SHARE, IntervalGoal
+from fe_contact.analysis.estimates.interval_goal import MIN_SHARE, IntervalGoal
 from fe_contact.analysis.request.request import Request
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, METHOD, PLANE, SOURCES, all_sources
@@ -29,8 +29,8 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
     errors = _with_bias(table, table.curve_error, stored_bias(table.metadata.receipt))
     shares = errors / allowed_errors(table, allowed)
     for axis, source in enumerate(range(len(AT_NODES), len(SOURCES)), start=1):
-        least = _with_next(allowed_errors(table, allowed), axis, np.fmin)
-        shares[source] = table.curve_error[source, [MEAN, PEAK_TO_PEAK]] / least
+        minimum = _with_next(allowed_errors(table, allowed), axis, np.fmin)
+        shares[source] = table.curve_error[source, [MEAN, PEAK_TO_PEAK]] / minimum
     return np.asarray(shares)
 
 
@@ -138,7 +138,7 @@ def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray
     for i, (name, nodes) in enumerate(axes):
         share, used, nodes_alone = (np.moveaxis(values, i, 0)[:-1] for values in (between[i], total, cells))
         # where the nodes alone miss it, only an interval that does so by itself is named
-        named = (used > 1.0) & (share > LEAST_SHARE) & ((nodes_alone <= 1.0) | (share > 1.0))
+        named = (used > 1.0) & (share > MIN_SHARE) & ((nodes_alone <= 1.0) | (share > 1.0))
         beyond = np.where(named, share, 0.0).max(axis=(1, 2), initial=0.0)
         if beyond.size and beyond.max() > 0.0:
             k = int(np.argmax(beyond))

@@ -136,8 +136,8 @@ class _Flanks:
         longest = np.where(parabola, half_width(load, plain, modulus), longest)
         kinked = 0.5 * (about.curvature + bends) * longest + (kinks + np.abs(about.slope)) / math.pi
         pressure = flanks.pressure.reshape(rows, -1)[loaded]
-        least = (1.0 - STRAIGHT) * peak_pressure(load, radius, modulus)
-        yield _FLATTEST.above(pressure, least, self._among(loaded))
+        minimum = (1.0 - STRAIGHT) * peak_pressure(load, radius, modulus)
+        yield _FLATTEST.above(pressure, minimum, self._among(loaded))
         yield _SHARPEST.below(pressure, (1.0 + STRAIGHT) * modulus * kinked, self._among(loaded))
 
     def _longest(self, places: _Places, load: FloatArray) -> FloatArray:

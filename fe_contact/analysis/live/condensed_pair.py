@@ -44,7 +44,7 @@ from model_studies.stage_clock import StageClock
 PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 """Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
 handovers are steep, and positions cost little."""
-MOST_ROWS, FEWEST_POSITIONS = 4096, 16
+MAX_ROWS, FEWEST_POSITIONS = 4096, 16
 """Of longer periods, which repeat the positions in every base pitch."""
 KEPT_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
@@ -218,8 +218,8 @@ class CondensedPair:
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             limit = float(pair.torque(np.array([self.largest_load]))[0])
             bound = at_most(limit, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
-            advice = "Analyze the case with a higher load."
-            raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
+            remedy = "Analyze the case with a higher load."
+            raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, remedy)
 
     def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
         """Compose the model of other flanks on the bodies there are."""
@@ -244,7 +244,7 @@ class CondensedPair:
 
     def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:
         limit = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
-        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, limit))
+        count = int(np.clip(MAX_ROWS // checked.model.period, FEWEST_POSITIONS, limit))
         load = checked.request.load
         return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
 
@@ -296,8 +296,8 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
     teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
     if needed > teeth:
         bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
-        advice = "Add it to the axis of the case and analyze the case."
-        raise InputError("center_distance_changes[0]", change, bound, advice)
+        remedy = "Add it to the axis of the case and analyze the case."
+        raise InputError("center_distance_changes[0]", change, bound, remedy)
 
 
 def _plain(pair: Any) -> list[object]:

@@ -34,7 +34,7 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
         Directory of flank compliances.
     """
     choice = decide(acting, cache)
-    request, choices = choice.checked.request, choice.checked.decided
+    request, choices = choice.checked.request, choice.checked.decision
     effects = {**acting.request.options.effects, **{name: choices[name] for name in OF_BODIES}}
     bound = replace(
         request,

@@ -45,7 +45,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
         misalignment=_some(request.misalignment, ALIGNMENTS),
         center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
     )
-    points = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
+    points = operating_points(scene, checked.decision, SpringContact(request.pair, plan, law=LAW)).places
     position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
     solved = [point.solve(position, load)[1] for point in points]
     # errors grow with what the load adds: a misaligned pair leads at no load

@@ -29,7 +29,7 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
     chosen = [effect.name for effect in checked.request.registry] if names is None else list(names)
     neglected = [name for name in chosen if name in checked.request.neglected]
     assessed = [name for name in chosen if name not in neglected]
-    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, assessed)
+    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decision, assessed)
     for name in neglected:
         scene, choices = checked.assessing(name)
         influences[name] = estimate_influence(scene.at_nominal_load, choices, name)

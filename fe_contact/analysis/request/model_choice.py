@@ -35,24 +35,24 @@ TRIED_WORK = 0.1
 
 
 @dataclass(frozen=True)
-class Decided:
+class Decision:
     """A request with its model and mesh."""
 
     checked: Checked
     """With the chosen model, and a ledger that says why."""
     mesh: MeshChoice
     plan: Plan
-    wished: Decided | None = None
+    wished: Decision | None = None
     """What the tolerance needs, where the time does not allow it."""
-    behind: Decided | None = None
+    behind: Decision | None = None
     """What is expected to follow, where a mesh that is expected to miss the tolerance is tried first."""
 
     @property
-    def passes(self) -> tuple[Decided, ...]:
+    def passes(self) -> tuple[Decision, ...]:
         """The request and what is expected to follow it."""
         return (self,) if self.behind is None else (self, self.behind)
 
-    def in_slices(self, count: int) -> Decided:
+    def in_slices(self, count: int) -> Decision:
         """Return the same model and mesh in another number of slices; itself in the plane."""
         if not isinstance(self.plan.discretization, FaceDiscretization):
             return self
@@ -65,7 +65,7 @@ class Decided:
         """The rule by which positions are placed before any refinement."""
         return self.checked.plan(self.plan.level).nodes
 
-    def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:
+    def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decision:
         """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
         plan = replace(self.checked.plan(level, slices), nodes=nodes)
         request, model = self.checked.request, self.checked.model
@@ -85,7 +85,7 @@ class Decided:
 
 def decide(
     checked: Checked, cache: Path | None = None, *, keep_model: bool = False, tried: bool = False
-) -> Decided:
+) -> Decision:
     """Choose model, mesh and slices by the accuracy of a request.
 
     Parameters
@@ -137,12 +137,12 @@ def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = F
     return mesh_options(*arguments, curves, bound=request.model_chosen)
 
 
-def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decided:
+def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decision:
     """Choose by the tolerance what fits into the time budget; else the most exact that fits."""
     options = checked.request.options
     budget = options.time_budget or 0.0
 
-    def chosen(relaxed: AnalysisOptions) -> Decided:
+    def chosen(relaxed: AnalysisOptions) -> Decision:
         request = replace(checked.request, options=relaxed)
         made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
         request = replace(made.checked.request, options=options)
@@ -197,7 +197,7 @@ def alternative_requests(checked: Checked) -> list[Checked]:
     return [*flat, checked, _again(solid)]
 
 
-def next_model(checked: Checked) -> Decided | None:
+def next_model(checked: Checked) -> Decision | None:
     """Return the request in the next more exact model that is expected to meet its tolerance.
 
     None where there is none, or where the caller chose the model or one of the effects that tell it.
@@ -274,5 +274,5 @@ def _reason(tells: bool, text: str, parts: str) -> str:
     return f"{text} for the requested accuracy: expected error {parts}" if mine else text
 
 
-def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
-    return Decided(checked, mesh, checked.plan(mesh.level, mesh.slices))
+def _planned(checked: Checked, mesh: MeshChoice) -> Decision:
+    return Decision(checked, mesh, checked.plan(mesh.level, mesh.slices))

@@ -21,24 +21,24 @@ def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequen
     """
     if model.across_face:
         return
-    pair, advice = scene.pair, "Use the 3-D model for it."
+    pair, remedy = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
-        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
+        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", remedy)
     for name, gear in scene.gears.items():
-        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
+        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, remedy)
         if pair.shafts[name == "wheel"] is not None:
-            raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
+            raise InputError(f"{name}.shaft", "given", "left out for a plane model", remedy)
     if np.any(scene.misalignment != 0.0):
-        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", remedy)
     for entry in ledger:
         if entry.on:
             scene.effect(entry.name).refuse_plane(scene)
 
 
-def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
+def _refuse_varying_flanks(field: str, along_face: FlankModification, remedy: str) -> None:
     bound = "constant along the face for a plane model"
     for name in fields_of(*DEPTHS):
         if amount := getattr(along_face, name):
-            raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
+            raise InputError(f"{field}.{name}", amount, f"0: {bound}", remedy)
     if along_face.flank_grid is not None:
-        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, advice)
+        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, remedy)

@@ -136,7 +136,7 @@ class Checked:
     cycle: CycleCost | None = None
 
     @property
-    def decided(self) -> dict[str, str]:
+    def decision(self) -> dict[str, str]:
         """Every effect "on" or "off", as the whole request decides it."""
         return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
 
@@ -175,6 +175,6 @@ class Checked:
         """
         request = self.request
         if name not in request.neglected:
-            return request.scene, self.decided
+            return request.scene, self.decision
         _, ledger = compose(request.whole_scene, request.asked_choices)
         return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}

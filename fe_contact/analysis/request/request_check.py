@@ -159,10 +159,10 @@ def _refuse_distances(request: Request) -> None:
 def _refuse_thin_discs(pair: ParallelAxes, level: str | None) -> None:
     """Refuse discs so thin that rounding would show; where no mesh is requested, the finest counts."""
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        least = least_face_width(gear, getattr(SectorRecipe, level or "fine")(gear).layers)
-        if gear.face_width < least:
+        minimum = least_face_width(gear, getattr(SectorRecipe, level or "fine")(gear).layers)
+        if gear.face_width < minimum:
             bends = "bends as a plate under the axial force of its helix" if gear.helix_angle else "gives way"
             rounding = f"rounding of its stiffness changes that by more than {LARGEST_ROUNDING:g}"
-            bound = at_least(least, "m", note=f": a thinner disc {bends}, and {rounding}")
-            advice = "Widen the face or the bore" + (", or take a spur gear." if gear.helix_angle else ".")
-            raise InputError(f"{name}.face_width", gear.face_width, bound, advice)
+            bound = at_least(minimum, "m", note=f": a thinner disc {bends}, and {rounding}")
+            remedy = "Widen the face or the bore" + (", or take a spur gear." if gear.helix_angle else ".")
+            raise InputError(f"{name}.face_width", gear.face_width, bound, remedy)

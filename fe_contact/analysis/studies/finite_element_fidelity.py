@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from fe_contact.analysis.database.compute_database import compute_database
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.errors import InputError
@@ -65,9 +65,9 @@ class FiniteElementFidelity:
     def run(self, checked: Checked) -> SteDatabase:
         """Compute the table."""
         computed = self.as_computed(checked)
-        return compute_database(computed, computed.request.to_json(), Run(), self.decided(computed))
+        return compute_database(computed, computed.request.to_json(), Run(), self.decision(computed))
 
-    def decided(self, computed: Checked) -> Decided:
+    def decision(self, computed: Checked) -> Decision:
         """Return the request as it is computed with its plan."""
         choice = decide(computed)
         return choice if self.slices is None else choice.in_slices(self.slices)

@@ -41,7 +41,7 @@ from fe_contact.ste import SteDatabase
 from model_studies import Outcome, Progress, against_finest, knee_above, run_fidelities, silent
 from model_studies.host_speed import host_slowness
 
-MOST_FULL_CONTACT = 64
+MAX_FULL_CONTACT = 64
 
 
 FIDELITIES: tuple[Fidelity, ...] = (
@@ -122,7 +122,7 @@ def frontier(
     """
     checked = Frontier.request(pair, axes, options)
     if full_contact is not None:
-        integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
+        integer("full_contact", full_contact, 1, MAX_FULL_CONTACT)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
     outcomes, left_out = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
@@ -163,7 +163,7 @@ def predicted_frontier(checked: Checked, fidelities: Sequence[str], cache: Path 
         if not isinstance(fidelity, FiniteElementFidelity) or fidelity.name not in fidelities:
             continue
         if fidelity.refusal(checked) is None:
-            choice = fidelity.decided(fidelity.as_computed(checked))
+            choice = fidelity.decision(fidelity.as_computed(checked))
             request, model = choice.checked.request, choice.checked.model
             work = effort(request.pair, choice.plan, model, request.alignments)
             seconds[fidelity.name] = host_slowness(cache) * work

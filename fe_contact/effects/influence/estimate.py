@@ -45,7 +45,7 @@ def estimate_influence(
     scene: ContactScene,
     choices: Mapping[str, str],
     name: str,
-    least: float = 0.0,
+    minimum: float = 0.0,
 ) -> EstimatedInfluence | None:
     """Estimate what leaving the effect `name` out of the model changes.
 
@@ -62,20 +62,20 @@ def estimate_influence(
         None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
         do not know it.
     """
-    return estimate_influences(scene, choices, [name], least)[name]
+    return estimate_influences(scene, choices, [name], minimum)[name]
 
 
 def estimate_influences(
     scene: ContactScene,
-    decided: Mapping[str, str],
+    decision: Mapping[str, str],
     names: Sequence[str],
-    least: float = 0.0,
+    minimum: float = 0.0,
 ) -> dict[str, EstimatedInfluence | None]:
     """Estimate several effects; parameters of `estimate_influence`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
     springs = Springs(scene.pair)
     face, width = named(scene.registry, "across_face"), named(scene.registry, "finite_width")
-    uncorrected = decided.get(face) == "off" and decided.get(width) == "off"
+    uncorrected = decision.get(face) == "off" and decision.get(width) == "off"
 
     def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
         key = tuple(sorted(choices.items()))
@@ -90,16 +90,16 @@ def estimate_influences(
             return influence_of(scene.effect(width))
         if effect.name == face or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
-            return _compared(curves(decided), curves(decided), least)
+            return _compared(curves(decision), curves(decision), minimum)
         with_it, without = (
             curves(
-                decided
-                if decided[effect.name] == choice
-                else flipped(scene.registry, decided, effect.name, choice)
+                decision
+                if decision[effect.name] == choice
+                else flipped(scene.registry, decision, effect.name, choice)
             )
             for choice in ("on", "off")
         )
-        return _compared(with_it, without, least)
+        return _compared(with_it, without, minimum)
 
     return {effect.name: influence_of(effect) for effect in scene.registry if effect.name in names}
 
@@ -121,14 +121,14 @@ def _curves(scene: ContactScene, choices: Mapping[str, str], springs: Springs) -
 
 
 def _compared(
-    with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], least: float
+    with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], minimum: float
 ) -> EstimatedInfluence:
     """Take differences of the last curves, and the largest relative one of all."""
     changes = [
         (b.mean - a.mean, b.peak_to_peak - a.peak_to_peak) for a, b in zip(with_it, without, strict=True)
     ]
     relative = [
-        np.abs((mean, ripple)) / np.maximum(np.abs((curve.mean, curve.peak_to_peak)), least)
+        np.abs((mean, ripple)) / np.maximum(np.abs((curve.mean, curve.peak_to_peak)), minimum)
         for (mean, ripple), curve in zip(changes, with_it, strict=True)
     ]
     return EstimatedInfluence(*changes[-1], with_it[-1], float(np.max(relative)))

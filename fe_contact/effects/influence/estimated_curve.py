@@ -33,7 +33,7 @@ PLANE_POSITIONS, FACE_POSITIONS = 64, 32
 FACE_SLICES = 11
 
 
-MOST_PITCHES = 32
+MAX_PITCHES = 32
 """Base pitches looked at where teeth differ."""
 
 
@@ -41,7 +41,7 @@ _PATCH, _EDGE = 0.15, 0.0125
 """Half-width of the load patches and their length at an edge, modules."""
 
 
-_MOST_STEPS, _EVEN = 512, 3
+_MAX_STEPS, _EVEN = 512, 3
 
 
 UNEVEN_PITCHES = 4
@@ -114,19 +114,19 @@ class Springs:
 
 
 def spread_pitches(periods: Sequence[int]) -> IntArray:
-    """Return at most `MOST_PITCHES` base pitches of gears that repeat after so many, by equal steps.
+    """Return at most `MAX_PITCHES` base pitches of gears that repeat after so many, by equal steps.
 
     Of all steps the one by which both gears stand most evenly at all their angles, and against each other:
     the orders up to `_EVEN` of both, their sums and differences have the least mean.
     """
     whole = math.lcm(*periods)
-    if whole <= MOST_PITCHES:
+    if whole <= MAX_PITCHES:
         return np.arange(whole)
     rates = np.zeros(1)
     for period in {*periods} - {1}:
         rates = np.add.outer(rates, np.arange(-_EVEN, _EVEN + 1) / period).ravel()
     rates = rates[np.abs(rates) > 1e-12]
-    step, index = np.arange(1, min(whole, _MOST_STEPS)), np.arange(MOST_PITCHES)
+    step, index = np.arange(1, min(whole, _MAX_STEPS)), np.arange(MAX_PITCHES)
     angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
     steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
     return np.sort(index * step[int(steadiness.argmin())] % whole)

@@ -111,8 +111,8 @@ def across_face(checked: CheckedCase) -> CheckedCase:
 class CheckedCases:
     """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
 
-    def __init__(self, most: int = 256) -> None:
-        self._most, self._kept = most, OrderedDict[str, CheckedCase]()
+    def __init__(self, maximum: int = 256) -> None:
+        self._maximum, self._kept = maximum, OrderedDict[str, CheckedCase]()
 
     def of(self, case: Case) -> CheckedCase:
         """Return a validated case."""
@@ -127,7 +127,7 @@ class CheckedCases:
         checked = self._kept.get(name)
         if checked is None:
             checked = self._kept[name] = CheckedCase(case())
-            while len(self._kept) > self._most:
+            while len(self._kept) > self._maximum:
                 self._kept.popitem(last=False)
         return checked
 

@@ -284,9 +284,9 @@ def _refuse_beyond(scene: SceneInput, turns: Mapping[str, float], speed: float) 
         turn_rate = turns[part.shaft] * speed / RPM
         if part.kind == "table" and not part.speed_rpm[0] <= turn_rate <= part.speed_rpm[-1]:
             bound = f"within speed_torques[{index}], {part.speed_rpm[0]:g} to {part.speed_rpm[-1]:g} rpm"
-            advice = f"Extend the table of {part.name}, or check the speed of the complaint."
+            remedy = f"Extend the table of {part.name}, or check the speed of the complaint."
             value = f"{engineering(turn_rate, 4)} rpm of {part.shaft}"
-            raise BadInput.of("complaint.speed_rpm", value, bound, advice)
+            raise BadInput.of("complaint.speed_rpm", value, bound, remedy)
 
 
 def _as_written(every: Iterable[Excitation], scene: SceneInput) -> list[Excitation]:
@@ -307,8 +307,8 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
     nearest = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in grouped(meshes)[:NAMED])
     share = engineering(100.0 * complaint.tolerance, 3)
     bound = f"within {share} % of what passes; nearest: {nearest}"
-    advice = "Check speed, ratios and tire; or state tolerance_percent, or more orders."
-    return BadInput.of(f"complaint.{name}", getattr(fields, name), bound, advice)
+    remedy = "Check speed, ratios and tire; or state tolerance_percent, or more orders."
+    return BadInput.of(f"complaint.{name}", getattr(fields, name), bound, remedy)
 
 
 def sentence(complaint: Complaint) -> str:

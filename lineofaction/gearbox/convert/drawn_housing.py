@@ -28,14 +28,14 @@ def drawn_housings(inputs: Json, folder: Path, announce: Callable[[str], None]) 
     Work of a confined process that answers once. `announce`: gets the field of each file before it is read,
     which may end the process. Raises `BadInput`: a file is no solid, or damaged.
     """
-    from dynamics.housings.drawn_surface import MOST_TRIANGLES  # noqa: PLC0415 (start-up time)
+    from dynamics.housings.drawn_surface import MAX_TRIANGLES  # noqa: PLC0415 (start-up time)
 
     housings = [validated(HousingInput, housing) for housing in inputs["housings"]]
     solid = [(index, housing) for index, housing in enumerate(housings) if housing.is_solid]
     points, facets = np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     for index, housing in solid:
         announce(f"housings[{index}].{'step_file' if housing.step_file else 'mesh_file'}")
-        own_points, own_facets = _drawn(index, housing, folder, MOST_TRIANGLES // len(solid))
+        own_points, own_facets = _drawn(index, housing, folder, MAX_TRIANGLES // len(solid))
         points, facets = np.vstack([points, own_points]), np.vstack([facets, own_facets + len(points)])
     return {"surface": packed_surface(points, facets) if solid else None}
 

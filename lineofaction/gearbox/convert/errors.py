@@ -19,7 +19,7 @@ from host import Unavailable, missing_extra
 from lineofaction.gearbox.convert.boundary_names import _IN_WORDS, boundary_name, case_field, scene_field
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.faults import field_advice
+from lineofaction.gearbox.schemas.faults import field_remedy
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import BY_SUFFIX, MM, as_typed, factor, unit_of
 from model_studies.workers import WorkersLost
@@ -103,5 +103,5 @@ def _fault(error: RefusedValue, reader: _CaseReader) -> Fault:
     bound = error.bound.worded(reader)
     if isinstance(error, InfeasibleGeometry):
         bound = f"{bound} ({error.name})"
-    advice = error.suggestion.worded(reader).strip() or field_advice(reader.model, reader.name)
-    return Fault(reader.name, reader.shown(error.value), bound, advice)
+    remedy = error.suggestion.worded(reader).strip() or field_remedy(reader.model, reader.name)
+    return Fault(reader.name, reader.shown(error.value), bound, remedy)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import BadInput, JobFailed
-from lineofaction.gearbox.schemas.query import LIMITS, MOST_POINTS, QueryInput
+from lineofaction.gearbox.schemas.query import LIMITS, MAX_POINTS, QueryInput
 from lineofaction.gearbox.units import N_PER_UM, factor
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ def points_of_columns(values: FloatArray, names: Sequence[str]) -> FloatArray:
 
     Raises `BadInput`: there are too many points; a value is not finite or out of bounds.
     """
-    if values.shape[1] > MOST_POINTS:
-        advice = "Ask in several requests."
-        raise BadInput.of("position", f"{values.shape[1]} values", f"a list of at most {MOST_POINTS}", advice)
+    if values.shape[1] > MAX_POINTS:
+        remedy = "Ask in several requests."
+        raise BadInput.of("position", f"{values.shape[1]} values", f"a list of at most {MAX_POINTS}", remedy)
     for name, column in zip(names, values, strict=True):
         wrong = np.flatnonzero(~(np.abs(column) <= LIMITS[name]))
         if wrong.size:

@@ -170,9 +170,9 @@ def _housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | Non
         except InputError as error:
             if error.field != "stiffness":
                 raise
-            advice = "Fix a foot, or give mounts on three feet that are not in line."
+            remedy = "Fix a foot, or give mounts on three feet that are not in line."
             bound = "such that they hold the housing in every direction"
-            raise InputError("feet", [foot.name for foot in housing.feet], bound, advice) from None
+            raise InputError("feet", [foot.name for foot in housing.feet], bound, remedy) from None
 
 
 def placeholder(index: int, housing: HousingInput) -> Housing:

@@ -140,8 +140,8 @@ def _check_nodes(
     """Refuse a file without functions, or a node that none of them has, by the field that `nodes` give it."""
     field, name = where
     if not channels:
-        advice = "Export functions of type 4, one for each pair of seat and point."
-        raise BadInput.of(field, name, "a file with frequency responses; it has none", advice)
+        remedy = "Export functions of type 4, one for each pair of seat and point."
+        raise BadInput.of(field, name, "a file with frequency responses; it has none", remedy)
     present = sorted({channel.nodes[_PLACES[kind]] for channel in channels})
     if (node := next((number for number in nodes if number not in present), None)) is not None:
         listed = ", ".join(map(str, present[:_LISTED]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from bounds.types import Json
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.planning.cost_model import Prediction
 from lineofaction.gearbox.convert.case import boundary_errors
@@ -28,12 +28,12 @@ def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
 
     Raises `BadInput`: no such pair, or a request that no plan can meet.
     """
-    decided = case.request(_decided, cache)
+    decision = case.request(_decision, cache)
     with boundary_errors():
-        return [own.predicted(cache) for own in decided.passes]
+        return [own.predicted(cache) for own in decision.passes]
 
 
-def _decided(case: CheckedCase, cache: Path | None) -> Decided:
+def _decision(case: CheckedCase, cache: Path | None) -> Decision:
     return decide(case.checked, cache, tried=True)
 
 

@@ -50,8 +50,8 @@ def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Ge
     for index, mesh in enumerate(scene.meshes):
         if mesh.wheel_drives and not facts[mesh.name].internal:
             bound = "left out: the wheel of this case is no ring gear"
-            advice = "Give a case whose pinion is the gear that drives."
-            raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, advice)
+            remedy = "Give a case whose pinion is the gear that drives."
+            raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, remedy)
         for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
             name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
             known = by_name.setdefault(name, teeth)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from bounds import engineering
-from lineofaction.gearbox.convert.effects import _RELATIVE, LEAST, Json, trifles_title
+from lineofaction.gearbox.convert.effects import _RELATIVE, MIN, Json, trifles_title
 from model_studies.ablation import TRIFLE
 
 
@@ -20,7 +20,7 @@ def effect_size(ledger: Json, effect: str) -> str:
     if estimate is not None:
         return str(estimate["words"])
     largest = max(entry["influence_um"] for entry in ledger["entries"] if entry["effect"] == effect)
-    return f"{engineering(largest, 3)} µm along the line of action at rest" if largest >= LEAST else ""
+    return f"{engineering(largest, 3)} µm along the line of action at rest" if largest >= MIN else ""
 
 
 class SceneEffect(NamedTuple):

@@ -157,8 +157,8 @@ def _axial_load(row: Row) -> float:
     contact_angle = row.contact_angle
     if isinstance(row, RollerBearing) and contact_angle == 0.0:
         return 0.0
-    least = INDUCED * RADIAL_LOAD * math.tan(abs(contact_angle))
-    return math.copysign(max(AXIAL_LOAD, least), contact_angle)
+    minimum = INDUCED * RADIAL_LOAD * math.tan(abs(contact_angle))
+    return math.copysign(max(AXIAL_LOAD, minimum), contact_angle)
 
 
 def operating_point(part: Part) -> FloatArray | None:
@@ -169,8 +169,8 @@ def operating_point(part: Part) -> FloatArray | None:
     if not np.any(matrix):
         return None
     matrix = 0.5 * (matrix + matrix.T)
-    least, largest = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
-    if largest <= 0.0 or least < -1e-6 * largest or np.max(np.abs(matrix)) >= RIGID_FROM:
+    minimum, largest = map(float, np.linalg.eigvalsh(matrix)[[0, -1]])
+    if largest <= 0.0 or minimum < -1e-6 * largest or np.max(np.abs(matrix)) >= RIGID_FROM:
         for name in (name for row in names for name in row if part.attribute(name) is not None):
             part.say(name, "refused", "no stiffness matrix: it is not positive semidefinite, or not finite")
         return None

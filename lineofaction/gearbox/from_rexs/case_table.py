@@ -115,8 +115,8 @@ def _strangers(
         for part, mate in zip(parts, values[::-1], strict=True)
         if isinstance(mate, (int, float))
     ]
-    advice = f"Open it with {' or '.join(mends)}." if mends else ""
-    return pair.stage.refusal("gears", named, bound, advice)
+    remedy = f"Open it with {' or '.join(mends)}." if mends else ""
+    return pair.stage.refusal("gears", named, bound, remedy)
 
 
 def _depth(gear: ToothingData, pairs: Sequence[ToothedPair], shifts: Mapping[int, float]) -> ToothDepth:

@@ -15,7 +15,7 @@ from lineofaction.gearbox.problems import BadInput
 EQUAL = 1e-9
 """Relative; ratios of whole numbers, solved in floating point."""
 
-_MOST_ROTORS = 300
+_MAX_ROTORS = 300
 """The largest trains that are solved have fewer; so many take 0.1 s."""
 
 
@@ -41,8 +41,8 @@ class Train:
         """
         stages, rotors = layout.stages, layout.rotors
         ids = tuple(sorted(set(rotors.of.values())))
-        if len(ids) > _MOST_ROTORS:
-            raise BadInput.of("model", f"{len(ids)} shafts and side plates", f"at most {_MOST_ROTORS}")
+        if len(ids) > _MAX_ROTORS:
+            raise BadInput.of("model", f"{len(ids)} shafts and side plates", f"at most {_MAX_ROTORS}")
         rows = np.zeros((len(stages) + len(rotors.couplings), len(ids)))
         for row, stage in zip(rows, stages, strict=False):
             first, second = (ids.index(rotors.of[shaft.id]) for shaft in stage.shafts)

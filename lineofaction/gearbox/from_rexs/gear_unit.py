@@ -71,9 +71,9 @@ class Part:
             self.say(item, "defaulted", why)
         return default if value is None else value
 
-    def refusal(self, item: str, value: object, bound: str, advice: str = "") -> BadInput:
+    def refusal(self, item: str, value: object, bound: str, remedy: str = "") -> BadInput:
         """Return the error of an attribute's value, in the unit of REXS."""
-        return BadInput.of(f"{self.place}, {item}", value, bound, advice)
+        return BadInput.of(f"{self.place}, {item}", value, bound, remedy)
 
     def required(self, item: str, words: str) -> float:
         """Return a number that the component must have."""

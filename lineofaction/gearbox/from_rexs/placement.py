@@ -12,7 +12,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import Part
 
 PARALLEL = 1e-6
 """Sine of the angle up to which two directions are the same."""
-_MOST_REFERENCES = 100
+_MAX_REFERENCES = 100
 _REFERENCE = "reference_component_for_position"
 
 
@@ -56,7 +56,7 @@ def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
     `inner` are the components whose places refer to this one, the innermost first. Raises `BadInput` as
     `Placement.of`.
     """
-    if part.id in inner or len(inner) > _MOST_REFERENCES:
+    if part.id in inner or len(inner) > _MAX_REFERENCES:
         bound = "a component that is not placed by this one itself"
         raise part.refusal(_REFERENCE, inner[-1], bound, "Refer to the gear unit.")
     frame, shaft = Placement.of(part, inner), part.shaft

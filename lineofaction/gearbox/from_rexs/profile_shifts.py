@@ -44,8 +44,8 @@ class ToothedPair:
         reference = abs(0.5 * (pinion.reference_diameter + wheel.sign * wheel.reference_diameter))
         cosine = reference * math.cos(pinion.transverse_pressure_angle) / self.center_distance
         if not 0.0 < cosine < 1.0:
-            least = 1e3 * reference * math.cos(pinion.transverse_pressure_angle)
-            value, bound = as_typed(self.center_distance, MM), f"above {least:.7g} mm"
+            minimum = 1e3 * reference * math.cos(pinion.transverse_pressure_angle)
+            value, bound = as_typed(self.center_distance, MM), f"above {minimum:.7g} mm"
             raise self.stage.refusal("center_distance", value, bound)
         return math.acos(cosine)
 

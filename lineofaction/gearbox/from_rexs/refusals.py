@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from lineofaction.gearbox.from_rexs.account import Line
 
-MOST, LONGEST = 100, 2000
+MAX, LONGEST = 100, 2000
 """Statements of a unit, and characters of one."""
 
 NO_REASON = "no part of the scene is made of it"
@@ -29,8 +29,8 @@ def refusal_texts(lines: Iterable[Line]) -> tuple[str, ...]:
     for line in refused_lines(lines):
         groups.setdefault(line.words, []).append(line)
     texts = [_statement(group, reason) for reason, group in groups.items()]
-    rest = len(texts) - MOST
-    return tuple(texts if rest <= 0 else [*texts[:MOST], f"and {rest} more: see the account of the import"])
+    rest = len(texts) - MAX
+    return tuple(texts if rest <= 0 else [*texts[:MAX], f"and {rest} more: see the account of the import"])
 
 
 def refused_lines(lines: Iterable[Line]) -> list[Line]:

@@ -24,11 +24,11 @@ def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mappin
     ring, depth = pair.wheel, depths[1]
     base = 0.5 * ring.reference_diameter * math.cos(ring.transverse_pressure_angle)
     tangent = pair.center_distance * math.sin(pair.working_pressure_angle)
-    least = 2.0 * math.hypot(base, _form_roll_length(pair, depths[0], shifts) + tangent)
-    if depth.tip_diameter > least:
+    minimum = 2.0 * math.hypot(base, _form_roll_length(pair, depths[0], shifts) + tangent)
+    if depth.tip_diameter > minimum:
         return depth
-    tip = math.ceil(least / _STEP + 1e-3) * _STEP
-    words = f"{tip / MM:.7g} mm, above {least / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
+    tip = math.ceil(minimum / _STEP + 1e-3) * _STEP
+    words = f"{tip / MM:.7g} mm, above {minimum / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
     words += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
     ring.part.say("tip_diameter", "defaulted", f"{words} {depth.tip_diameter / MM:.7g} mm")
     return replace(depth, tip_diameter=tip)

@@ -113,5 +113,5 @@ def _refuse(layout: Layout, load: Part, reason: str) -> None:
 
 
 def _digits(vector: FloatArray) -> list[float]:
-    least = ROUNDING * float(np.max(np.abs(vector)))
-    return [0.0 if abs(value) <= least else rounded(value) for value in vector]
+    minimum = ROUNDING * float(np.max(np.abs(vector)))
+    return [0.0 if abs(value) <= minimum else rounded(value) for value in vector]

@@ -36,8 +36,8 @@ class ToothingData:
         ring = gear.type == "ring_gear"
         if teeth != round(teeth) or teeth == 0.0 or (teeth < 0.0 and not ring):
             bound = f"a whole number {'other than' if ring else 'above'} 0"
-            advice = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
-            raise gear.refusal("number_of_teeth", teeth, bound, advice)
+            remedy = "" if teeth > 0.0 else "A ring gear is a component of the type ring_gear."
+            raise gear.refusal("number_of_teeth", teeth, bound, remedy)
         return cls(
             loaded=loaded,
             sign=-1 if ring else 1,

@@ -80,8 +80,8 @@ def step_housing(
     bearings = _bearings(scene)
     held = found(solid.bores, bearings) if placement is None else seated(solid.bores, bearings, placement)
     if not held.bores:
-        advice = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
-        raise BadInput.of("--origin-mm", held.placement.fields, "such that a bearing is in a bore", advice)
+        remedy = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
+        raise BadInput.of("--origin-mm", held.placement.fields, "such that a bearing is in a bore", remedy)
     stand = _stand(solid, held.placement, stands_on)
     fields = {
         "material": material,

@@ -13,7 +13,7 @@ ALPHA = math.sqrt(math.log(2.0) / math.pi)
 """A wave as long as the cut-off keeps half its amplitude (ISO 16610-21)."""
 CUTOFFS = 30.0
 """Cut-offs over the length of a trace, where none is stated."""
-_MOST_CUTOFFS, _MOST_POINTS = 200, 20_000
+_MAX_CUTOFFS, _MAX_POINTS = 200, 20_000
 _PER_CUTOFF = 2
 """Steps of the stations at which the filtered trace is kept."""
 
@@ -50,12 +50,12 @@ def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) ->
     cutoff : float, optional
         m; left out: a thirtieth of the length.
     """
-    if not 3 <= place.size <= _MOST_POINTS:
-        raise ValueError(f"a trace of 3 to {_MOST_POINTS} points; it has {place.size}")
+    if not 3 <= place.size <= _MAX_POINTS:
+        raise ValueError(f"a trace of 3 to {_MAX_POINTS} points; it has {place.size}")
     length = float(place[-1] - place[0])
     cutoff = length / CUTOFFS if cutoff is None else cutoff
-    if cutoff < length / _MOST_CUTOFFS:
-        raise ValueError(f"a trace of at most {_MOST_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
+    if cutoff < length / _MAX_CUTOFFS:
+        raise ValueError(f"a trace of at most {_MAX_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
     spacing = float(np.diff(place).max())
     if spacing > cutoff * (1.0 + 1e-9):
         raise ValueError(

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.geometry import Toothing
-from lineofaction.gearbox.inspection.sheet import LARGEST_UM, LEFT_OUT, MOST_POINTS, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.sheet import LARGEST_UM, LEFT_OUT, MAX_POINTS, Flank, Point, Sheet
 from lineofaction.gearbox.units import MM, UM
 
 _FIRST = re.compile(r"HEADER\s+KS\.MK\.FILE")
@@ -90,8 +90,8 @@ class _Reader:
                 points += self._pitches(_FLANKS[match["flank"]], rows)
             else:
                 title = self._beside(line, at) or title
-            if len(points) > MOST_POINTS:
-                raise ValueError(f"a file of at most {MOST_POINTS} points")
+            if len(points) > MAX_POINTS:
+                raise ValueError(f"a file of at most {MAX_POINTS} points")
         if not points:
             raise ValueError("a file with a profile, a helix or pitches; it has none")
         return Sheet(tuple(points), self.account)

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.evaluation import Split, split
-from lineofaction.gearbox.inspection.reading import ADVICE, FIELD
+from lineofaction.gearbox.inspection.reading import FIELD, REMEDY
 from lineofaction.gearbox.inspection.sheet import LEFT_OUT, PITCHES, Flank, Point, Sheet
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
@@ -91,7 +91,7 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
         splits = dict(_splits(traces, cutoff))
         surfaces = {tooth: _surface(traces[tooth, "topography"]) for tooth in over_flank}
     except ValueError as fault:
-        raise BadInput.of(FIELD, name, str(fault), ADVICE) from None
+        raise BadInput.of(FIELD, name, str(fault), REMEDY) from None
     flanks = [
         _flank(tooth, splits, surfaces, chart)
         for tooth in sorted({tooth for tooth, _ in splits} | over_flank)

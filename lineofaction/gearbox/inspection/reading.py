@@ -10,7 +10,7 @@ from lineofaction.gearbox.inspection.sheet import Point, Sheet, csv_sheet
 from lineofaction.gearbox.problems import BadInput
 
 FIELD = "measured"
-ADVICE = "See docs/how-to/measured-gear.md."
+REMEDY = "See docs/how-to/measured-gear.md."
 
 
 def read_sheet(text: str, gear: Toothing, name: str) -> Sheet:
@@ -22,7 +22,7 @@ def read_sheet(text: str, gear: Toothing, name: str) -> Sheet:
         sheet = machine_sheet(text, gear) if is_machine_file(text) else csv_sheet(text, gear)
         _refuse_repeated(sheet.points)
     except ValueError as fault:
-        raise BadInput.of(FIELD, name, str(fault), ADVICE) from None
+        raise BadInput.of(FIELD, name, str(fault), REMEDY) from None
     return sheet
 
 

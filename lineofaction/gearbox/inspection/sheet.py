@@ -23,7 +23,7 @@ FACE = ("face_position_mm", "face_distance_mm")
 _TOOTH = re.compile(r"[0-9]{1,4}")
 LARGEST_UM = 1000.0
 """um; larger deviations are in another unit."""
-MOST_POINTS = 200_000
+MAX_POINTS = 200_000
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def csv_sheet(text: str, gear: Toothing) -> Sheet:
 
     Raises `ValueError`: the first line that is none, by its number.
     """
-    file = csv_rows(text, MOST_POINTS)
+    file = csv_rows(text, MAX_POINTS)
     _check_heading(file.heading)
     points = tuple(_point(number, row, gear) for number, row in file.rows())
     if not points:

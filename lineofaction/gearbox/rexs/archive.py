@@ -10,12 +10,12 @@ from collections.abc import Mapping
 
 from lineofaction.gearbox.problems import BadInput
 
-MOST_BYTES = 64_000_000
+MAX_BYTES = 64_000_000
 """Of a file, and of an archive's files together."""
 
-_MOST_FILES = 1_000
+_MAX_FILES = 1_000
 
-_MOST_RATIO = 200
+_MAX_RATIO = 200
 """Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
 
 _MODEL_NAME = "rexs-model.rexs"
@@ -54,10 +54,10 @@ def archive_of(model: bytes, files: Mapping[str, bytes]) -> bytes:
 
 def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
     entries = [entry for entry in archive.infolist() if not entry.is_dir()]
-    if len(entries) > _MOST_FILES:
-        raise BadInput.of("archive", f"{len(entries)} files", f"at most {_MOST_FILES}")
+    if len(entries) > _MAX_FILES:
+        raise BadInput.of("archive", f"{len(entries)} files", f"at most {_MAX_FILES}")
     files: dict[str, bytes] = {}
-    left = min(MOST_BYTES, _MOST_RATIO * size)
+    left = min(MAX_BYTES, _MAX_RATIO * size)
     for entry in entries:
         parts = re.split(r"[/\\]", entry.filename)  # a relative name that stays in its folder on every system
         if not parts[0] or ".." in parts or ":" in entry.filename or "\0" in entry.filename:
@@ -74,6 +74,6 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limit: int) -> bytes
     with archive.open(entry) as stream:
         data = stream.read(limit + 1)
     if len(data) > limit:
-        bound = f"at most {MOST_BYTES} bytes and {_MOST_RATIO} times its archive"
+        bound = f"at most {MAX_BYTES} bytes and {_MAX_RATIO} times its archive"
         raise BadInput.of("archive", f"{entry.filename}, larger", bound)
     return data

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lineofaction.gearbox.problems import BadInput, Fault
-from lineofaction.gearbox.rexs.archive import MOST_BYTES, archive_of, read_archive
+from lineofaction.gearbox.rexs.archive import MAX_BYTES, archive_of, read_archive
 from lineofaction.gearbox.rexs.json_form import json_of, read_json
 from lineofaction.gearbox.rexs.model import Document, Model
 from lineofaction.gearbox.rexs.xml_form import read_xml, xml_of
 
 _ASSEMBLIES = ("assembly", "ordered_assembly")
-_MOST_FAULTS = 20
+_MAX_FAULTS = 20
 
 ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
 
@@ -26,7 +26,7 @@ def read_rexs(path: Path) -> Document:
     """
     try:
         with path.open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
+            data = stream.read(MAX_BYTES + 1)
     except OSError as error:
         raise BadInput.of("file", str(path), f"a file that can be read ({error.strerror})") from None
     return parsed(data)
@@ -34,8 +34,8 @@ def read_rexs(path: Path) -> Document:
 
 def parsed(data: bytes) -> Document:
     """Return the document of a file's bytes."""
-    if len(data) > MOST_BYTES:
-        raise BadInput.of("file", f"more than {MOST_BYTES} bytes", "smaller")
+    if len(data) > MAX_BYTES:
+        raise BadInput.of("file", f"more than {MAX_BYTES} bytes", "smaller")
     text, files = read_archive(data) if data.startswith(b"PK") else (data, {})
     start = text.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
     model = read_json(text) if start == b"{" else read_xml(text)
@@ -63,7 +63,7 @@ def serialized(document: Document, name: str) -> bytes:
 def _check(model: Model) -> None:
     faults = [*_repeated(model), *_dangling(model), *_cycles(model)]
     if faults:
-        raise BadInput(faults[:_MOST_FAULTS])
+        raise BadInput(faults[:_MAX_FAULTS])
 
 
 def _repeated(model: Model) -> Iterator[Fault]:

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Extra, LoadSpectrum, Model, Scalar, Value
-from lineofaction.gearbox.rexs.tree import MOST_ENTRIES, Element, Written, written
+from lineofaction.gearbox.rexs.tree import MAX_ENTRIES, Element, Written, written
 from lineofaction.gearbox.rexs.values import KINDS, coded, decoded, entry_kind, integer_of, rows_of
 
 _TYPES: dict[str, tuple[type, ...]] = {
@@ -136,8 +136,8 @@ def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpe
 
 
 def _json(data: bytes) -> Any:
-    if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MOST_ENTRIES:
-        raise BadInput.of("file", f"more than {MOST_ENTRIES} values", "smaller", "Code arrays in base64.")
+    if sum(data.count(mark) for mark in (b",", b"[", b"{")) > MAX_ENTRIES:
+        raise BadInput.of("file", f"more than {MAX_ENTRIES} values", "smaller", "Code arrays in base64.")
     try:
         return json.loads(
             data.decode("utf-8-sig"),

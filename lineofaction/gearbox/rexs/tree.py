@@ -18,7 +18,7 @@ from lineofaction.gearbox.rexs.model import (
     Relation,
 )
 
-MOST_ENTRIES = 300_000
+MAX_ENTRIES = 300_000
 """Elements of XML; values, lists and tables of JSON. More numbers fit in base64.
 300 000 elements take 170 MB."""
 

@@ -33,13 +33,13 @@ CODES = {"float32": "f", "float64": "d", "int32": "i"}
 """The codes of REXS, little-endian, with the letters of `array`."""
 
 _INTEGER = re.compile(r"[+-]?\d{1,19}")
-_MOST_INTEGER = 2**63
+_MAX_INTEGER = 2**63
 
 
 def integer_of(text: str, place: str) -> int:
     """Return an integer of at most 64 bits."""
     plain = text.strip()
-    if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MOST_INTEGER:
+    if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MAX_INTEGER:
         raise BadInput.of(place, text, "an integer of at most 64 bits")
     return int(plain)
 

@@ -11,7 +11,7 @@ from xml.sax.saxutils import escape, quoteattr
 
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Array, Attribute, Extra, LoadSpectrum, Model, Scalar, Value
-from lineofaction.gearbox.rexs.tree import MOST_ENTRIES, Element, Written, written
+from lineofaction.gearbox.rexs.tree import MAX_ENTRIES, Element, Written, written
 from lineofaction.gearbox.rexs.values import (
     KINDS,
     coded,
@@ -25,7 +25,7 @@ from lineofaction.gearbox.rexs.values import (
     texts_of,
 )
 
-_MOST_DEPTH = 32
+_MAX_DEPTH = 32
 _SHOWN = 60
 """Characters of a line that is not well-formed."""
 
@@ -204,12 +204,12 @@ class _Builder:
     def _start(self, name: str, fields: dict[str, str]) -> None:
         line = self.parser.CurrentLineNumber
         self._count += 1
-        if self._count > MOST_ENTRIES:
-            too_many = f"more than {MOST_ENTRIES} elements"
+        if self._count > MAX_ENTRIES:
+            too_many = f"more than {MAX_ENTRIES} elements"
             raise BadInput.of(f"line {line}", too_many, "smaller", "Code arrays in base64.")
-        if len(self._open) > _MOST_DEPTH:
+        if len(self._open) > _MAX_DEPTH:
             depth = f"elements nested {len(self._open)} deep"
-            raise BadInput.of(f"line {line}", depth, f"at most {_MOST_DEPTH} deep")
+            raise BadInput.of(f"line {line}", depth, f"at most {_MAX_DEPTH} deep")
         element = _XmlElement(name, line, fields)
         self._open[-1].inside.append(element)
         self._open.append(element)

@@ -115,8 +115,8 @@ class ErrorsInput(BoundaryModel):
         refuse_unsorted("misalignment_um", self.misalignment_um)
         refuse_unsorted("center_distance_change_mm", self.center_distance_change_mm)
         if self.misalignment_class is not None and self.misalignment_um != (0.0,):
-            advice = "The class makes the range."
-            refuse("misalignment_um", list(self.misalignment_um), "left out with misalignment_class", advice)
+            remedy = "The class makes the range."
+            refuse("misalignment_um", list(self.misalignment_um), "left out with misalignment_class", remedy)
         if self.misalignment_class is None and self.bearing_clearance_um is not None:
             refuse("bearing_clearance_um", list(self.bearing_clearance_um), "given with misalignment_class")
         return self
@@ -203,8 +203,8 @@ class Case(BoundaryModel):
             """Refuse a tolerance or a time budget beside a level, which is a mesh."""
             wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
             if wishes and self.level is not None:
-                advice = "A level is a mesh, regardless of cost."
-                refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
+                remedy = "A level is a mesh, regardless of cost."
+                refuse("level", self.level, f"left out when {wishes[0]} is given", remedy)
             return self
 
     pair: PairInput = Field(description="The gear pair")

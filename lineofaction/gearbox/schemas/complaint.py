@@ -14,7 +14,7 @@ WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
 """What a road speed alone needs."""
 
-_LEAST = (
+_MIN = (
     ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
     ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
     ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
@@ -124,10 +124,10 @@ class ComplaintInput(ComplaintFields):
                 refuse(name, value, "left out without road_speed_km_h", "Give the road speed too.")
         if self.road_speed_km_h is not None and self.tire_radius_mm is None:
             refuse("tire_radius_mm", None, "given with a road speed", "Its rolling radius, such as 310.0.")
-        for name, least, unit in _LEAST:
+        for name, minimum, unit in _MIN:
             value = getattr(self, name)
-            if value is not None and value < least:
-                refuse(name, value, f"at least {least:g} {unit[0]}", unit[1].format(1e3 * value))
+            if value is not None and value < minimum:
+                refuse(name, value, f"at least {minimum:g} {unit[0]}", unit[1].format(1e3 * value))
         return self
 
 

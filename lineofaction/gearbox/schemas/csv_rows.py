@@ -42,7 +42,7 @@ class CsvRows:
             yield number, dict(zip(self.heading, cells, strict=True))
 
 
-def csv_rows(text: str, most: int) -> CsvRows:
+def csv_rows(text: str, maximum: int) -> CsvRows:
     """Return the rows of a file of at most so many."""
     lines = text.removeprefix("\ufeff").splitlines()
     held = [
@@ -50,8 +50,8 @@ def csv_rows(text: str, most: int) -> CsvRows:
     ]
     if not held:
         raise ValueError("a CSV file with a heading and a row per point; it is empty")
-    if len(held) > most + 1:
-        raise ValueError(f"a file of at most {most} points")
+    if len(held) > maximum + 1:
+        raise ValueError(f"a file of at most {maximum} points")
     return CsvRows(_cells(held[0][1]), held[1:], len(lines))
 
 

@@ -139,7 +139,7 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
     several = fact.kind is Kind.PARTS
     field = Field(
         default=() if several else None,
-        max_length=fact.most if several else None,
+        max_length=fact.maximum if several else None,
         description=fact.description,
         examples=[[example] if several else example],
         exclude_if=operator.not_ if fact.later else None,

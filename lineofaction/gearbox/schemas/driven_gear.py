@@ -59,8 +59,8 @@ class WheelInput(ToothingInput):
             self._check_ring()
             return self
         if self.bore_diameter_mm is None:
-            advice = "Bore diameter in mm. For example 40.0; or internal = true for a ring gear."
-            refuse("bore_diameter_mm", None, "given", advice)
+            remedy = "Bore diameter in mm. For example 40.0; or internal = true for a ring gear."
+            refuse("bore_diameter_mm", None, "given", remedy)
         for name in (figure.field for figure in _RING_ONLY):
             if getattr(self, name) is not None:
                 bound = "left out, or given with internal = true"
@@ -69,8 +69,8 @@ class WheelInput(ToothingInput):
 
     def _check_ring(self) -> None:
         if self.rim_diameter_mm is None:
-            advice = "Outer diameter in mm of the ring gear's rim. For example 212.0."
-            refuse("rim_diameter_mm", None, "given with internal = true", advice)
+            remedy = "Outer diameter in mm of the ring gear's rim. For example 212.0."
+            refuse("rim_diameter_mm", None, "given with internal = true", remedy)
         if self.bore_diameter_mm is not None:
             bound = "left out with internal = true"
             refuse(
@@ -78,5 +78,5 @@ class WheelInput(ToothingInput):
             )
         for name in ("blank", "seat"):
             if getattr(self, name) is not None:
-                advice = "The rim of a ring gear is solid, and held rigidly all round."
-                refuse(name, "given", "left out with internal = true", advice)
+                remedy = "The rim of a ring gear is solid, and held rigidly all round."
+                refuse(name, "given", "left out with internal = true", remedy)

@@ -13,7 +13,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from lineofaction.gearbox.problems import Fault
-from lineofaction.gearbox.schemas.model import MOST_FAULTS
+from lineofaction.gearbox.schemas.model import MAX_FAULTS
 
 Loc = Sequence[int | str]
 
@@ -59,7 +59,7 @@ def innermost(items: Sequence[Any]) -> list[Any]:
     locations = [tuple(item["loc"]) for item in items]
     around = {location[:depth] for location in locations for depth in range(len(location))}
     inner = (item for item, location in zip(items, locations, strict=True) if location not in around)
-    return list(islice(inner, MOST_FAULTS))
+    return list(islice(inner, MAX_FAULTS))
 
 
 def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -> Fault:
@@ -165,7 +165,7 @@ def _suggestion(
     return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."
 
 
-def field_advice(model: type[BaseModel], field: str) -> str:
+def field_remedy(model: type[BaseModel], field: str) -> str:
     """Return what the model says about a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if nothing."""
     loc = [part for part in field.replace("[", ".").replace("]", "").split(".") if not part.isdigit()]
     return _described(_place(model, loc)[1])

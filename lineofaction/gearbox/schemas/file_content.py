@@ -42,13 +42,13 @@ class FileContentInput(BoundaryModel):
         """Return a file of a name that holds these bytes."""
         return cls(name=name, content=base64.b64encode(zlib.compress(content, 9)).decode("ascii"))
 
-    def unpacked(self, most: int = LARGEST) -> bytes:
+    def unpacked(self, maximum: int = LARGEST) -> bytes:
         """Return what the file holds; raises ValueError if it is damaged or has more than so many bytes."""
         reader = zlib.decompressobj()
         try:
-            data = reader.decompress(base64.b64decode(self.content, validate=True), most + 1)
+            data = reader.decompress(base64.b64decode(self.content, validate=True), maximum + 1)
         except (binascii.Error, zlib.error):
             raise ValueError("compressed by zlib and written in Base64") from None
-        if len(data) > most or not reader.eof:
+        if len(data) > maximum or not reader.eof:
             raise ValueError(f"whole, and with all other files at most {LARGEST} bytes when unpacked")
         return data

@@ -74,8 +74,8 @@ def _matrices(file: Path, field: str) -> Content:
     try:
         matrices = read_housing_matrices(file)
     except InputError as error:
-        advice = str(error.suggestion) or "See docs/case-file.md."
-        raise BadInput.of(field, file.name, str(error.bound), advice) from None
+        remedy = str(error.suggestion) or "See docs/case-file.md."
+        raise BadInput.of(field, file.name, str(error.bound), remedy) from None
     return {}, {f"{part}_matrix": matrix.tolist() for part, matrix in matrices.items()}
 
 

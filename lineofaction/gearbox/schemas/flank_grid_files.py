@@ -13,7 +13,7 @@ from lineofaction.gearbox.schemas.named_files import Find, Table
 FIELD = "flank_grid_csv"
 COLUMNS = ("roll_length_mm", "face_position_mm", "removed_um")
 _HELP = "See docs/case-file.md: one row per node, in any order."
-_MOST_NODES = 1_000_000
+_MAX_NODES = 1_000_000
 
 
 def with_flank_grids(
@@ -79,7 +79,7 @@ def flank_grid(text: str, field: str, name: str) -> Table:
 
 def _nodes(text: str) -> Nodes:
     """Material removed by roll length and face position; `ValueError` says what the file must hold."""
-    file = csv_rows(text, _MOST_NODES)
+    file = csv_rows(text, _MAX_NODES)
     if sorted(file.heading) != sorted(COLUMNS):
         raise ValueError(
             f"a CSV file whose heading is {','.join(COLUMNS)} in any order, with commas; it is {file.heading}"

@@ -44,6 +44,6 @@ class FlankPoint(BoundaryModel):
     @model_validator(mode="after")
     def _one_load(self) -> Self:
         if self.torque_n_m is not None and self.normal_force_n is not None:
-            advice = "Give a torque or a normal force."
-            refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", advice)
+            remedy = "Give a torque or a normal force."
+            refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", remedy)
         return self

@@ -95,8 +95,8 @@ class ForceInput(BoundaryModel):
     def _acts(self) -> Self:
         """State what acts; 0 where load cases alone do."""
         if not self.model_fields_set.intersection(ACTING):
-            advice = "If it acts under load cases alone, give 0."
-            refuse("force_n", None, "given, or moment_n_m", advice)
+            remedy = "If it acts under load cases alone, give 0."
+            refuse("force_n", None, "given, or moment_n_m", remedy)
         return self
 
     @model_validator(mode="after")

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from fe_contact.flank.modification import FlankModification
 from fe_contact.flank.stated_start import RELIEFS, StatedStarts, starts_of
 from fe_contact.geometry.gear import Gear
-from fe_contact.geometry.tooth_flank import MOST_NODES
+from fe_contact.geometry.tooth_flank import MAX_NODES
 from fe_contact.geometry.toothing import MATING, Toothing
 from fe_contact.material import Material
 from fe_contact.shaft import Shaft
@@ -106,8 +106,8 @@ class ToothingInput(_ToothingFigures):
         """Refuse surfaces of teeth that take long to look through, before any is."""
         grids = [flank.flank_grid for flank in getattr(self, "tooth_flanks", ()) if flank.flank_grid]
         nodes = sum(len(grid.roll_length_mm) * len(grid.face_position_mm) for grid in grids)
-        if nodes > MOST_NODES:
-            refuse("tooth_flanks", f"{nodes} nodes", f"at most {MOST_NODES} nodes of all surfaces")
+        if nodes > MAX_NODES:
+            refuse("tooth_flanks", f"{nodes} nodes", f"at most {MAX_NODES} nodes of all surfaces")
         return self
 
 

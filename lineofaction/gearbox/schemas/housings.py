@@ -270,14 +270,14 @@ class HousingInput(_MatrixHousing):
         return _BY_SOLID if self.is_solid else _BY_MATRICES
 
     def _check_measured(self) -> None:
-        advice = {
+        remedy = {
             "seat_nodes": 'For example [{bearing = "input left", node = 1}].',
             "point_nodes": 'For example [{name = "cover", node = 11}].',
         }
         for name in _NODES:
             nodes = [part.node for part in getattr(self, name)]
             if not nodes:
-                refuse(name, None, "given with frf_file", advice[name])
+                refuse(name, None, "given with frf_file", remedy[name])
             repeated = next((i for i, node in enumerate(nodes) if node in nodes[:i]), None)
             if repeated is not None:
                 refuse(f"{name}[{repeated}].node", nodes[repeated], "a node that no other one of them has")
@@ -290,14 +290,14 @@ class HousingInput(_MatrixHousing):
         self._check_axes()
 
     def _check_solid(self) -> None:
-        advice = {
+        remedy = {
             "material": 'For example "gray_cast_iron".',
             "seats": 'For example [{bearing = "input left", bore_diameter_mm = 62, bore_length_mm = 18}].',
             "feet": "A housing of a scene is held: name its underside, or mounts.",
         }
         for name in _SOLID:
             if not getattr(self, name):
-                refuse(name, None, "given with step_file or mesh_file", advice[name])
+                refuse(name, None, "given with step_file or mesh_file", remedy[name])
         if self.modal_damping and self.loss_factor is not None:
             refuse(
                 "modal_damping", list(self.modal_damping), "left out with loss_factor", "State one of them."

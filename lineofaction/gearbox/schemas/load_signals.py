@@ -17,9 +17,9 @@ from lineofaction.gearbox.signals.units import SPEED, TORQUE
 from lineofaction.gearbox.units import RPM
 
 FIELD = "signal"
-MOST = 100_000
+MAX = 100_000
 """Times that a course of a scene may have."""
-_ADVICE = "Give average_s, the length of time over which the channel is averaged, or start_s and end_s."
+_REMEDY = "Give average_s, the length of time over which the channel is averaged, or start_s and end_s."
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the recording and send its numbers."
 
 FloatArray = NDArray[np.float64]
@@ -130,8 +130,8 @@ def _series(
     time, values = _stretch(time, values, start, end)
     if signal.average_s is not None:
         time, values = _averaged(time, values, signal.average_s, f"{field}.average_s")
-    if time.size > MOST:
-        raise BadInput.of(field, f"{channel.name}: {time.size} samples", f"at most {MOST} samples", _ADVICE)
+    if time.size > MAX:
+        raise BadInput.of(field, f"{channel.name}: {time.size} samples", f"at most {MAX} samples", _REMEDY)
     return time - start, signal.scale / course.si * values
 
 

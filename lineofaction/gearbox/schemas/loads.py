@@ -110,8 +110,8 @@ class SpeedTorqueInput(BoundaryModel):
     @model_validator(mode="after")
     def _as_many(self) -> Self:
         """Refuse a table of fewer than two points, and more than one for the others."""
-        least, most = (2, 100_000) if self.kind == "table" else (1, 1)
-        if not least <= len(self.speed_rpm) <= most:
+        minimum, maximum = (2, 100_000) if self.kind == "table" else (1, 1)
+        if not minimum <= len(self.speed_rpm) <= maximum:
             bound = "a list of at least 2" if self.kind == "table" else "a list of one"
             refuse("speed_rpm", list(self.speed_rpm), bound)
         if len(self.torque_n_m) != len(self.speed_rpm):

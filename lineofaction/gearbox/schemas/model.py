@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 HASH = "^[0-9a-f]{64}$"
 """Pattern of the names of results, which are content hashes."""
-MOST_FAULTS = 50
+MAX_FAULTS = 50
 """Faults that are reported of one body."""
 
-_MOST_ENTRIES = 1000
+_MAX_ENTRIES = 1000
 """Of tables in a list, and of names in a table, where no other number is declared."""
 _TABLES = ("model", "definition-ref")
 T = TypeVar("T")
@@ -58,7 +58,7 @@ def _with_few_faults(schema: CoreSchema) -> CoreSchema:
         if listed and not any(entry["type"] in _TABLES for entry in _entries(node)):
             node["fail_fast"] = True
         elif listed or node["type"] == "dict":
-            _look_first(node, partial(_not_longer, most=node.get("max_length", _MOST_ENTRIES)))
+            _look_first(node, partial(_not_longer, maximum=node.get("max_length", _MAX_ENTRIES)))
         elif node["type"] == "model-fields":
             _look_first(node, partial(_few_unknown, names=frozenset(node["fields"])))
     return schema
@@ -98,18 +98,18 @@ def _looked_first(node: dict[str, Any]) -> bool:
     return isinstance(look, partial) and look.func in (_not_longer, _few_unknown)
 
 
-def _not_longer(data: Any, most: int) -> Any:
-    if isinstance(data, list | tuple | dict) and len(data) > most:
-        facts = {"field_type": "List", "max_length": most, "actual_length": len(data)}
+def _not_longer(data: Any, maximum: int) -> Any:
+    if isinstance(data, list | tuple | dict) and len(data) > maximum:
+        facts = {"field_type": "List", "max_length": maximum, "actual_length": len(data)}
         raise PydanticKnownError("too_long", facts)
     return data
 
 
 def _few_unknown(data: Any, names: frozenset[str]) -> Any:
     """Return a table without most of the fields that it should not have."""
-    if not isinstance(data, dict) or len(data) <= len(names) + MOST_FAULTS:
+    if not isinstance(data, dict) or len(data) <= len(names) + MAX_FAULTS:
         return data
-    unknown = set(islice((name for name in data if name not in names), MOST_FAULTS))
+    unknown = set(islice((name for name in data if name not in names), MAX_FAULTS))
     return {name: value for name, value in data.items() if name in names or name in unknown}
 
 

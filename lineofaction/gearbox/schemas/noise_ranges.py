@@ -53,6 +53,6 @@ class NoiseRanges(BoundaryModel):
         for name in RANGES:
             low, high = getattr(self, name) or (1.0, 1.0)
             if not low <= 1.0 <= high:
-                advice = "1 is what the scene states; 1, 1 varies nothing."
-                refuse(name, [low, high], "two factors, the first at most 1, the second at least 1", advice)
+                remedy = "1 is what the scene states; 1, 1 varies nothing."
+                refuse(name, [low, high], "two factors, the first at most 1, the second at least 1", remedy)
         return self

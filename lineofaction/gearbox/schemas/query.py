@@ -12,7 +12,7 @@ ONE, MANY = Tag("[one]"), Tag("[many]")
 """Marks of the two types; names in brackets are left out of what a fault is called."""
 ONE_OR_MANY = Discriminator(lambda value: (MANY if isinstance(value, list | tuple) else ONE).tag)
 """Chooses the type by the value, so that a fault is that of the type that was meant."""
-MOST_POINTS = 100_000
+MAX_POINTS = 100_000
 LIMITS: dict[str, float] = {
     "position": 1e9,
     "deflection_um": 1e6,
@@ -24,7 +24,7 @@ LIMITS: dict[str, float] = {
 VALIDITY = ("lifted_off", "above_table", "outside_misalignment", "outside_center_distance")
 """Names of the bits of a validity, the lowest first."""
 
-_List = (Strict(False), Field(min_length=1, max_length=MOST_POINTS, fail_fast=True))
+_List = (Strict(False), Field(min_length=1, max_length=MAX_POINTS, fail_fast=True))
 
 
 def validity_words(flags: int) -> str:
@@ -79,9 +79,9 @@ class QueryInput(BoundaryModel):
             if points == 1:
                 points = count
             elif count not in (1, points):
-                advice = "Give as many values in every list, or one for all points."
+                remedy = "Give as many values in every list, or one for all points."
                 refuse(
-                    name, f"{count} values", f"a list of {points} values, like position, or of one", advice
+                    name, f"{count} values", f"a list of {points} values, like position, or of one", remedy
                 )
         return self
 

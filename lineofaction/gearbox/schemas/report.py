@@ -11,7 +11,7 @@ from pydantic import Field, field_validator
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, refuse
 
 _FORM = re.compile(r"(?P<figure>\S.*) at (?P<side>most|least) (?P<limit>[-+]?\d+(?:\.\d+)?) ?(?P<unit>.*)")
-_ADVICE = 'For example "peak-to-peak STE at most 0.5 µm".'
+_REMEDY = 'For example "peak-to-peak STE at most 0.5 µm".'
 Words = Annotated[str, Field(min_length=1, max_length=200)]
 
 
@@ -21,7 +21,7 @@ class Requirement:
 
     words: str
     figure: str
-    most: bool
+    maximum: bool
     limit: float
     unit: str
 
@@ -57,5 +57,5 @@ class ReportInput(BoundaryModel):
         for index, words in enumerate(requirements):
             if Requirement.of(words) is None:
                 bound = "FIGURE at most NUMBER UNIT, or at least"
-                refuse(f"requirements[{index}]", words, bound, _ADVICE)
+                refuse(f"requirements[{index}]", words, bound, _REMEDY)
         return requirements

@@ -232,8 +232,8 @@ def _refuse_beside_shafts(scene: SceneInput) -> None:
             length = lengths[part.shaft]
             if not on_length(part.position_mm, length):
                 bound = f'on the shaft "{part.shaft}", from 0 to {length:g} mm from its left end'
-                advice = "Lengthen the shaft, or move what sits on it."
-                refuse(f"{kind}[{index}].position_mm", part.position_mm, bound, advice)
+                remedy = "Lengthen the shaft, or move what sits on it."
+                refuse(f"{kind}[{index}].position_mm", part.position_mm, bound, remedy)
 
 
 def _refuse_unknown(field: str, name: str, known: list[str]) -> None:

@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.rules import both, exactly_one_of, given, left
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import Spelling
 
-MOST_SPEEDS = 10_000
+MAX_SPEEDS = 10_000
 Speed = Annotated[float, Field(ge=0.0, le=1e7)]
 TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
 Orders = Annotated[int, Field(ge=1, le=100)]
@@ -54,7 +54,7 @@ class OverOrders(OverSpeeds):
 
     speed_rpm: Row[TurningSpeed] = Field(
         min_length=1,
-        max_length=MOST_SPEEDS,
+        max_length=MAX_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing",
         examples=[[300.0, 600.0, 900.0]],
     )
@@ -68,7 +68,7 @@ class OverSpeedsOrRun(OverOrders):
 
     speed_rpm: Row[TurningSpeed] = Field(
         default=(),
-        max_length=MOST_SPEEDS,
+        max_length=MAX_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing; a run has its own",
         examples=[[300.0, 600.0, 900.0]],
     )

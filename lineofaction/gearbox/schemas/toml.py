@@ -11,10 +11,10 @@ from typing import Any
 
 from lineofaction.gearbox.problems import BadInput, Fault
 
-_MOST_PARTS = 32
+_MAX_PARTS = 32
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _FORM = "Write NAME = VALUE (a number, a text in quotes, a list in brackets) or a [table]."
-_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MAX_PARTS}}}")
 
 
 def toml_table(text: str, field: str) -> dict[str, Any]:
@@ -31,7 +31,7 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
     """
     if _LONG_KEY.search(text) is not None:
         raise BadInput.of(
-            field, None, f"TOML with keys of at most {_MOST_PARTS} parts", "See docs/case-file.md."
+            field, None, f"TOML with keys of at most {_MAX_PARTS} parts", "See docs/case-file.md."
         )
     try:
         return tomllib.loads(text)

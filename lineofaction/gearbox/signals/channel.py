@@ -51,8 +51,8 @@ class Channel:
         if self.values.size < 2:
             raise BadInput.of(field, self.name, f"at least two samples; it has {self.values.size}")
         if np.iscomplexobj(self.values) or not np.all(np.isfinite(self.values)):
-            advice = "Remove the gaps before the export, or name another channel."
-            raise BadInput.of(field, self.name, "a channel of finite real numbers", advice)
+            remedy = "Remove the gaps before the export, or name another channel."
+            raise BadInput.of(field, self.name, "a channel of finite real numbers", remedy)
         rises = np.diff(self.abscissa) > 0.0
         if not (np.all(np.isfinite(self.abscissa)) and np.all(rises)):
             place = int(np.argmin(rises)) + 1

@@ -87,8 +87,8 @@ def _check_file(path: Path, form: tuple[str, str], field: str) -> None:
     reader, noun = form
     module, extra = _EXTRAS.get(reader, ("numpy", ""))
     if find_spec(module) is None:
-        advice = f"pip install 'lineofaction[{extra}]'"
-        raise BadInput.of(field, path.name, f"read where the extra {extra} is installed", advice)
+        remedy = f"pip install 'lineofaction[{extra}]'"
+        raise BadInput.of(field, path.name, f"read where the extra {extra} is installed", remedy)
     try:
         size = path.stat().st_size
     except OSError:
@@ -112,8 +112,8 @@ def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str
             bound = f"{noun} that is read within {limits} (the reader: {error.cause})"
             raise BadInput.of(field, path.name, bound, "Export less of it, or as HDF5.") from None
         if (fault := answer.get("fault")) is not None:
-            value, bound, advice = (_printable(str(part), 300) for part in fault)
-            raise BadInput.of(field, f"{path.name}: {value}" if value else path.name, bound, advice)
+            value, bound, remedy = (_printable(str(part), 300) for part in fault)
+            raise BadInput.of(field, f"{path.name}: {value}" if value else path.name, bound, remedy)
         if "channels" not in answer:
             raise BadInput.of(field, path.name, f"{noun} that can be read", "Export it again.")
         with np.load(copy.with_name("channels.npz"), allow_pickle=False) as arrays:

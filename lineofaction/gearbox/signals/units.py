@@ -103,6 +103,6 @@ def required_unit(field: str, text: str, quantity: str) -> MeasuredUnit:
     unit = measured_unit(text)
     if unit is None or unit.quantity != quantity:
         known = dict.fromkeys(spellings[0] for (kind, _), spellings in _SPELLINGS.items() if kind == quantity)
-        advice = f"State the unit of {quantity}: {', '.join(known)}."
-        raise BadInput.of(field, text or None, f"a unit of {quantity}", advice)
+        remedy = f"State the unit of {quantity}: {', '.join(known)}."
+        raise BadInput.of(field, text or None, f"a unit of {quantity}", remedy)
     return unit

@@ -41,7 +41,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
         np.savez("channels.npz", allow_pickle=False, **arrays)
         return {"channels": [facts for facts, _ in written]}
     except UnusableFile as error:
-        return {"fault": [error.value, error.bound, error.advice]}
+        return {"fault": [error.value, error.bound, error.remedy]}
     except MemoryError:
         return {"error": "MemoryError"}
     except ModuleNotFoundError:

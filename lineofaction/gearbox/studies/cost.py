@@ -43,12 +43,12 @@ class Work(NamedTuple):
 class StudyCost:
     """Predicted cost of a study: its parts in the order of the work, the largest memory if it is known.
 
-    `advice` says why it is as much, and what to try instead; empty of a cost that can be afforded.
+    `remedy` says why it is as much, and what to try instead; empty of a cost that can be afforded.
     """
 
     parts: tuple[Work, ...]
     bytes: float = 0.0
-    advice: str = ""
+    remedy: str = ""
 
     @property
     def seconds(self) -> float:
@@ -63,7 +63,7 @@ class StudyCost:
         parts = ", ".join(part.words for part in self._by_name if part.seconds > _SMALL * whole)
         hours = f" ({engineering(whole / 3600.0, 2)} h)" if whole > LONG else ""
         return (
-            f"about {engineering(whole, 2)} CPU s{hours}{memory}: {parts}{self.advice and f'. {self.advice}'}"
+            f"about {engineering(whole, 2)} CPU s{hours}{memory}: {parts}{self.remedy and f'. {self.remedy}'}"
         )
 
     @property
@@ -76,8 +76,8 @@ class StudyCost:
 
     def __add__(self, later: StudyCost) -> StudyCost:
         """Return the cost of this work and another after it."""
-        advice = " ".join(filter(None, (self.advice, later.advice)))
-        return StudyCost((*self.parts, *later.parts), max(self.bytes, later.bytes), advice)
+        remedy = " ".join(filter(None, (self.remedy, later.remedy)))
+        return StudyCost((*self.parts, *later.parts), max(self.bytes, later.bytes), remedy)
 
 
 def panels_work(housings: int) -> Work:

@@ -38,7 +38,7 @@ from lineofaction.gearbox.studies.excitations import excitations_of
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.units import RPM
 
-ADVICE = (
+REMEDY = (
     "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches. "
     'In the scene, step_file = "housing.step" stands in place of its stiffness_matrix.'
 )
@@ -111,16 +111,16 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
     speed = np.array([value * RPM for value in inputs.speed_rpm])
     sized = partial(response_influences, speed=speed)
     with boundary_errors():
-        decided = decide_effects(scene, sized)
-        system = assemble(decided.scene)
+        decision = decide_effects(scene, sized)
+        system = assemble(decision.scene)
         response = forced_response(
             system, speed, inputs.orders, progress=lambda fraction: means.report("response", fraction)
         )
         began = cpu_seconds()
-        influences = decided.influences or sized(decided.scene)
-    seconds = cpu_seconds() - began + decided.taken.cpu_seconds
+        influences = decision.influences or sized(decision.scene)
+    seconds = cpu_seconds() - began + decision.taken.cpu_seconds
     facts = response.facts
-    ledger = sized_ledger(facts["effect_ledger"], decided.automatic, influences)
+    ledger = sized_ledger(facts["effect_ledger"], decision.automatic, influences)
     known = {"effect_ledger": ledger, "seconds": {**facts["seconds"], "influence_estimates": seconds}}
     return replace(response, facts=facts | known), system
 
@@ -162,7 +162,7 @@ def predicted_forces(
 
 def no_surface(housings: list[str]) -> BadInput:
     """Return the error of housings of which none has a surface, by their names."""
-    return BadInput.of("housings", housings, "at least one with a surface", ADVICE)
+    return BadInput.of("housings", housings, "at least one with a surface", REMEDY)
 
 
 def require_surface(scene: SceneInput) -> None:

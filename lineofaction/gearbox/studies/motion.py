@@ -59,6 +59,6 @@ class OfferedMotion:
     made: Callable[[], UnitMotion]
 
 
-def chosen_rows(count: int, most: int) -> Sequence[int]:
-    """Return at most `most` of `count` rows, evenly spread, the first and the last among them."""
-    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist()))
+def chosen_rows(count: int, maximum: int) -> Sequence[int]:
+    """Return at most `maximum` of `count` rows, evenly spread, the first and the last among them."""
+    return sorted(set(np.linspace(0, count - 1, min(count, maximum)).round().astype(int).tolist()))

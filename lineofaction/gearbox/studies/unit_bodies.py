@@ -32,7 +32,7 @@ ADDENDUM, DEDENDUM = 1.0, 1.25
 """Over the module, of gears that no case has."""
 
 
-MOST_FACETS = 2_000
+MAX_FACETS = 2_000
 """Of a housing in a picture: 32 kB of the result."""
 
 
@@ -54,7 +54,7 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
         if (surface := housing.surface) is not None:
             used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
             fine = DrawnSurface(surface.points[used], corners.reshape(-1, 3))
-            drawn, kept = fine.reduced(MOST_FACETS)
+            drawn, kept = fine.reduced(MAX_FACETS)
             yield Hull(name, drawn.points, drawn.facets), used[kept]
 
 

@@ -24,7 +24,7 @@ LOAD = 1e-6
 SETTINGS = ("run", "accuracy", "outputs", "integration", "effects", "left_out")
 """Of a scene: how it is computed, which a REXS file does not say, and what its import left out."""
 
-_ADVICE = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
+_REMEDY = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
 
 
 def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
@@ -32,8 +32,8 @@ def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     if unit.scene is None:
         raise BadInput.of("rexs", "no scene", "a unit that makes a scene", "See the report of `loa open`.")
     if not result.scene:
-        advice = "It is of an older version: repeat the deflection."
-        raise BadInput.of("deflection", "no scene", "a result that keeps its scene", advice)
+        remedy = "It is of an older version: repeat the deflection."
+        raise BadInput.of("deflection", "no scene", "a result that keeps its scene", remedy)
     _refuse(_difference(_bodies(scene_of(unit.scene)), _bodies(result.scene), "scene"))
     pairs = {case.name: case.case.pair.model_dump(mode="json") for case in unit.cases}
     for name, part in unit.parts.meshes.items():
@@ -72,7 +72,7 @@ def _bodies(scene: Json) -> Json:
 def _refuse(difference: tuple[str, Any, Any] | None) -> None:
     if difference is not None:
         path, own, other = difference
-        raise BadInput.of(f"rexs, {path}", _shown(own), f"{_shown(other)}, as in the deflection", _ADVICE)
+        raise BadInput.of(f"rexs, {path}", _shown(own), f"{_shown(other)}, as in the deflection", _REMEDY)
 
 
 def _shown(value: Any) -> Any:
@@ -86,7 +86,7 @@ def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None
     for case in cases:
         if case.name not in known:
             names = ", ".join(known) or "none"
-            raise BadInput.of("load_cases", case.name, f"a load case of the unit: {names}", _ADVICE)
+            raise BadInput.of("load_cases", case.name, f"a load case of the unit: {names}", _REMEDY)
         if case.status != "converged":
             raise BadInput.of(
                 f'load case "{case.name}"', case.status, "converged", "Its figures say nothing."

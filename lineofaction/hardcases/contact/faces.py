@@ -55,28 +55,30 @@ def _five_per_cent() -> Sequence[Measured]:
     loaded = [np.unique(face[force > 0.0]).size for force in solution.force[:, 0]]
     return (
         *soundness(problem, solution, 8),
-        Measured("part of the face that carries, %", 100.0 * (max(loaded) / np.unique(face).size), most=6.0),
+        Measured(
+            "part of the face that carries, %", 100.0 * (max(loaded) / np.unique(face).size), maximum=6.0
+        ),
         Measured(
             "centroid over half the face width, to the side that comes closer, least",
             # positive misalignment opens the gap towards larger face positions: the load is at the lower ones
             float(-_centroid(problem, solution).max() / (0.5 * _WIDE)),
-            least=0.9,
+            minimum=0.9,
         ),
         Measured(
             "misaligned to the other side: relative difference of STE",
             off(mirrored.deflection, solution.deflection),
-            most=1e-9,
+            maximum=1e-9,
         ),
         Measured(
             "centroids off their mirror images, m",
             float(np.abs(_centroid(mirrored_problem, mirrored) + _centroid(problem, solution)).max()),
-            most=1e-9,
+            maximum=1e-9,
         ),
         Measured(
-            "rigid gap of plain flanks off the wedge's, m", float(np.abs(plain + wedge).max()), most=1e-12
+            "rigid gap of plain flanks off the wedge's, m", float(np.abs(plain + wedge).max()), maximum=1e-12
         ),
         Measured(
-            "first touch later than the wedge's, m", float((solution.no_load + wedge).max()), most=1e-12
+            "first touch later than the wedge's, m", float((solution.no_load + wedge).max()), maximum=1e-12
         ),
     )
 
@@ -102,9 +104,12 @@ def _single_slice() -> Sequence[Measured]:
     freed = float(np.min(curves[1] - curves[2]))
     return (
         *figures,
-        Measured("least drop of STE as three slices are divided, m", freed, least=0.0),
+        Measured("least drop of STE as three slices are divided, m", freed, minimum=0.0),
         Measured(
-            "mean of one slice over nine", float(curves[0].mean() / curves[2].mean()), most=1.05, least=0.95
+            "mean of one slice over nine",
+            float(curves[0].mean() / curves[2].mean()),
+            maximum=1.05,
+            minimum=0.95,
         ),
     )
 
@@ -123,11 +128,13 @@ def _duplicates() -> Sequence[Measured]:
     groups = [together.deflection[positions == x, 0] for x in np.unique(positions)]
     return (
         *soundness(problem, together),
-        Measured("spread over equal positions, m", max(float(np.ptp(group)) for group in groups), most=0.0),
+        Measured(
+            "spread over equal positions, m", max(float(np.ptp(group)) for group in groups), maximum=0.0
+        ),
         Measured(
             "asked together or alone, difference in m",
             float(np.abs(together.deflection[:, 0] - apart).max()),
-            most=1e-20,
+            maximum=1e-20,
         ),
     )
 

@@ -50,9 +50,9 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
     wider = solve_contact(_with_gap(problem, np.where(far, c.gap + 1.0, c.gap)), case.plan.load)
     return (
         *soundness(problem, solution),
-        Measured("candidates out of reach", float(far.sum()), least=50.0),
+        Measured("candidates out of reach", float(far.sum()), minimum=50.0),
         Measured("largest gap over the elastic deflection", float(c.gap[far].max()) / elastic),
-        Measured("force on them, N", float(solution.force[far[:, None, :].repeat(3, 1)].max()), most=0.0),
+        Measured("force on them, N", float(solution.force[far[:, None, :].repeat(3, 1)].max()), maximum=0.0),
         Measured("STE without them, change in m", largest(without.deflection - solution.deflection), 0.0),
         Measured("STE with 1 m more gap, change in m", largest(wider.deflection - solution.deflection), 0.0),
     )
@@ -85,11 +85,11 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     share = solution.force[:, 0].max(axis=1) / solution.force[:, 0].sum(axis=1)
     return (
         *soundness(problem, solution),
-        Measured("share of the tooth that is ahead, least", float(share[ahead].min()), least=1.0),
-        Measured("its STE off the shifted curve, m", largest(change[ahead] + shift), most=1e-15),
-        Measured("STE far from it, change in m", largest(change[apart]), most=1e-15),
-        Measured("all teeth ahead: STE off the shifted curve, m", largest(shifted), most=1e-15),
-        Measured("positions with the one tooth alone", float(ahead.sum()), least=5.0),
+        Measured("share of the tooth that is ahead, least", float(share[ahead].min()), minimum=1.0),
+        Measured("its STE off the shifted curve, m", largest(change[ahead] + shift), maximum=1e-15),
+        Measured("STE far from it, change in m", largest(change[apart]), maximum=1e-15),
+        Measured("all teeth ahead: STE off the shifted curve, m", largest(shifted), maximum=1e-15),
+        Measured("positions with the one tooth alone", float(ahead.sum()), minimum=5.0),
     )
 
 
@@ -116,10 +116,12 @@ def _noisy_flanks() -> Sequence[Measured]:
     added = nominal.deflection - smooth
     return (
         *soundness(problem, solution),
-        Measured("added STE over the least removed", float(added.min()) / low, least=1.0),
-        Measured("added STE over the most removed", float(added.max()) / high, most=1.0),
+        Measured("added STE over the least removed", float(added.min()) / low, minimum=1.0),
+        Measured("added STE over the most removed", float(added.max()) / high, maximum=1.0),
         Measured(
-            "least growth of STE with load, m", float(np.diff(solution.deflection, axis=1).min()), least=1e-12
+            "least growth of STE with load, m",
+            float(np.diff(solution.deflection, axis=1).min()),
+            minimum=1e-12,
         ),
     )
 

@@ -48,11 +48,11 @@ def _handover_at_ratio(ratio: float) -> Sequence[Measured]:
         Measured(
             "pairs that touch, mean over positions, off the contact ratio",
             abs(_mean_pairs(case) - ratio),
-            most=2.0 / _COUNTED,
+            maximum=2.0 / _COUNTED,
         ),
-        Measured("STE one pitch further, relative change", off(ends[1], ends[0]), most=CYCLIC),
-        Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
-        Measured("smallest share", float(loaded.min()), least=0.0),
+        Measured("STE one pitch further, relative change", off(ends[1], ends[0]), maximum=CYCLIC),
+        Measured("load shares off one", float(np.abs(shares - 1.0).max()), maximum=1e-12),
+        Measured("smallest share", float(loaded.min()), minimum=0.0),
     )
 
 

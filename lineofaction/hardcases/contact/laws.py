@@ -12,7 +12,7 @@ from lineofaction.hardcases.contact.interior_point import GapAbout, Problem, sol
 from lineofaction.hardcases.scene import Measured
 
 LARGEST_RESIDUAL = 1e-9
-MOST_ITERATIONS = 40
+MAX_ITERATIONS = 40
 LARGEST_DISAGREEMENT = 1e-8
 COMPARED = 12
 """Points that the second solver solves too: it is ten thousand times as slow."""
@@ -31,10 +31,10 @@ def soundness(
     points = [tuple(map(int, np.unravel_index(i, solution.status.shape))) for i in chosen]
     apart = [_disagreement(problem, solution, position, load) for position, load in points]
     return (
-        Measured("failed points", float(np.count_nonzero(solution.status)), most=0.0),
-        Measured("largest residual", float(solution.residuals.max()), most=LARGEST_RESIDUAL),
-        Measured("most iterations", float(solution.iterations.max()), most=MOST_ITERATIONS),
-        Measured("two solvers apart", max(apart), most=LARGEST_DISAGREEMENT),
+        Measured("failed points", float(np.count_nonzero(solution.status)), maximum=0.0),
+        Measured("largest residual", float(solution.residuals.max()), maximum=LARGEST_RESIDUAL),
+        Measured("most iterations", float(solution.iterations.max()), maximum=MAX_ITERATIONS),
+        Measured("two solvers apart", max(apart), maximum=LARGEST_DISAGREEMENT),
     )
 
 

@@ -46,13 +46,13 @@ def _seven_decades() -> Sequence[Measured]:
         Measured(
             "least growth of STE from load to load",
             float(np.min(elastic[:, 1:] / elastic[:, :-1])),
-            least=1.0 + 1e-9,
+            minimum=1.0 + 1e-9,
         ),
-        Measured("largest growth of the tangent compliance", float(stiffening.max()), most=1e-9),
+        Measured("largest growth of the tangent compliance", float(stiffening.max()), maximum=1e-9),
         Measured(
             "mean STE at nominal load, against a table of that load alone", mean_off(here, nominal), 5e-3
         ),
-        Measured("peak-to-peak likewise", range_off(here, nominal), most=2e-2),
+        Measured("peak-to-peak likewise", range_off(here, nominal), maximum=2e-2),
         Measured("points whose contact outgrew its patch", float(solution.beyond.sum())),
     )
 
@@ -82,5 +82,7 @@ def _zero_load() -> Sequence[Measured]:
         Measured("STE left at 1e-15 of the load, over its nominal value", float(left.max()), 1e-12, 0.0),
         Measured("table at zero force against the rigid gap, m", float(np.ptp(at_rest - lift_off)), 1e-16),
         Measured("force at lift-off, N", float(table.force_at(table.position, lift_off).force.max()), 0.0),
-        Measured("zero in a list of torques refused by its name", float(refused == "torques[0]"), least=1.0),
+        Measured(
+            "zero in a list of torques refused by its name", float(refused == "torques[0]"), minimum=1.0
+        ),
     )

@@ -41,7 +41,7 @@ def _module_of(module: float) -> Sequence[Measured]:
         figures += [
             *(replace(figure, name=f"{figure.name}, {model}") for figure in soundness(problem, solution)),
             Measured(
-                f"STE over the scaled one, off by, {model}", off(solution.deflection, expected), most=1e-7
+                f"STE over the scaled one, off by, {model}", off(solution.deflection, expected), maximum=1e-7
             ),
         ]
     return figures
@@ -74,9 +74,11 @@ def _slight_helix() -> Sequence[Measured]:
     curve = solution.deflection[:, 0]
     return (
         *soundness(problem, solution, 8),
-        Measured("mean STE against the spur pair's", mean_off(curve, plain), most=2e-3),
-        Measured("least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), most=5e-8),
-        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
+        Measured("mean STE against the spur pair's", mean_off(curve, plain), maximum=2e-3),
+        Measured(
+            "least slip below the spur pair's curve, m", float(np.max(plain.min() - curve)), maximum=5e-8
+        ),
+        Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
     )
 
 
@@ -96,10 +98,10 @@ def _steep_helix() -> Sequence[Measured]:
     curve = solution.deflection
     return (
         *soundness(problem, solution, 8),
-        Measured("total contact ratio", right.pair.total_contact_ratio, least=2.0),
-        Measured("left hand against right hand", off(mirrored, curve), most=1e-9),
-        Measured("STE one pitch further", off(further, curve), most=1e-9),
-        Measured("load shares off one", float(np.abs(shares - 1.0).max()), most=1e-12),
+        Measured("total contact ratio", right.pair.total_contact_ratio, minimum=2.0),
+        Measured("left hand against right hand", off(mirrored, curve), maximum=1e-9),
+        Measured("STE one pitch further", off(further, curve), maximum=1e-9),
+        Measured("load shares off one", float(np.abs(shares - 1.0).max()), maximum=1e-12),
     )
 
 
@@ -126,7 +128,7 @@ def _faces() -> Sequence[Measured]:
         *figures,
         Measured("0.3 modules: mean STE over plane strain", ratios[0], 1.0 / (1.0 - 0.3**2), 1.0),
         Measured("30 modules: mean STE over plane strain", ratios[1], 1.0 / (1.0 - 0.3**2), 1.0),
-        Measured("narrow over wide", ratios[0] / ratios[1], least=1.0),
+        Measured("narrow over wide", ratios[0] / ratios[1], minimum=1.0),
     )
 
 

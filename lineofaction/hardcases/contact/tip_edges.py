@@ -46,8 +46,8 @@ def _tip_edge_at_high_load() -> Sequence[Measured]:
     saved = (without.deflection - solution.deflection) / solution.deflection
     return (
         *soundness(problem, solution),
-        Measured("least relief by the tip edges", float(saved.min()), least=-1e-12),
-        Measured("largest relief by the tip edges", float(saved.max()), least=0.02),
+        Measured("least relief by the tip edges", float(saved.min()), minimum=-1e-12),
+        Measured("largest relief by the tip edges", float(saved.max()), minimum=0.02),
         _smoothness(case),
     )
 
@@ -68,9 +68,9 @@ def _sharp_tips() -> Sequence[Measured]:
         *soundness(problem, solution),
         Measured("tip thickness, modules", gear.tip_tooth_thickness / gear.normal_module),
         Measured(
-            "mean STE of two meshes apart", mean_off(rougher.deflection, solution.deflection), most=3e-3
+            "mean STE of two meshes apart", mean_off(rougher.deflection, solution.deflection), maximum=3e-3
         ),
-        Measured("peak-to-peak likewise", range_off(rougher.deflection, solution.deflection), most=2e-2),
+        Measured("peak-to-peak likewise", range_off(rougher.deflection, solution.deflection), maximum=2e-2),
         _smoothness(coarse),
     )
 
@@ -104,10 +104,10 @@ def _rounded_tips() -> Sequence[Measured]:
     *rises, turned = (float(np.min(deep - shallow)) for shallow, deep in pairwise(curves))
     return (
         *soundness(problem, solution),
-        Measured("no rounding against none given, m", float(np.ptp(curves[0] - plain)), most=0.0),
-        Measured("1 nm of rounding, largest change of STE, m", largest(curves[1] - plain), most=1e-9),
-        Measured("least rise of STE with the depth, m", min(rises), least=-1e-14),
-        Measured("least rise with a normal that turns, over STE", turned / float(plain.max()), least=-0.02),
+        Measured("no rounding against none given, m", float(np.ptp(curves[0] - plain)), maximum=0.0),
+        Measured("1 nm of rounding, largest change of STE, m", largest(curves[1] - plain), maximum=1e-9),
+        Measured("least rise of STE with the depth, m", min(rises), minimum=-1e-14),
+        Measured("least rise with a normal that turns, over STE", turned / float(plain.max()), minimum=-0.02),
         _smoothness(case),
     )
 
@@ -126,7 +126,7 @@ def _smoothness(case: Posed) -> Measured:
     for count in (256, 1024):
         curve = case.ste(even_positions(count))[:, -1]
         steps.append(largest(np.diff(curve, append=curve[0])))
-    return Measured("largest step of STE, at a quarter of the spacing", steps[1] / steps[0], most=0.4)
+    return Measured("largest step of STE, at a quarter of the spacing", steps[1] / steps[0], maximum=0.4)
 
 
 def largest(values: FloatArray) -> float:

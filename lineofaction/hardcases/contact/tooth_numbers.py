@@ -44,12 +44,12 @@ def _undercut_pinion() -> Sequence[Measured]:
     pairs = float((alone.force[:, 0] > 0.0).sum(axis=1).mean())
     return (
         *soundness(problem, solution),
-        Measured("undercut", float(pair.pinion.form_point.undercut), least=1.0),
+        Measured("undercut", float(pair.pinion.form_point.undercut), minimum=1.0),
         Measured("contact ratio", pair.transverse_contact_ratio),
-        Measured("mean STE, draft against fine mesh", errors[0], most=1e-2),
-        Measured("mean STE, standard against fine mesh", errors[1], most=3e-3),
-        Measured("peak-to-peak, standard against fine mesh", ranges[1], most=1e-2),
-        Measured("pairs off the contact ratio", abs(pairs - pair.transverse_contact_ratio), most=1e-3),
+        Measured("mean STE, draft against fine mesh", errors[0], maximum=1e-2),
+        Measured("mean STE, standard against fine mesh", errors[1], maximum=3e-3),
+        Measured("peak-to-peak, standard against fine mesh", ranges[1], maximum=1e-2),
+        Measured("pairs off the contact ratio", abs(pairs - pair.transverse_contact_ratio), maximum=1e-3),
     )
 
 
@@ -87,5 +87,5 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
             off(driving.deflection, driven.deflection),
             CYCLIC,
         ),
-        Measured("positions compared", float(problem.candidates.position.size), least=50.0),
+        Measured("positions compared", float(problem.candidates.position.size), minimum=50.0),
     )

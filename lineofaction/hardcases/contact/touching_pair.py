@@ -48,12 +48,12 @@ def _relief_that_touches() -> Sequence[Measured]:
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
         Measured("relief found, µm", 1e6 * exact),
-        Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), most=1e-3),
-        Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), most=1e-9),
-        Measured("its share a millionth below the load at which it touches", float(entering[1]), most=0.0),
-        Measured("a millionth above it, raised to it", float(entering[2]), most=1e-6, least=1e-9),
-        Measured("least rise of STE with relief, m", float((rise + rounding).min()), least=0.0),
-        Measured("largest rise over the relief's", float(((rise - rounding) / widening).max()), most=1.0),
+        Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), maximum=1e-3),
+        Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), maximum=1e-9),
+        Measured("its share a millionth below the load at which it touches", float(entering[1]), maximum=0.0),
+        Measured("a millionth above it, raised to it", float(entering[2]), maximum=1e-6, minimum=1e-9),
+        Measured("least rise of STE with relief, m", float((rise + rounding).min()), minimum=0.0),
+        Measured("largest rise over the relief's", float(((rise - rounding) / widening).max()), maximum=1.0),
     )
 
 

@@ -59,10 +59,10 @@ def _no_mean_load() -> Sequence[Measured]:
     mirrored = rms(last[:half] + last[half:-1] + _BACKLASH) / float(np.std(last))
     return (
         *common_figures(runs, scene),
-        Measured("half a period later mirrored in the gap, relative", mirrored, most=1e-3),
-        Measured("a period later the same, m", abs(float(last[-1] - last[0])), most=1e-8),
-        Measured("share of time on the driving flank", float(np.mean(drive > 0.0)), least=0.1),
-        Measured("share of time on the coast flank", float(np.mean(back > 0.0)), least=0.1),
+        Measured("half a period later mirrored in the gap, relative", mirrored, maximum=1e-3),
+        Measured("a period later the same, m", abs(float(last[-1] - last[0])), maximum=1e-8),
+        Measured("share of time on the driving flank", float(np.mean(drive > 0.0)), minimum=0.1),
+        Measured("share of time on the coast flank", float(np.mean(back > 0.0)), minimum=0.1),
         Measured("both flanks at once, samples", float(np.count_nonzero((drive > 0.0) & (back > 0.0))), 0.0),
     )
 
@@ -86,9 +86,9 @@ def _reversal() -> Sequence[Measured]:
     force, back = runs.implicit.mesh_force[0], runs.implicit.coast_force[0]
     return (
         *common_figures(runs, scene),
-        Measured("rest on the driving flank, off the closed form, m", abs(error[0] - rest), most=1e-12),
+        Measured("rest on the driving flank, off the closed form, m", abs(error[0] - rest), maximum=1e-12),
         Measured("rest on the coast flank, off the closed form, m", abs(error[-1] + _BACKLASH + rest), 1e-9),
-        Measured("force of the driving flank at the end, N", force[-1], most=0.0),
+        Measured("force of the driving flank at the end, N", force[-1], maximum=0.0),
         Measured(
             "force of the coast flank at the end, off the load",
             abs(back[-1] * BASE_RADIUS / TORQUE - 1.0),
@@ -121,16 +121,16 @@ def _impacts() -> Sequence[Measured]:
     return (
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            apart / (2.0 * 1e-2 * grown), most=1.0,
+            apart / (2.0 * 1e-2 * grown), maximum=1.0,
         ),
-        Measured("off the closed form, likewise", max(off[m, coarse] for m in METHODS) / grown, most=1.0),
+        Measured("off the closed form, likewise", max(off[m, coarse] for m in METHODS) / grown, maximum=1.0),
         Measured(
             "likewise at a hundredth of the tolerance",
-            1e2 * max(off[m, fine] for m in METHODS) / grown, most=1.0,
+            1e2 * max(off[m, fine] for m in METHODS) / grown, maximum=1.0,
         ),
         Measured(
             "energy lost over forty impacts, over a tolerance per impact",
-            max(energy[m, coarse] for m in METHODS) / (2.0 * _TOLERANCE / depth * _IMPACTS), most=1.0,
+            max(energy[m, coarse] for m in METHODS) / (2.0 * _TOLERANCE / depth * _IMPACTS), maximum=1.0,
         ),
         Measured("energy lost at a hundredth of the tolerance", max(energy[m, fine] for m in METHODS), 1e-3),
     )  # fmt: skip

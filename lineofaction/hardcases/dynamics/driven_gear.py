@@ -147,8 +147,8 @@ def _many_steps(method: str) -> Sequence[Measured]:
     in_proportion = whole / (10.0 * tenth + _ROUNDING)
     return (
         Measured("steps", float(_MANY)),
-        Measured("energy drift", whole, most=1e-6),
-        Measured("drift over ten times that of a tenth of the steps", in_proportion, most=1.1),
+        Measured("energy drift", whole, maximum=1e-6),
+        Measured("drift over ten times that of a tenth of the steps", in_proportion, maximum=1.1),
     )
 
 

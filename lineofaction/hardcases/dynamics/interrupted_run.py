@@ -54,10 +54,10 @@ def _taken_up_again() -> Sequence[Measured]:
         ]
         impacts = int(np.count_nonzero(np.diff(unbroken.contact[0] % 2.0) == 1.0))
         figures += [
-            Measured(f"{method}: times it was taken up again", float(legs - 1), least=5.0),
-            Measured(f"{method}: impacts on the driving flank", float(impacts), least=10.0),
-            Measured(f"{method}: series with a bit that differs", float(len(changed)), most=0.0),
-            Measured(f"{method}: steps more or fewer", float(extra), most=0.0),
+            Measured(f"{method}: times it was taken up again", float(legs - 1), minimum=5.0),
+            Measured(f"{method}: impacts on the driving flank", float(impacts), minimum=10.0),
+            Measured(f"{method}: series with a bit that differs", float(len(changed)), maximum=0.0),
+            Measured(f"{method}: steps more or fewer", float(extra), maximum=0.0),
         ]
     return figures
 

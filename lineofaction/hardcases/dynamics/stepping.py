@@ -62,7 +62,7 @@ def _rest_to_rest() -> Sequence[Measured]:
             abs(float(result.dynamic_transmission_error[0, -1]) - rest),
             1e-10,
         ),
-        Measured("speeds at the end, rad/s", float(np.abs(result.speed[:, -1]).max()), most=1e-6),
+        Measured("speeds at the end, rad/s", float(np.abs(result.speed[:, -1]).max()), maximum=1e-6),
         Measured(
             "largest speed of the driven gear over the drive's",
             float(np.abs(result.speed[1]).max()) / top,
@@ -97,8 +97,8 @@ def _contact_lost() -> Sequence[Measured]:
     bend = np.diff(error, 2)[flying] * rate**2 / fall
     return (
         *common_figures(runs, scene),
-        Measured("share of time out of contact", float(np.mean(force == 0.0)), least=0.05),
-        Measured("largest force over the load's", float(force.max()) * BASE_RADIUS / TORQUE, least=2.0),
+        Measured("share of time out of contact", float(np.mean(force == 0.0)), minimum=0.05),
+        Measured("largest force over the load's", float(force.max()) * BASE_RADIUS / TORQUE, minimum=2.0),
         Measured(
             "in flight: acceleration over that of the load alone, largest off",
             float(np.abs(bend - 1.0).max()),

@@ -95,16 +95,16 @@ def _unloaded_in_clearance() -> Sequence[Measured]:
         energies.append((rms(path - exact), abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum()))))
     start = static_equilibrium(assemble(_disc(duration, Integration())))
     return (
-        Measured("equilibrium of the unloaded disc found", float(start.status.usable), least=1.0),
+        Measured("equilibrium of the unloaded disc found", float(start.status.usable), minimum=1.0),
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            rms(paths[0] - paths[1]) / (2.0 * grown), most=1.0,
+            rms(paths[0] - paths[1]) / (2.0 * grown), maximum=1.0,
         ),
-        Measured("off the closed form, likewise", max(off for off, _ in energies) / grown, most=1.0),
+        Measured("off the closed form, likewise", max(off for off, _ in energies) / grown, maximum=1.0),
         Measured(
             "energy lost over twenty impacts, over a tolerance per impact",
             max(lost for _, lost in energies) / (0.5 * _MASS * _SPEED**2)
-            / (2.0 * _TOLERANCE * natural / _SPEED * _BOUNCES), most=1.0,
+            / (2.0 * _TOLERANCE * natural / _SPEED * _BOUNCES), maximum=1.0,
         ),
     )  # fmt: skip
 

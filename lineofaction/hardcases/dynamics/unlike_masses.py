@@ -54,7 +54,7 @@ def _unlike_masses() -> Sequence[Measured]:
             *common_figures(runs, scene),
             off_closed_form(runs, scene, exact),
             Measured("speed of the train off the impulse's, over a tolerance per radian", off / pace, 1.0),
-            Measured("speed gained by impulse over that", gained / pace, least=100.0),
+            Measured("speed gained by impulse over that", gained / pace, minimum=100.0),
         )
         figures += [replace(figure, name=f"{name}: {figure.name}") for figure in measured]
     return figures

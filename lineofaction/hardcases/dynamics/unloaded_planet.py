@@ -43,11 +43,11 @@ def _one_without_load() -> Sequence[Measured]:
     mean = runs.implicit.mesh_force.mean(axis=1)
     off = np.abs(mean[2::2] / _SUN_FORCE - 1.0 / (_PLANETS - 1))
     return (
-        Measured("equilibrium found", float(start.status.usable), least=1.0),
-        Measured("shares at rest off 0, 1/3, 1/3, 1/3", float(np.abs(shares - expected).max()), most=1e-6),
+        Measured("equilibrium found", float(start.status.usable), minimum=1.0),
+        Measured("shares at rest off 0, 1/3, 1/3, 1/3", float(np.abs(shares - expected).max()), maximum=1e-6),
         *common_figures(runs, scene),
-        Measured("force on the planet set back, N", float(runs.implicit.mesh_force[:2].max()), most=0.0),
-        Measured("mean shares of the others off 1/3", float(off.max()), most=1e-4),
+        Measured("force on the planet set back, N", float(runs.implicit.mesh_force[:2].max()), maximum=0.0),
+        Measured("mean shares of the others off 1/3", float(off.max()), maximum=1e-4),
     )
 
 

@@ -51,7 +51,9 @@ def _threefold() -> Sequence[Measured]:
                     abs(float(np.trace(matrix) - np.trace(exact))),
                     1e-4,
                 ),
-                Measured(f"{name}: determinant off one", abs(float(np.linalg.det(matrix)) - 1.0), most=1e-6),
+                Measured(
+                    f"{name}: determinant off one", abs(float(np.linalg.det(matrix)) - 1.0), maximum=1e-6
+                ),
             ]
         figures.append(Measured(f"{frequency:g}: largest multiplier by Mathieu", float(sizes[0])))
     scene = torsional(

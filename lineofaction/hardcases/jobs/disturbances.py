@@ -34,8 +34,8 @@ def _out_of_memory() -> Sequence[Measured]:
     job = outcome.job
     stated = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
     return (
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
-        Measured("names the limit and what to try", float(stated), least=1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured("names the limit and what to try", float(stated), minimum=1.0),
         *outcome.figures,
     )
 
@@ -57,8 +57,10 @@ def _past_the_deadline() -> Sequence[Measured]:
     job = outcome.job
     stated = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
     return (
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
-        Measured("names the deadline and what to try", float(stated and "coarser" in job.message), least=1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured(
+            "names the deadline and what to try", float(stated and "coarser" in job.message), minimum=1.0
+        ),
         Measured("deadline, s", allowed[0]),
         *outcome.figures,
     )

@@ -82,8 +82,8 @@ def _mesher_killed() -> Sequence[Measured]:
     stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
         Measured("meshers killed", float(killed), 1.0, 1.0),
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
-        Measured("says that the mesh failed, and how", float(stated), least=1.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured("says that the mesh failed, and how", float(stated), minimum=1.0),
         *outcome.figures,
     )
 
@@ -99,8 +99,8 @@ def _worker_killed_once() -> Sequence[Measured]:
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
         Measured("workers killed", float(killed), 1.0, 1.0),
-        Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), least=1.0),
-        Measured("result off that of Python, m", off, most=0.0),
+        Measured("done at the second attempt", float(outcome.ended_as("successful", 2)), minimum=1.0),
+        Measured("result off that of Python, m", off, maximum=0.0),
         *outcome.figures,
     )
 
@@ -117,8 +117,8 @@ def _worker_killed_always() -> Sequence[Measured]:
     stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
     return (
         Measured("workers killed", float(killed), 2.0, 2.0),
-        Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), least=1.0),
-        Measured("says what ended it, and how often it was tried", float(stated), least=1.0),
+        Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), minimum=1.0),
+        Measured("says what ended it, and how often it was tried", float(stated), minimum=1.0),
         *outcome.figures,
     )
 

@@ -52,9 +52,9 @@ def _disk_full() -> Sequence[Measured]:
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
         Measured("workers without room", float(len(held)), 1.0, 1.0),
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
-        Measured("names the cause and what to try", float(stated), least=1.0),
-        Measured("submitted again with room, off that of Python, m", off, most=0.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured("names the cause and what to try", float(stated), minimum=1.0),
+        Measured("submitted again with room, off that of Python, m", off, maximum=0.0),
         *outcome.figures,
     )
 
@@ -67,26 +67,26 @@ def _disk_full() -> Sequence[Measured]:
 )
 def _greedy_mesher() -> Sequence[Measured]:
     """Let the first mesher take memory until the system gives it no more."""
-    most = [0.0]
+    maximum = [0.0]
     with replaced_mesher(_DEVOURS) as greed:
 
         def look(service: JobService, _job: Job) -> None:
             for pid in service.processes(MESHER_COMMAND):
-                most[0] = max(most[0], (memory_figure("VmData", pid) or 0) / _MB)
+                maximum[0] = max(maximum[0], (memory_figure("VmData", pid) or 0) / _MB)
 
         def settle(_seconds: float) -> dict[str, float]:
             return {"memory_limit_mb": MEMORY_MB}
 
         def after(service: JobService, job: Job) -> None:
             look(service, job)
-            if most[0] > 0.0 and not service.processes(MESHER_COMMAND):
+            if maximum[0] > 0.0 and not service.processes(MESHER_COMMAND):
                 greed.unlink(missing_ok=True)
 
         outcome = aftermath(MEDIUM, after, settle)
     stated = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
     return (
-        Measured("memory the mesher was seen with, MB", most[0], most=float(MEMORY_MB), least=64.0),
-        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), least=1.0),
-        Measured("names the mesher's memory and what to try", float(stated), least=1.0),
+        Measured("memory the mesher was seen with, MB", maximum[0], maximum=float(MEMORY_MB), minimum=64.0),
+        Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
+        Measured("names the mesher's memory and what to try", float(stated), minimum=1.0),
         *outcome.figures,
     )

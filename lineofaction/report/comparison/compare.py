@@ -60,7 +60,7 @@ _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error"
 """Series whose orders have stated errors, and their name in the receipt of a run."""
 
 _BOUND = "two results of one kind, two folders, or one result and a measurement"
-_ADVICE = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
+_REMEDY = "For example: loa compare before.nc after.nc, or loa compare ste.nc measured.csv"
 NAMES = ("first", "second")
 
 
@@ -192,12 +192,12 @@ def compare(
     if folders == list(files) and len(files) == 2:
         return _compare_folders(folders, view, torque)
     if folders:
-        advice = f"Of a folder name the file: {', '.join(map(str, results_in(folders[0]))) or _ADVICE}."
-        raise BadInput.of("files", ", ".join(map(str, files)), _BOUND, advice)
+        remedy = f"Of a folder name the file: {', '.join(map(str, results_in(folders[0]))) or _REMEDY}."
+        raise BadInput.of("files", ", ".join(map(str, files)), _BOUND, remedy)
     measured = [file for file in files if file.suffix.lower() in ENDINGS]
     results = dict(named_files([file for file in files if file not in measured]))
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
-        raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _ADVICE)
+        raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _REMEDY)
     if measured and (recording := _recording(measured[0])) is not None:
         return _beside_recording(results, recording, view, measurement)
     return _compare_results(results, view, measured, torque)
@@ -234,7 +234,7 @@ def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | Non
     if not (shared := [name for name in first if name in second]):
         what = "; ".join(f"{folder} has {', '.join(own) or 'none'}" for folder, own in held.items())
         kind = "two folders with an STE database or a run of one name"
-        raise BadInput.of("files", what, kind, f"Name two files. {_ADVICE}")
+        raise BadInput.of("files", what, kind, f"Name two files. {_REMEDY}")
     pages = {
         name.replace("_", " "): _compare_results(
             {folder: own[name] for folder, own in held.items()}, view, torque=torque
@@ -269,7 +269,7 @@ def _page(
     tables = {name: one for name, one in read.items() if isinstance(one, SteDatabase)}
     runs = {name: one for name, one in read.items() if isinstance(one, RunResult)}
     if tables and runs:
-        raise BadInput.of("files", "a table and a run", _BOUND, _ADVICE)
+        raise BadInput.of("files", "a table and a run", _BOUND, _REMEDY)
     if tables:
         teeth = next(iter(tables.values())).facts.teeth[0]
         return compare_tables(tables, _measured(files, teeth, "µm"), torque)

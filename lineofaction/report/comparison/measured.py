@@ -31,7 +31,7 @@ VALUES = {
 PER_PITCH = 256
 NEAR = 0.1  # of an order
 _FEWEST = 8  # samples in a base pitch
-_ADVICE = (
+_REMEDY = (
     "The first line names two columns: position (base pitches) or angle_deg (of the driving gear) and "
     "transmission_error_um; or mesh_order or order (of the driving shaft) and amplitude_um, amplitude_n or "
     "amplitude_m_per_s2."
@@ -189,13 +189,13 @@ def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
     """
     names, rows = _rows(path)
     if len(names) != 2 or names[0] not in (*POSITIONS, *ORDERS) or names[1] not in VALUES:
-        raise BadInput.of("measured", ", ".join(names), "columns of a known name", _ADVICE)
+        raise BadInput.of("measured", ", ".join(names), "columns of a known name", _REMEDY)
     over, values = rows.T
     if names[0] in ORDERS:
         mesh = over if names[0] == "mesh_order" else over / teeth
         return MeasuredOrders(mesh, values, VALUES[names[1]])
     if names[1] != "transmission_error_um":
-        raise BadInput.of("measured", names[1], '"transmission_error_um" over a position', _ADVICE)
+        raise BadInput.of("measured", names[1], '"transmission_error_um" over a position', _REMEDY)
     return averaged(path, over if names[0] == "position" else over * teeth / 360.0, values)
 
 
@@ -209,9 +209,9 @@ def _rows(path: Path) -> tuple[list[str], FloatArray]:
         names = [name.strip() for name in lines[0]]
         rows = np.array([[float(cell) for cell in line] for line in lines[1:]])
     except (ValueError, IndexError):
-        raise BadInput.of("measured", str(path), "a line of names, then numbers", _ADVICE) from None
+        raise BadInput.of("measured", str(path), "a line of names, then numbers", _REMEDY) from None
     if rows.ndim != 2 or not np.all(np.isfinite(rows)):
-        raise BadInput.of("measured", str(path), "as many finite numbers in each line as names", _ADVICE)
+        raise BadInput.of("measured", str(path), "as many finite numbers in each line as names", _REMEDY)
     return names, rows
 
 

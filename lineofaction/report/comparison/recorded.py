@@ -129,8 +129,8 @@ def _direction(signal: Signal, stated: str) -> str:
     if signal.quantity.part != "bearing":
         return ""
     if not (signal.direction or stated):
-        advice = "Say along which the sensor measures: --direction x."
-        raise BadInput.of("direction", None, "x, y, z or principal beside a recording", advice)
+        remedy = "Say along which the sensor measures: --direction x."
+        raise BadInput.of("direction", None, "x, y, z or principal beside a recording", remedy)
     return signal.direction or stated
 
 
@@ -169,8 +169,8 @@ def _turns(channel: Channel, recording: Recording, measurement: Measurement, tim
         tacho = others.channel(TACHO, measurement.tacho, (SPEED,))
         return turns_of_pulses(TACHO, tacho, measurement.pulses_per_turn, time)
     if not measurement.tacho and not any(one.over == "time" for one in others.channels):
-        advice = "Give --rpm of a recording at one speed, or record a tacho."
-        raise BadInput.of(TACHO, None, "a channel of the speed", advice)
+        remedy = "Give --rpm of a recording at one speed, or record a tacho."
+        raise BadInput.of(TACHO, None, "a channel of the speed", remedy)
     tacho = others.channel(TACHO, measurement.tacho, (SPEED,))
     return turns_of_speed(TACHO, tacho, measurement.tacho_unit, time)
 

@@ -15,7 +15,7 @@ from lineofaction.report.comparison.measured import MeasuredCurve, MeasuredOrder
 _SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
 """Quantity of a unit of the page, and what one SI unit is in it."""
 _FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
-_AXIS_ADVICE = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
+_AXIS_REMEDY = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
 
 
 def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
@@ -33,7 +33,7 @@ def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve |
     if len(fitting) != 1:
         names = ", ".join(channel.name for channel in fitting[:8])
         present = f"{len(fitting)} in {recording.name}" + (f": {names}" if names else "")
-        raise BadInput.of("measured", present, _FORM.format(unit=unit), _AXIS_ADVICE)
+        raise BadInput.of("measured", present, _FORM.format(unit=unit), _AXIS_REMEDY)
     (channel,) = fitting
     over, label = channel.abscissa, channel.label.lower()
     values = per_si * required_unit("measured", channel.unit, quantity).factor * channel.values

@@ -239,9 +239,9 @@ def _headlines(result: GearboxDeflection) -> tuple[Headline, ...]:
         return (Headline("largest displacement of an axis", size, case.name),)
     name = _meshes_worst_first(result)[0]
     mesh = _mesh_of(case, name)
-    most = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
+    maximum = f"; most by the {CAUSES[int(np.argmax(np.abs(mesh.causes)))]}" if np.any(mesh.causes) else ""
     size = f"{number(mesh.misalignment / UM, 3)} µm"
-    lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{most}")]
+    lines = [Headline("largest misalignment", size, f"mesh {name}, {case.name}{maximum}")]
     factors = [part for part in result.flanks if np.isfinite(part.face_load_factor)]
     if factors:
         worst = max(factors, key=lambda part: part.face_load_factor)

@@ -39,8 +39,8 @@ def _levels_figure(result: HeardOptimization) -> Figure:
 def _panel(result: HeardOptimization, load: int) -> Panel:
     order, bars = np.arange(len(result.lines), dtype=float), []
     designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
-    least = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
-    floor = 5.0 * np.floor(least / 5.0 - 0.5)
+    minimum = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
+    floor = 5.0 * np.floor(minimum / 5.0 - 0.5)
     for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):
         at, level, error = order + side * _WIDTH, design.level[load], design.level_error[load]
         bars.append(Bars(name, at, level, floor, _WIDTH, color))

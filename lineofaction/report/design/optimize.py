@@ -28,7 +28,7 @@ from lineofaction.report.drawing.figure import (
 )
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
-from lineofaction.report.ste.curves import MOST_CURVES, HarrisScale, harris_panel
+from lineofaction.report.ste.curves import MAX_CURVES, HarrisScale, harris_panel
 
 _POSITION = "position, base pitches"
 
@@ -53,7 +53,7 @@ def _chosen(result: Optimization) -> list[int]:
     """Torques whose curves are drawn: those that count, those that get worse, and some between them."""
     torque = result.start.harris_map.torque
     drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
-    even = np.linspace(torque[0], torque[-1], max(2, MOST_CURVES - len(drawn)))
+    even = np.linspace(torque[0], torque[-1], max(2, MAX_CURVES - len(drawn)))
     return sorted(drawn | {int(np.abs(torque - value).argmin()) for value in even})
 
 

@@ -129,8 +129,8 @@ def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
     lines = () if study.above is None else tuple(_above_limit(study, study.above))
     if study.solved < len(study.peak_to_peak) or study.above is not None:
         missed = ", ".join(
-            f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(most / UM, 2)})"
-            for rms, most, torque in zip(
+            f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(maximum / UM, 2)})"
+            for rms, maximum, torque in zip(
                 study.missed, study.missed_largest, thousands(study.torque.tolist()), strict=True
             )
         )
@@ -159,10 +159,10 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
             f"those of the {alike} are alike. Further pairs and what decides are told to first order."
         )
     names = [boundary_name(name) for name in above.names]
-    most = above.decides
-    alone, all_of = (number(100.0 * float(each[most]), 2) for each in (above.first_order, above.total))
+    maximum = above.decides
+    alone, all_of = (number(100.0 * float(each[maximum]), 2) for each in (above.first_order, above.total))
     part = f"it makes {alone} % of the variance of the level alone, {all_of} % with others"
-    lines.append(f"{names[most]} decides: {part}.")
+    lines.append(f"{names[maximum]} decides: {part}.")
     if above.cure is None:
         none = "no pair is above" if not above.share[k] else "no tolerance a class finer lowers the share"
         return [*lines, f"No cure: {none}."]

@@ -106,11 +106,11 @@ def _reasons(studies: Sequence[PairStudy]) -> list[str]:
 
 def _reason(study: PairStudy, curves: Sensitivity) -> str:
     at, curve = _over_distance(study, curves)
-    most = int(abs(curve.relative_change).argmax())
-    change = float(curve.relative_change[most])
-    before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[most])
+    maximum = int(abs(curve.relative_change).argmax())
+    change = float(curve.relative_change[maximum])
+    before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[maximum])
     how = "with" if curves.corner_contact else "without"
-    moved = f"{round(float(at[most]), 9):+g} % of center distance"
+    moved = f"{round(float(at[maximum]), 9):+g} % of center distance"
     verb = "lowers" if change < 0.0 else "raises"
     return (
         f"{study.name} {how} corner contact: {moved} {verb} the ripple by {100.0 * abs(change):.0f} %, "
@@ -129,9 +129,9 @@ def _by_pairs(before: float, after: float, change: float) -> str:
     way = f"the contact ratio under load {moves} from {before:.2f} to {after:.2f}"
     if (after > before) != (change < 0.0):
         return f"though {way}"
-    least = min(math.floor(before), math.floor(after))
-    alone = "one pair alone carries" if least == 1 else f"{least} pairs alone carry"
-    old, new = (100.0 * max(least + 1 - value, 0.0) for value in (before, after))
+    minimum = min(math.floor(before), math.floor(after))
+    alone = "one pair alone carries" if minimum == 1 else f"{minimum} pairs alone carry"
+    old, new = (100.0 * max(minimum + 1 - value, 0.0) for value in (before, after))
     where = f"over {new:.0f} % of a base pitch" if new else "nowhere on a base pitch"
     return f"since {way}: {alone} {where} in place of {old:.0f} %"
 

@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
-MOST_CURVES = 6
+MAX_CURVES = 6
 BEYOND = "by more than the errors"
 
 
@@ -82,7 +82,7 @@ def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
         return (Line(shown.words, x, value, palette.BLUE, markers=True, band=error),)
     other = result.axes[1 - result.across]
     levels = result.levels(1 - result.across)
-    rows = np.unique(np.linspace(0, levels.size - 1, min(levels.size, MOST_CURVES)).round().astype(int))
+    rows = np.unique(np.linspace(0, levels.size - 1, min(levels.size, MAX_CURVES)).round().astype(int))
     return ordered_lines(x, [f"{levels[row]:.6g} {other.unit}" for row in rows], value[rows], error[rows])
 
 
@@ -144,7 +144,7 @@ def _headlines(result: SweepResult) -> tuple[Headline, ...]:
     largest = Headline(f"largest {shown.words}", *_figure(result, quantity, worst))
     if len(result.axes) == 2 and TORQUE in result.sweep.axes:
         return (_best_level(result, quantity), largest)
-    best = Headline(f"least {shown.words}", *_figure(result, quantity, quantity.least))
+    best = Headline(f"least {shown.words}", *_figure(result, quantity, quantity.minimum))
     like = int(quantity.like_least.sum()) - 1
     others = f"as low within the errors: {like} others" if like else f"below all others {BEYOND}"
     return (replace(best, remark=f"{best.remark}; {others}"), largest)

@@ -64,10 +64,10 @@ class Camera:
         eye = 0.5 * (low + high) + 1.1 * FIELD * 0.5 * float(np.linalg.norm(high - low)) * back
         camera = cls(eye, axes, 1.0, np.zeros(2), size)
         seen = camera.pixels(points)
-        least, most = seen.min(axis=0), seen.max(axis=0)
+        minimum, maximum = seen.min(axis=0), seen.max(axis=0)
         within = np.array(size) - 2.0 * np.array(margins)
-        scale = float(np.min(within / np.maximum(most - least, 1e-12)))
-        return cls(eye, axes, scale, 0.5 * np.array(size) - 0.5 * scale * (least + most), size)
+        scale = float(np.min(within / np.maximum(maximum - minimum, 1e-12)))
+        return cls(eye, axes, scale, 0.5 * np.array(size) - 0.5 * scale * (minimum + maximum), size)
 
     @property
     def light(self) -> FloatArray:

@@ -23,7 +23,7 @@ DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 _SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
 _SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
-_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_MAX_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
 _FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
 
@@ -139,7 +139,7 @@ class Note:
 class HeatMap:
     """Cells colored by a value; NaN stays blank.
 
-    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from `least` to `largest`;
+    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from `minimum` to `largest`;
     `label` has the unit after its last comma. With `isolines`, values at which curves are drawn, `x` and `y`
     are evenly spaced, colors change smoothly from cell to cell, and what is below `BLANK` of the largest is
     left blank.
@@ -150,20 +150,20 @@ class HeatMap:
     z: FloatArray
     label: str
     largest: float
-    least: float = 0.0
+    minimum: float = 0.0
     isolines: tuple[float, ...] = ()
 
     @classmethod
     def spanning(cls, x: FloatArray, y: FloatArray, z: FloatArray, label: str) -> HeatMap:
         """Return the map whose colors run from the least to the largest value, apart where all are alike."""
         known = z[np.isfinite(z)]
-        least, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-        return cls(x, y, z, label, largest if largest > least else least + 1.0, least)
+        minimum, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+        return cls(x, y, z, label, largest if largest > minimum else minimum + 1.0, minimum)
 
     @property
     def colors(self) -> tuple[str, ...]:
         """Return the palette from the least to the largest: ordered, or of either sign about 0."""
-        return palette.SIGNED if self.least == -self.largest < 0.0 else palette.CIVIDIS
+        return palette.SIGNED if self.minimum == -self.largest < 0.0 else palette.CIVIDIS
 
 
 @dataclass(frozen=True)
@@ -315,8 +315,8 @@ def ripple_panel(x: Axis, lines: tuple[Line, ...], title: str = "") -> Panel:
 
 def shaded_levels(x: FloatArray, y: FloatArray, level: FloatArray, label: str, depth: float) -> HeatMap:
     """Color levels (m, n) in dB down to `depth` below the largest; lower ones are left blank."""
-    most = float(level.max())
-    return HeatMap(x, y, np.where(level < most - depth, np.nan, level), label, most, most - depth)
+    maximum = float(level.max())
+    return HeatMap(x, y, np.where(level < maximum - depth, np.nan, level), label, maximum, maximum - depth)
 
 
 def largest(sizes: FloatArray, count: int) -> list[int]:
@@ -391,7 +391,7 @@ def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
     span, whole = float(np.ptp(values)) if values.size else 0.0, bool(np.all(values == np.round(values)))
     if re.search(r"\borders?\b", axis.label):
         return whole or span > _FEW_ORDERS
-    return name == "x" and bool(panel.lines) and whole and span <= _MOST_WHOLE
+    return name == "x" and bool(panel.lines) and whole and span <= _MAX_WHOLE
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

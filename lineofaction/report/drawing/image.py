@@ -78,7 +78,7 @@ def _cells(ax: Axes, shade: HeatMap) -> Any:
     if shade.isolines:
         return _smooth(ax, shade)
     z = np.ma.masked_invalid(shade.z)
-    x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.least, shade.largest)
+    x, y, span = _edges(shade.x), _edges(shade.y), Normalize(shade.minimum, shade.largest)
     return ax.pcolormesh(x, y, z, cmap=_color_map(shade.colors), norm=span, rasterized=True)
 
 

@@ -44,7 +44,7 @@ _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the
 _TINT = "22"  # of what an outline holds
 _BOX = "rgba(255,255,255,0.8)"  # under a text on colors
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
-_MOST_TICKS = 10
+_MAX_TICKS = 10
 
 
 def _color_scale(colors: Sequence[str] = palette.CIVIDIS) -> list[list[Any]]:
@@ -76,7 +76,7 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "x": numbers(shade.x),
         "y": numbers(shade.y),
         "z": [numbers(row) for row in shade.z],
-        "zmin": shade.least,
+        "zmin": shade.minimum,
         "zmax": shade.largest,
         "hoverongaps": False,
         "colorscale": _color_scale(shade.colors),
@@ -262,7 +262,7 @@ def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:
     values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in shown]
     ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # of an empty plot too
     span = float(np.ptp(ends[np.isfinite(ends)]))
-    return {"tick0": 0, "dtick": max(math.ceil(span / _MOST_TICKS), 1)}
+    return {"tick0": 0, "dtick": max(math.ceil(span / _MAX_TICKS), 1)}
 
 
 def _line(line: Line, suffix: str, show: bool) -> Json:

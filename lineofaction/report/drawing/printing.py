@@ -27,8 +27,8 @@ def pdf(page: str, named: Path) -> bytes:
     found = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))
     browser = next((path for path in found if path), None)
     if browser is None:
-        advice = "Install Chromium or Chrome, name one in CHROMIUM, or write an .html page and print that."
-        raise BadInput.of("output", str(named), "a page where no browser is installed", advice)
+        remedy = "Install Chromium or Chrome, name one in CHROMIUM, or write an .html page and print that."
+        raise BadInput.of("output", str(named), "a page where no browser is installed", remedy)
     # a browser of the superuser has no sandbox; what it opens here is our own page
     sandbox = ["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
     with TemporaryDirectory() as folder:

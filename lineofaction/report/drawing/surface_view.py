@@ -185,7 +185,7 @@ def surface_panels(
     """
     moved = points + offset
     largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
-    least = -largest if np.any(value < 0.0) else 0.0
+    minimum = -largest if np.any(value < 0.0) else 0.0
     panels, folds = [], _folds(points, triangles)
     for side, eye in SIDES.items():
         view = _view_of(np.concatenate([points, moved]), eye)
@@ -198,7 +198,7 @@ def surface_panels(
         edges = 1e3 * view.step * np.concatenate(seen)
         outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
-        shade = HeatMap(x, y, image, label, largest, least)
+        shade = HeatMap(x, y, image, label, largest, minimum)
         titled = f"{side}{words and f': {words}'}"
         panels.append(Panel(across, up, (outline,), title=titled, shade=shade, equal=True))
     return tuple(panels)

@@ -20,7 +20,7 @@ EffectRow = tuple[str, str, bool, str, str]
 Json = dict[str, Any]
 GIGABYTE = 1e9
 HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
-UNKNOWN, LEAST = "-", 1e-3
+UNKNOWN, MIN = "-", 1e-3
 
 
 def facts(caption: str, content: Mapping[str, Any]) -> Table:
@@ -154,7 +154,7 @@ def amount(value: float | None) -> str:
     """Write CPU seconds or GB; less than a thousandth is nothing that anybody weighs."""
     if value is None:
         return UNKNOWN
-    return number(value, 2) if value >= LEAST else f"< {LEAST:g}"
+    return number(value, 2) if value >= MIN else f"< {MIN:g}"
 
 
 def gigabytes(value: float | None) -> str:

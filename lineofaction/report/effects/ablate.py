@@ -176,7 +176,7 @@ _CASE = _Look(
 def _scene_table(ablation: SceneAblation) -> Table:
 
     def estimated(entry: SceneEffect, name: str) -> str:
-        return "" if entry.estimate is None else _signed(1e6 * _most(getattr(entry.estimate, name)))
+        return "" if entry.estimate is None else _signed(1e6 * _maximum(getattr(entry.estimate, name)))
 
     head = (
         "effect", "scene has it", "without it", "computed", "mean DTE, µm", "estimated", "peak to peak, µm",
@@ -188,11 +188,11 @@ def _scene_table(ablation: SceneAblation) -> Table:
             "on" if entry.on else "off",
             entry.level.words,
             entry.level_change.words,
-            _signed(1e6 * _most(entry.mean_change)),
+            _signed(1e6 * _maximum(entry.mean_change)),
             estimated(entry, "mean"),
-            _signed(1e6 * _most(entry.peak_to_peak_change)),
+            _signed(1e6 * _maximum(entry.peak_to_peak_change)),
             estimated(entry, "peak_to_peak"),
-            _signed(1e6 * _most(entry.order_change[:, 0])),
+            _signed(1e6 * _maximum(entry.order_change[:, 0])),
             *_bearing_force(entry),
             number(entry.cost_ratio, 3),
         )
@@ -227,7 +227,7 @@ def _scene_panels(ablation: SceneAblation) -> tuple[Panel, ...]:
     return error, force
 
 
-def _most(values: FloatArray) -> float:
+def _maximum(values: FloatArray) -> float:
     return float(values[np.argmax(np.abs(values))])
 
 
@@ -239,7 +239,7 @@ def _signed(value: float) -> str:
 _SCENE = _Look(
     what="scene",
     title="Influence of every effect in this scene",
-    change=lambda _ablation, entry: _most(entry.peak_to_peak_change),
+    change=lambda _ablation, entry: _maximum(entry.peak_to_peak_change),
     signed=_signed,
     caption=lambda _ablation: (
         "Each effect toggled by itself in all its parts: largest amplitude of every mesh order "

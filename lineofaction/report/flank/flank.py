@@ -42,7 +42,7 @@ LINES_SHOWN = 8  # positions
 Gear = Literal["pinion", "wheel"]
 GEARS: tuple[Gear, ...] = ("pinion", "wheel")
 PRESSURE = "Hertz pressure, MPa"
-_MOST_ISOLINES = 6
+_MAX_ISOLINES = 6
 _HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
 _Map = tuple[FloatArray, FloatArray]
 """Roll lengths (R,) in mm and pressures (R, K) in MPa."""
@@ -182,7 +182,7 @@ def _shaded(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
 
 def _isolines(largest: float) -> tuple[float, ...]:
     step = 10.0 ** np.floor(np.log10(largest)) if largest > 0.0 else 1.0
-    wide = next(w for w in (0.2, 0.5, 1.0, 2.0, 5.0) if largest / (w * step) <= _MOST_ISOLINES + 1)
+    wide = next(w for w in (0.2, 0.5, 1.0, 2.0, 5.0) if largest / (w * step) <= _MAX_ISOLINES + 1)
     count = int(_HIGHEST_ISOLINE * largest / (wide * step))
     return tuple(float(wide * step * k) for k in range(1, count + 1))
 

@@ -49,9 +49,9 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
         (f"housing {name}", "not that in which the run moved: its forces lack what this one does")
         for name in run.get("other_housings", ())
     ]
-    most = {name: max(shares) for name, shares in run["remainder"].items()}
-    bearing = max(most, key=lambda name: most[name])
-    remainder = f"at most {number(100.0 * most[bearing], 3)} % of the force on {bearing}, in variance"
+    maximum = {name: max(shares) for name, shares in run["remainder"].items()}
+    bearing = max(maximum, key=lambda name: maximum[name])
+    remainder = f"at most {number(100.0 * maximum[bearing], 3)} % of the force on {bearing}, in variance"
     rows.append(("what orders do not hold", remainder))
     if run["smearing"] is None:
         rows.append(("smearing by the windows", "not known: the run states no modes"))

@@ -21,7 +21,7 @@ from lineofaction.report.run.view import speed_axis
 
 BLOCK = 0.1
 """s over which a level is taken."""
-LEAST_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
+MIN_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
 """dB shown below the loudest, at least and at most; beyond both ends."""
 
 
@@ -33,7 +33,7 @@ def _level_figure(heard: HeardRun) -> Figure:
     unit = "dB re 1 nm/s" if heard.figures is None else "dB(A) re 20 µPa"
     name, loudest = _noun(heard), int(np.argmax(level))
     top = float(level[loudest])
-    lowest = min(top - LEAST_SPAN, max(float(level.min()), top - DEPTH))
+    lowest = min(top - MIN_SPAN, max(float(level.min()), top - DEPTH))
     y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
     rows = tuple((f"{t:.3f}", number(x, 5), f"{dB:.1f}") for t, x, dB in zip(time, along, level, strict=True))
     return Figure(

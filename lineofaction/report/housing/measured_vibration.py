@@ -34,7 +34,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
     """Draw the velocities of the points by their largest orders; nothing outside the measured band."""
     vibration = result.vibration
     largest = np.nanmax(vibration.rms, axis=(1, 2))
-    most = np.argsort(-largest, kind="stable")[:SHOWN_POINTS]
+    maximum = np.argsort(-largest, kind="stable")[:SHOWN_POINTS]
     band = f"{number(result.lowest_frequency, 4)} to {number(result.highest_frequency, 4)} Hz"
     return Figure(
         key="housing_velocity",
@@ -42,7 +42,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
         caption="Root mean square velocity of points under the forces of the bearings, the measured "
         f"directions together. Nothing is drawn outside the measured band, {band}.",
         alternative=f"Shown in detail: {_where(result)}.",
-        content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in most),
+        content=tuple(_panel(result, vibration.point[k], vibration.rms[k] / MM_PER_S) for k in maximum),
         table=_largest_table(result),
     )
 
@@ -112,12 +112,12 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
     part = shares.point[point]
     if not np.all(np.isfinite(part)):
         return None
-    most = int(np.argmax(part))
+    maximum = int(np.argmax(part))
     return Figure(
         key="housing_contributions",
         title=f"Contributions to the mean square velocity of {result.vibration.point[point]}",
         caption=f"At {_where(result)}. Bars add up to 100 %; below zero: against the sum.",
-        alternative=f"Most comes from {shares.name[most]}, {number(100.0 * float(part[most]), 3)} %.",
+        alternative=f"Most comes from {shares.name[maximum]}, {number(100.0 * float(part[maximum]), 3)} %.",
         content=(share_panel(shares, part),),
         table=_contribution_table(result),
     )
@@ -141,9 +141,9 @@ def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
     part = result.share[:, point]
     if not np.all(np.isfinite(part)):
         return (first,)
-    most = int(np.argmax(part))
-    share = f"{number(100.0 * float(part[most]), 3)} % of the mean square"
-    return first, Headline("bearing that contributes most", result.bearing[most], share)
+    maximum = int(np.argmax(part))
+    share = f"{number(100.0 * float(part[maximum]), 3)} % of the mean square"
+    return first, Headline("bearing that contributes most", result.bearing[maximum], share)
 
 
 def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:

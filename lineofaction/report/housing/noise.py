@@ -146,10 +146,10 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
     (x, speed), total = row_axis(sound.speed, sound.facts), sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
-    most = np.argsort(-alone.max(axis=1), kind="stable")[:SHOWN]
+    maximum = np.argsort(-alone.max(axis=1), kind="stable")[:SHOWN]
     lines = (
         Line("all", speed, _above(total, floor), palette.INK, width=2.2),
-        *category_lines(speed, [sound.bearing[b] for b in most], _above(alone[most], floor)),
+        *category_lines(speed, [sound.bearing[b] for b in maximum], _above(alone[maximum], floor)),
     )
     at = int(total.argmax())
     loud = int(alone[:, at].argmax())
@@ -180,13 +180,13 @@ def _panel_intensity(sound: RadiatedSound) -> Figure | None:
     if panels is None or not points:
         return None
     hull, value = panels.hull, 1e3 * panels.intensity
-    least, largest = (number(end, 2) for end in (value.min(), value.max()))
+    minimum, largest = (number(end, 2) for end in (value.min(), value.max()))
     return Figure(
         key="sound_panels",
         title=f"Sound intensity on the surface: {_where(points[0], sound.facts)}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
-        alternative=f"The intensity is between {least} and {largest} mW/m².",
+        alternative=f"The intensity is between {minimum} and {largest} mW/m².",
         content=surface_panels(
             hull.nodes, hull.triangles, np.zeros_like(hull.nodes), value, "intensity, mW/m²", "outer hull"
         ),

@@ -17,23 +17,23 @@ SHOWN, SHOWN_MODES = 12, 8
 def share_rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
     """Return rows of a table in %, of points, and of the surface where there is one."""
     every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
-    most = largest(np.max(np.abs(every), axis=0), SHOWN)
+    maximum = largest(np.max(np.abs(every), axis=0), SHOWN)
     return [
         (
             shares.name[p],
             number(shares.frequency[p], 5) if np.isfinite(shares.frequency[p]) else "",
             *(f"{100.0 * float(value):.1f}" for value in every[:, p]),
         )
-        for p in most
+        for p in maximum
     ]
 
 
 def share_panel(shares: Shares, part: FloatArray) -> Panel:
     """Draw contributions (p,) as bars that add up to 100 %, the small ones together."""
-    most = largest(np.abs(part), SHOWN_MODES)
-    values = [100.0 * float(part[p]) for p in most]
-    names = [_name(shares, p) for p in most]
-    if len(most) < part.size:
+    maximum = largest(np.abs(part), SHOWN_MODES)
+    values = [100.0 * float(part[p]) for p in maximum]
+    names = [_name(shares, p) for p in maximum]
+    if len(maximum) < part.size:
         names.append("others")
         values.append(100.0 - sum(values))
     bars = Bars("contribution", np.arange(float(len(names))), np.array(values), 0.0, 0.6, palette.BLUE)

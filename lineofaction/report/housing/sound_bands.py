@@ -9,7 +9,7 @@ from lineofaction.report.drawing.figure import Table, number
 from lineofaction.report.drawing.marks import order_words
 
 SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
-LEAST_NARROWED = 0.1
+MIN_NARROWED = 0.1
 """dB."""
 
 NARROWER = {
@@ -59,7 +59,7 @@ def narrowest(facts: Json) -> Iterator[str]:
     """Say what would narrow the band of the largest level most."""
     level = (facts["band"] or {}).get("largest_total", {})
     for name, left in level.get("widths_without_db", {}).items():
-        if name in NARROWER and level["width_db"] - left >= LEAST_NARROWED:
+        if name in NARROWER and level["width_db"] - left >= MIN_NARROWED:
             width = level["width_db"]
             yield f"{NARROWER[name]}: of {width:.1f} dB of the band {left:.1f} are left"
             return

@@ -155,14 +155,14 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
         point, axis = _fastest(analysis)
         title = f"{analysis.vibration.point[point]} along {'xyz'[axis]}"
         gain = mobilities.point[point, axis]
-        most = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:SHOWN_SEATS]
-        panels.append(Panel(x, per_force, curves(np.abs(gain), most), marks, title=title))
-        phase = curves(np.degrees(np.angle(gain)), most)
+        maximum = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:SHOWN_SEATS]
+        panels.append(Panel(x, per_force, curves(np.abs(gain), maximum), marks, title=title))
+        phase = curves(np.degrees(np.angle(gain)), maximum)
         panels.append(Panel(x, Axis("phase, °", limits=(-180.0, 180.0)), phase))
     if analysis.deflection is not None:
         gain = np.sqrt(mobilities.surface)
-        most = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
-        panels.append(Panel(x, per_force, curves(gain, most), title="root mean square of the outer hull"))
+        maximum = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
+        panels.append(Panel(x, per_force, curves(gain, maximum), title="root mean square of the outer hull"))
     return Figure(
         key="housing_transfer",
         title=f"Transfer functions of {analysis.housing}",
@@ -248,14 +248,14 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
         first = Headline("velocity of the outer hull", speed_words(rms_of_hull))
-    most = []
+    maximum = []
     for what, shares in (("bearing", analysis.bearings), ("mode", analysis.modes)):
         part = shares.surface if surface else shares.point[0]
         p = int(np.argmax(part))
         hertz = f"{number(shares.frequency[p], 4)} Hz, " if np.isfinite(shares.frequency[p]) else ""
         share = f"{hertz}{number(100.0 * float(part[p]), 3)} % of the mean square"
-        most.append(Headline(f"{what} that contributes most", shares.name[p], share))
-    return (first, *most)
+        maximum.append(Headline(f"{what} that contributes most", shares.name[p], share))
+    return (first, *maximum)
 
 
 def _text(result: HousingVibrationResult) -> Iterator[Table | str]:

@@ -12,7 +12,7 @@ from dynamics.results import RunResult
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, FloatArray, Panel, Table, number
 
-MOST_MODES, LEAST_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
+MAX_MODES, MIN_DISTANCE, _CIRCULAR = 8, 0.01, 0.1
 MOVES, MET = "moves, share of the kinetic energy", "met by mesh order at mesh frequency"
 MODES_CAPTION = {
     False: "Dashed: natural frequencies about the static equilibrium",
@@ -54,13 +54,13 @@ def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[M
     kept: list[ModeLine] = []
     for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
         values = frequencies[index]
-        apart = all(np.max(np.abs(line.frequency - values)) > LEAST_DISTANCE * top for line in kept)
+        apart = all(np.max(np.abs(line.frequency - values)) > MIN_DISTANCE * top for line in kept)
         if 0.0 < values[0] < top and apart:
             name = whirl_name(whirls[index]) if whirling(run) else "natural modes"
             shares = dict(modes["moves"][index]) if "moves" in modes else {}
-            most = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
-            kept.append(ModeLine(name, _COLORS[name], values, most, shares))
-    return kept[:MOST_MODES]
+            maximum = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
+            kept.append(ModeLine(name, _COLORS[name], values, maximum, shares))
+    return kept[:MAX_MODES]
 
 
 def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:

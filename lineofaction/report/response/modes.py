@@ -33,7 +33,7 @@ ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the table
 SHOWN_PARTS = 2
 SHOWN_MODES, PRINTED_MODES = 10, 20
 HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
-LEAST_TOP = 1.0  # Hz
+MIN_TOP = 1.0  # Hz
 ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
@@ -68,7 +68,7 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
 def _campbell(modes: ModalAnalysis) -> Figure:
     speed = modes.speed / RPM
     reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency, initial=0.0))
-    top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, LEAST_TOP))
+    top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, MIN_TOP))
     lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
     if modes.critical_speed.size:
         there = modes.critical_speed / RPM
@@ -165,7 +165,7 @@ def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str)
     return f"The lowest mode, {names[0]}, has {number(100.0 * share, 2)} % of its {energy} energy in {part}."
 
 
-def _modes_table(modes: ModalAnalysis, most: int | None = None) -> Table:
+def _modes_table(modes: ModalAnalysis, maximum: int | None = None) -> Table:
     """List so many natural modes at rest; those of one frequency are still one line each."""
     strain, kinetic = modes.natural_strain_energy, modes.natural_kinetic_energy
     columns = {
@@ -177,7 +177,7 @@ def _modes_table(modes: ModalAnalysis, most: int | None = None) -> Table:
         "kinetic energy in": lambda mode: _shares(modes.moved(kinetic[mode])),
     }
     caption = "Natural modes about the static equilibrium, at rest"
-    return Table.of(caption, range(modes.natural_frequency.size)[:most], columns)
+    return Table.of(caption, range(modes.natural_frequency.size)[:maximum], columns)
 
 
 def _shares(parts: dict[str, float]) -> str:
@@ -225,13 +225,13 @@ def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:
 def _words(modes: ModalAnalysis) -> str:
     if not modes.critical_speed.size:
         return "No mesh order meets a mode in this range."
-    least = int(np.argmin(modes.critical_damping_ratio))
+    minimum = int(np.argmin(modes.critical_damping_ratio))
     return (
         f"{modes.critical_speed.size} crossings; the least damped, with "
-        f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %, at "
-        f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm and "
-        f"{number(modes.critical_frequency[least], 4)} Hz, mesh order "
-        f"{int(modes.critical_order[least])}."
+        f"{number(100.0 * float(modes.critical_damping_ratio[minimum]), 3)} %, at "
+        f"{number(float(modes.critical_speed[minimum]) / RPM, 4)} rpm and "
+        f"{number(modes.critical_frequency[minimum], 4)} Hz, mesh order "
+        f"{int(modes.critical_order[minimum])}."
     )
 
 
@@ -250,10 +250,10 @@ def _least_damped(modes: ModalAnalysis) -> Headline:
     count = modes.critical_speed.size
     if not count:
         return Headline("critical speeds", "none", "no mesh order meets a mode in this range")
-    least = int(np.argmin(modes.critical_damping_ratio))
-    damping = f"{number(100.0 * float(modes.critical_damping_ratio[least]), 3)} %"
-    order = f"mesh order {int(modes.critical_order[least])}"
-    speed = f"{number(float(modes.critical_speed[least]) / RPM, 4)} rpm"
+    minimum = int(np.argmin(modes.critical_damping_ratio))
+    damping = f"{number(100.0 * float(modes.critical_damping_ratio[minimum]), 3)} %"
+    order = f"mesh order {int(modes.critical_order[minimum])}"
+    speed = f"{number(float(modes.critical_speed[minimum]) / RPM, 4)} rpm"
     return Headline("least damped critical speed", speed, f"{order}, damping ratio {damping}, of {count}")
 
 

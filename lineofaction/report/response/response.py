@@ -26,7 +26,7 @@ from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
 
-LEAST_SHARE = 1e-3
+MIN_SHARE = 1e-3
 """%, of what is listed."""
 
 SHOWN_ORDERS, SHOWN_PEAKS, PRINTED_PEAKS = 6, 15, 4
@@ -51,10 +51,10 @@ def _power_table(response: ForcedResponse) -> Table:
     rows = []
     for kind, lost in power.by_kind().items():
         own = [part for part, each in enumerate(power.kind) if each == kind]
-        most = max(own, key=lambda part: by_part[part])
+        maximum = max(own, key=lambda part: by_part[part])
         share = 100.0 * float(lost[at] / total[at])
-        if abs(share) >= LEAST_SHARE:
-            rows.append((kind, power.sink[most], number(lost[at], 3), number(share, 3)))
+        if abs(share) >= MIN_SHARE:
+            rows.append((kind, power.sink[maximum], number(lost[at], 3), number(share, 3)))
     title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
     return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
 
@@ -67,13 +67,13 @@ def _power_figure(response: ForcedResponse) -> Figure:
     lines = tuple(
         line for line in category_lines(response.speed / RPM, list(lost), lost.values()) if line.name in kinds
     )
-    most = max(lost, key=lambda kind: float(np.max(lost[kind])))
+    maximum = max(lost, key=lambda kind: float(np.max(lost[kind])))
     return Figure(
         key="power",
         title="Power lost by the vibration",
         caption="Mean power of all orders that transmission errors and loads put in, by the parts that take "
         "it. Friction of a mesh may feed the vibration: then its power is negative.",
-        alternative=f"At its largest, most of it is lost in parts of the kind {most}.",
+        alternative=f"At its largest, most of it is lost in parts of the kind {maximum}.",
         content=(Panel(_speed_axis(response), Axis("power lost, W"), lines),),
         table=table,
     )
@@ -134,12 +134,12 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
-def _peak_table(response: ForcedResponse, most: int = SHOWN_PEAKS) -> Table:
+def _peak_table(response: ForcedResponse, maximum: int = SHOWN_PEAKS) -> Table:
     every = peaks(response)
     listed = [
         peak
         for quantity in ("mesh_force", "bearing_force")
-        for peak in [peak for peak in every if peak.quantity == quantity][:most]
+        for peak in [peak for peak in every if peak.quantity == quantity][:maximum]
     ]
     columns = {
         "force of": lambda peak: f"{peak.quantity.removesuffix('_force')} {peak.name}",

@@ -42,7 +42,7 @@ MAPPED, NAMED = 10, 5
 """Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 BLOCKS, ORDERS = 90, 8
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
-LEAST_PITCHES = 64  # of a run whose orders are shown
+MIN_PITCHES = 64  # of a run whose orders are shown
 
 
 def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
@@ -297,7 +297,7 @@ class Loudest:
 
 def has_orders(run: RunResult, mesh: int = 0) -> bool:
     """Whether a run passes enough base pitches for orders over it."""
-    return _pitches_passed(run, mesh) >= LEAST_PITCHES
+    return _pitches_passed(run, mesh) >= MIN_PITCHES
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:

@@ -89,7 +89,7 @@ def _dynamic_factor_figure(run: RunResult) -> Figure:
     lines = (
         Line("largest", abscissa, factor.largest, palette.VERMILLION),
         Line("mean", abscissa, factor.mean, palette.INK, "dash"),
-        Line("least", abscissa, factor.least, palette.BLUE),
+        Line("least", abscissa, factor.minimum, palette.BLUE),
     )
     worst = int(np.argmax(factor.largest))
     return Figure(
@@ -100,7 +100,7 @@ def _dynamic_factor_figure(run: RunResult) -> Figure:
         "differs from 1 by the torque that accelerates the train.",
         alternative=f"Largest {number(factor.largest[worst], 4)} at "
         f"{number(abscissa[worst], 3)} {unit_of(axis.label)}, least "
-        f"{number(factor.least.min(), 3)}.",
+        f"{number(factor.minimum.min(), 3)}.",
         content=(Panel(axis, Axis("mesh force over nominal, 1"), lines),),
     )
 
@@ -112,8 +112,8 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
         lines = sidebands(run, values, mesh=signal.mesh)
     except InputError:  # fewer than four revolutions
         return ()
-    least = SHARE * max(line.amplitude for line in lines if line.number == 0)
-    beside = sorted((s for s in lines if s.number and s.amplitude > least), key=lambda s: -s.amplitude)
+    minimum = SHARE * max(line.amplitude for line in lines if line.number == 0)
+    beside = sorted((s for s in lines if s.number and s.amplitude > minimum), key=lambda s: -s.amplitude)
     if not beside:
         return ()
     columns = {

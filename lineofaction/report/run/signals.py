@@ -44,8 +44,8 @@ AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
 DETAIL = "Second: less the mean of the window."
 WINDOW = (0.9, 0.95)  # of the duration
 ORDERS = 8
-LEAST_SAMPLES = 8  # of a window
-TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {LEAST_SAMPLES} samples."
+MIN_SAMPLES = 8  # of a window
+TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {MIN_SAMPLES} samples."
 _NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
 DEPTH = 80.0
 _X = Axis("travel of the driving gear within the window, base pitches", limits=(0, PITCHES))
@@ -126,7 +126,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
 def has_spectrum(run: RunResult) -> bool:
     """Whether a run is long enough for one: its window holds a line beside the mean."""
     window = spectrum_window(run.time)
-    return len(run.time[window]) >= LEAST_SAMPLES
+    return len(run.time[window]) >= MIN_SAMPLES
 
 
 def spectrum_window(time: FloatArray) -> slice:
@@ -202,10 +202,10 @@ def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | 
     except InputError:  # the run is too short for a band
         return None
     rms = signal.magnitude(made.rms)
-    mean, most = np.sqrt(np.mean(rms**2, axis=0)), np.max(rms, axis=0)
-    floor = float(most.max()) * 10.0 ** (-DEPTH / 20.0)
+    mean, maximum = np.sqrt(np.mean(rms**2, axis=0)), np.max(rms, axis=0)
+    floor = float(maximum.max()) * 10.0 ** (-DEPTH / 20.0)
     lines = (
-        step_line("loudest block", made.edges, decibels(most, floor), palette.VERMILLION),
+        step_line("loudest block", made.edges, decibels(maximum, floor), palette.VERMILLION),
         step_line("whole run", made.edges, decibels(mean, floor), palette.BLUE),
     )
     unit, worst = signal.quantity.unit, int(np.argmax(mean))
@@ -220,7 +220,7 @@ def octave_bands(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | 
         alternative=f"The band at {_nominal(made.nominal[worst])} Hz is the loudest over the run: "
         f"{number(mean[worst], 3)} {unit} rms.",
         content=(Panel(x, Axis(f"level, dB re 1 {unit} rms"), lines),),
-        table=_band_table(made, mean, most, unit),
+        table=_band_table(made, mean, maximum, unit),
     )
 
 
@@ -228,9 +228,9 @@ def _nominal(frequency: float) -> str:
     return f"{frequency:g}" if frequency < 1000.0 else f"{frequency / 1000.0:g}k"
 
 
-def _band_table(made: ThirdOctaves, mean: FloatArray, most: FloatArray, unit: str) -> Table:
+def _band_table(made: ThirdOctaves, mean: FloatArray, maximum: FloatArray, unit: str) -> Table:
     rows = tuple(
-        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(made.nominal, mean, most, strict=True)
+        (f"{at:g}", number(a, 3), number(b, 3)) for at, a, b in zip(made.nominal, mean, maximum, strict=True)
     )
     head = ("band, Hz", f"whole run, {unit} rms", f"loudest block, {unit} rms")
     return Table("One-third-octave bands", head, rows)

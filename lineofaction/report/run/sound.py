@@ -156,5 +156,5 @@ def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recordi
 def _require_short(lasting: float) -> None:
     """Refuse what lasts too long, s."""
     if lasting > LONGEST:
-        advice = "Fetch the file of the run and write it by loa listen."
-        raise BadInput.of("duration_s", lasting, f"at most {LONGEST:g} s", advice)
+        remedy = "Fetch the file of the run and write it by loa listen."
+        raise BadInput.of("duration_s", lasting, f"at most {LONGEST:g} s", remedy)

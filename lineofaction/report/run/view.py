@@ -152,8 +152,8 @@ def shown_signal(run: RunResult, view: RunView) -> Signal:
     quantity = QUANTITIES[name]
     values = getattr(run, quantity.series)
     if not values.shape[0]:
-        advice = f"Run with {quantity.setting}." if quantity.setting else "Show another quantity."
-        raise BadInput.of("quantity", name, "one that the run holds", advice)
+        remedy = f"Run with {quantity.setting}." if quantity.setting else "Show another quantity."
+        raise BadInput.of("quantity", name, "one that the run holds", remedy)
     mesh = _index("mesh", view.mesh, run.mesh) if view.mesh else 0
     parts, row = run.mesh, mesh
     if quantity.part == "bearing":

@@ -27,19 +27,19 @@ from lineofaction.report.drawing.figure import (
 
 POINTS_PER_PITCH = 240
 POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
-MOST_PITCHES = 40  # of a long period
-MOST_LINES = 5  # of loads in one panel
+MAX_PITCHES = 40  # of a long period
+MAX_LINES = 5  # of loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
 """By load: figures of one page share them."""
 _EQUAL = 1e-6
-MOST_CURVES = 8
+MAX_CURVES = 8
 _APART = 1.1  # of what would let two neighbors touch
-_LEAST = 0.15  # of the largest ripple, between neighbors that would not touch anyway
+_MIN = 0.15  # of the largest ripple, between neighbors that would not touch anyway
 _ROOM = 0.04  # of the height
 _TONES = 3
-_LEAST_ROOM, _MOST_ROOM = 0.08, 0.45
+_MIN_ROOM, _MAX_ROOM = 0.08, 0.45
 """Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
 _FLAT = 1e-3  # µm, the height of a curve without any ripple
 
@@ -63,7 +63,7 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
 
 def pitches_shown(database: SteDatabase) -> int:
     """Return how many base pitches plots show: two, or a longer period up to its first 40."""
-    return 2 if database.period == 1 else min(database.period, MOST_PITCHES)
+    return 2 if database.period == 1 else min(database.period, MAX_PITCHES)
 
 
 def position_axis(database: SteDatabase) -> Axis:
@@ -143,13 +143,13 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
     return tuple(f"{label} N m" for label in thousands([float(t) for t in database.torque]))
 
 
-def few_loads(database: SteDatabase, most: int = MOST_LINES) -> tuple[int, ...]:
-    """Return the indices of the loads shown; of more than `most` those nearest to evenly spaced torques."""
+def few_loads(database: SteDatabase, maximum: int = MAX_LINES) -> tuple[int, ...]:
+    """Return the indices of the loads shown, at most `maximum`: those nearest to evenly spaced torques."""
     loads = np.array(shown_loads(database))
-    if loads.size <= most:
+    if loads.size <= maximum:
         return shown_loads(database)
     torque = database.torque[loads]
-    even = np.linspace(torque[0], torque[-1], most)
+    even = np.linspace(torque[0], torque[-1], maximum)
     return tuple(int(k) for k in np.unique(loads[np.abs(torque[:, None] - even).argmin(axis=0)]))
 
 
@@ -225,7 +225,7 @@ class HarrisScale:
         """
         ripple = max(float((np.nanmax(one, axis=0) - np.nanmin(one, axis=0)).max()) for one in maps)
         above = max(float(np.nanmax(one[:, :-1] - one[:, 1:], initial=0.0)) for one in maps)
-        step = max(_APART * above, _LEAST * ripple) or 1.0
+        step = max(_APART * above, _MIN * ripple) or 1.0
         drawn = np.concatenate([(one + step * np.arange(one.shape[1])).ravel() for one in maps])
         low, high = float(np.nanmin(drawn)), float(np.nanmax(drawn))
         room = _ROOM * (high - low) or 1.0
@@ -272,7 +272,7 @@ def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
     height = high - low or _FLAT
     room = np.clip(
-        max(float(np.nan_to_num(line.band)) for line in lines), _LEAST_ROOM * height, _MOST_ROOM * height
+        max(float(np.nan_to_num(line.band)) for line in lines), _MIN_ROOM * height, _MAX_ROOM * height
     )
     return Panel(
         position_axis(database),
@@ -289,7 +289,7 @@ def _label(line: Line, curve: Curve) -> str:
 
 def _harris(database: SteDatabase, curves: list[Curve]) -> Panel:
     position, ripple = _less_mean(database, curves)
-    loads, labels = few_loads(database, MOST_CURVES), load_labels(database)
+    loads, labels = few_loads(database, MAX_CURVES), load_labels(database)
     chosen, names = ripple[:, loads], [labels[k] for k in loads]
     return harris_panel(
         "Harris map", position_axis(database), position, chosen, names, HarrisScale.of(chosen)

@@ -86,10 +86,10 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 def _ripple_words(curves: dict[str, Curve]) -> str:
     """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
-    least, most = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
+    minimum, maximum = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
     where = {name: f"{um(e.value, 3)} µm {name}" for name, e in ripple.items()}
-    ends = [next(where[name] for name, e in ripple.items() if e is end) for end in (least, most)]
-    if most.value - least.value <= least.error + most.error:
+    ends = [next(where[name] for name, e in ripple.items() if e is end) for end in (minimum, maximum)]
+    if maximum.value - minimum.value <= minimum.error + maximum.error:
         return f"Peak to peak, {ends[0]} to {ends[1]}, changes by no more than its errors."
     return f"Peak to peak is least, {ends[0]}, and largest, {ends[1]}."
 

@@ -177,8 +177,8 @@ def contact_effects(ledger: Any) -> Section:
     folded: tuple[Table, ...] = (
         (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
     )
-    decided = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
-    folded += (records("Decisions on the effects in the contact", decided),)
+    decision = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
+    folded += (records("Decisions on the effects in the contact", decision),)
     return effects_section(text, map(_effect_row, shown), folded)
 
 

@@ -69,8 +69,8 @@ def _spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
 def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel:
     level, limit = _level(amplitude), _level(error)
     top = float(np.nanmax(np.concatenate([level, limit])))
-    least = np.nanmin(limit) if np.isfinite(limit).any() else top + _UNKNOWN
-    base = float(np.floor((least - _DEPTH) / 10.0) * 10.0)
+    minimum = np.nanmin(limit) if np.isfinite(limit).any() else top + _UNKNOWN
+    base = float(np.floor((minimum - _DEPTH) / 10.0) * 10.0)
     spacing = float(order[0])
     bars = Bars("amplitude", order, np.maximum(level, base), base, 0.6 * spacing, palette.BLUE)
     veil = Bars("below its error", order, np.maximum(limit, base), base, spacing, palette.MUTED, veiled=True)
@@ -86,9 +86,9 @@ def _level(values: FloatArray) -> FloatArray:
 
 
 def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, error: FloatArray) -> str:
-    most = int(np.argmax(amplitude))
-    size = f"{um(amplitude[most], 3)} µm"
-    text = f"At {label} {names[most]} is the largest, {size}"
+    maximum = int(np.argmax(amplitude))
+    size = f"{um(amplitude[maximum], 3)} µm"
+    text = f"At {label} {names[maximum]} is the largest, {size}"
     if np.isnan(error).all():
         return f"{text}; the errors were not estimated."
     above = int(np.count_nonzero(amplitude > error))
@@ -153,8 +153,8 @@ def _waterfall_words(database: SteDatabase, names: Sequence[str], level: FloatAr
 
 def _waterfall_table(database: SteDatabase, names: Sequence[str], level: FloatArray) -> Table:
     """List the orders that are largest at any load."""
-    most = np.nan_to_num(np.fmax.reduce(level, axis=0), nan=-np.inf)
-    shown = [k for k in largest(most, _COLUMNS) if np.isfinite(most[k])]
+    maximum = np.nan_to_num(np.fmax.reduce(level, axis=0), nan=-np.inf)
+    shown = [k for k in largest(maximum, _COLUMNS) if np.isfinite(maximum[k])]
     labels = load_labels(database)
     rows = tuple(
         (labels[load], *("below its error" if np.isnan(row[k]) else f"{row[k]:.1f}" for k in shown))

@@ -47,14 +47,14 @@ _STANDARD = (
     " The dashed line is the mean mesh stiffness c γα of ISO 6336-1 method B, which includes a correction of "
     "0.8 for real gears."
 )
-_MOST_NAMES = 8  # of pairs that are named in full
+_MAX_NAMES = 8  # of pairs that are named in full
 _SHARING_MARGIN = 1.12  # of the largest share: for the names
 _END = 0.03  # of the panel's width
 _CHARACTER = 0.008  # of a name, in parts of the panel's width
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 _BUDGET_MARGIN = 1.2  # of the largest part: for the numbers
 _NOTE = 0.4  # of the distance of bars: for the number of the last one on a narrow screen
-_LEAST = 0.0005
+_MIN = 0.0005
 """Part of the mean below which there is no bar."""
 
 
@@ -117,8 +117,10 @@ def load_sharing(database: SteDatabase) -> Figure:
     loads = sorted({shown[0], middle_load(database), shown[-1]})
     heaviest = loads[-1]
     m, d = aligned_index(database)
-    most = float(np.nanmax(database.load_share[:, heaviest, m, d]))
-    force = f"{number(most * float(database.force[heaviest]), 3)} N, {number(100.0 * most, 3)} % of the load"
+    share = float(np.nanmax(database.load_share[:, heaviest, m, d]))
+    force = (
+        f"{number(share * float(database.force[heaviest]), 3)} N, {number(100.0 * share, 3)} % of the load"
+    )
     return Figure(
         key="load_sharing",
         title="Load sharing between tooth pairs",
@@ -161,7 +163,7 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
 def _sharing_panel(database: SteDatabase, load: int) -> Panel:
     """One load's forces, each pair named at the middle of its way."""
     position, followed = pair_shares(database, load)
-    names = {pair: _name(pair, short=len(followed) > _MOST_NAMES) for pair in followed}
+    names = {pair: _name(pair, short=len(followed) > _MAX_NAMES) for pair in followed}
     force = float(database.force[load])
     lines = tuple(
         Line(names[pair], position, force * _in_mesh(share), palette.tooth_pair(pair))
@@ -239,7 +241,7 @@ def budget_figure(database: SteDatabase, load: int) -> Figure | None:
     if budget is None:
         return None
     mean = 1e6 * float(np.mean(budget.total))
-    parts = {name: sides for name, sides in _parts(budget).items() if abs(sum(sides)) > _LEAST * mean}
+    parts = {name: sides for name, sides in _parts(budget).items() if abs(sum(sides)) > _MIN * mean}
     table_mean = 1e6 * load_curve(database, load).mean.value
     return Figure(
         key="deflection_budget",

@@ -90,10 +90,10 @@ def _loads(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> F
 
 
 def _finding(own: ToothLoads) -> str:
-    least = int(np.argmin(own.force))
+    minimum = int(np.argmin(own.force))
     return (
         f"The largest force on the {GEARS[own.gear]} is on {teeth_words(own.most_loaded)}, {_size(own)}; "
-        f"on tooth {least + 1} it is least, {number(own.force[least], 4)} N."
+        f"on tooth {minimum + 1} it is least, {number(own.force[minimum], 4)} N."
     )
 
 
@@ -108,13 +108,13 @@ def _derived(database: SteDatabase, load: int) -> str:
 
 def _bars(own: ToothLoads) -> Panel:
     force, name = own.force, GEARS[own.gear]
-    most, mean = float(force.max()), float(force.mean())
+    maximum, mean = float(force.max()), float(force.mean())
     return Panel(
         _tooth_axis(own),
-        Axis("largest normal force, N", limits=(0.0, _ABOVE * most)),
+        Axis("largest normal force, N", limits=(0.0, _ABOVE * maximum)),
         references=(Reference("", mean, "horizontal"),),
         title=f"{name.capitalize()}; dashed: mean {number(mean, 4)} N",
-        notes=_notes(own.most_loaded, most, force.size),
+        notes=_notes(own.most_loaded, maximum, force.size),
         bars=(Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, _COLORS[own.gear]),),
     )
 
@@ -156,11 +156,11 @@ def _table(teeth: tuple[ToothLoads, ...]) -> Table:
 
 def _pressures(database: SteDatabase, load: int, own: ToothLoads) -> Figure:
     missed = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
-    most, least = float(own.pressure.max()), int(np.argmin(own.pressure))
+    peak, least = float(own.pressure.max()), int(np.argmin(own.pressure))
     derived = (
         ""
         if missed is None
-        else f" Base pitches by derivatives: within {_megapascal(missed * most)} at 99 % of the drawn points."
+        else f" Base pitches by derivatives: within {_megapascal(missed * peak)} at 99 % of the drawn points."
     )
     name = GEARS[own.gear]
     return Figure(
@@ -170,7 +170,7 @@ def _pressures(database: SteDatabase, load: int, own: ToothLoads) -> Figure:
         "through mesh, the largest of all its mates; blank: nothing touches. Curves: the most pressed tooth "
         f"beside the mean of all teeth.{derived}",
         alternative=f"The largest pressure on the {name} is on {teeth_words(own.most_pressed)}, "
-        f"{_megapascal(most)}; on tooth {least + 1} it is least, {_megapascal(own.pressure[least])}.",
+        f"{_megapascal(peak)}; on tooth {least + 1} it is least, {_megapascal(own.pressure[least])}.",
         content=(_map(own), _way(own)),
         table=_pressure_table(own),
     )

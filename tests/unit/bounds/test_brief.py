@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bounds.brief import MOST_LINES, WIDTH, Row, brief, described_value, html_of, text_of
+from bounds.brief import MAX_LINES, WIDTH, Row, brief, described_value, html_of, text_of
 
 
 class Side(Enum):
@@ -68,7 +68,7 @@ class Table:
 
 def test_a_record_that_states_its_lines_is_bounded_too() -> None:
     lines = text_of(Table()).split("\n")
-    assert len(lines) == MOST_LINES
+    assert len(lines) == MAX_LINES
     assert max(map(len, lines)) == WIDTH
     assert lines[-1].startswith("  and")
     assert "<caption>Table &lt;3&gt;</caption>" in html_of(Table())
@@ -89,5 +89,5 @@ VALUES = st.one_of(
 def test_no_record_takes_more_than_a_dozen_lines(values: list[Any]) -> None:
     kind = brief(make_dataclass("Record", [f"field_{number}" for number in range(len(values))]))
     lines = repr(kind(*values)).split("\n")
-    assert len(lines) <= MOST_LINES
+    assert len(lines) <= MAX_LINES
     assert max(map(len, lines)) <= WIDTH

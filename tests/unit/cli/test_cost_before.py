@@ -110,9 +110,9 @@ def test_what_is_not_afforded_says_why_and_what_one_motion_takes(
         assert cost is not None
         costs[count] = cost
     one, many = costs[1], costs[30]
-    assert one.seconds < LONG < many.seconds and one.advice == ""
-    assert f"at 3000 rpm takes {engineering(one.seconds, 2)} CPU s" in many.advice
-    assert f"({engineering(many.seconds / 3600.0, 2)} h)" in many.words and many.words.endswith(many.advice)
+    assert one.seconds < LONG < many.seconds and one.remedy == ""
+    assert f"at 3000 rpm takes {engineering(one.seconds, 2)} CPU s" in many.remedy
+    assert f"({engineering(many.seconds / 3600.0, 2)} h)" in many.words and many.words.endswith(many.remedy)
     assert (StudyCost(()) + many).words == many.words
 
 
@@ -445,9 +445,9 @@ def test_a_table_costs_every_pass_that_is_expected(
     case: CheckedCase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A mesh that is expected to miss the tolerance is tried first: another is expected to follow."""
-    decided, alone = plan._decided(case, None), table_cost(case.case)
-    behind = replace(decided, plan=decided.checked.plan("fine"))
-    monkeypatch.setattr(plan, "_decided", lambda *_: replace(decided, behind=behind))
+    decision, alone = plan._decision(case, None), table_cost(case.case)
+    behind = replace(decision, plan=decision.checked.plan("fine"))
+    monkeypatch.setattr(plan, "_decision", lambda *_: replace(decision, behind=behind))
     finer = behind.predicted(cache_home() / "compliance")
     both = table_cost(case.case)
     assert both.seconds == pytest.approx(alone.seconds + finer.cpu_seconds)
@@ -473,7 +473,7 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch:
     loa("open", EXAMPLES / "two_stage" / "two_stage.rexs", "-o", tmp_path / "unit")
     checks: Counter[tuple[str, str]] = Counter()
     decisions: list[str] = []
-    checked, decided = CheckedCase._checked, plan._decided
+    checked, decision = CheckedCase._checked, plan._decision
 
     def checked_and_counted(own: CheckedCase, **how: bool) -> Any:
         checks[own.case.model_dump_json(), str(how)] += 1
@@ -481,11 +481,11 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch:
 
     def decided_and_counted(own: CheckedCase, cache: Path | None) -> Any:
         decisions.append(own.case.model_dump_json())
-        return decided(own, cache)
+        return decision(own, cache)
 
     monkeypatch.setattr(CheckedCase, "_checked", checked_and_counted)
     monkeypatch.setattr(CASES, "_kept", OrderedDict())
-    monkeypatch.setattr(plan, "_decided", decided_and_counted)
+    monkeypatch.setattr(plan, "_decision", decided_and_counted)
     run_status(tmp_path / "unit", as_json=True)
     assert set(checks.values()) == {1}
     assert len(decisions) == len(set(decisions)) == 2

@@ -98,16 +98,16 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
 def test_what_is_said_to_be_as_low_is(file: Path) -> None:
     told = printed("sweep", file, "--over", OVER)
     points = told["points"]
-    least = min(points, key=lambda point: point["harmonic_1_um"])
+    minimum = min(points, key=lambda point: point["harmonic_1_um"])
     alike = [
         point
         for point in points
-        if point["harmonic_1_um"] - least["harmonic_1_um"]
-        <= point["harmonic_1_error_um"] + least["harmonic_1_error_um"]
+        if point["harmonic_1_um"] - minimum["harmonic_1_um"]
+        <= point["harmonic_1_error_um"] + minimum["harmonic_1_error_um"]
     ]
     said = told["least"]["harmonic_1_um"]
     assert said["points_within_error"] == len(alike)
-    assert said["load.torque_n_m"] == least["load.torque_n_m"]
+    assert said["load.torque_n_m"] == minimum["load.torque_n_m"]
 
 
 def test_a_report_shows_a_stored_map(file: Path, tmp_path: Path) -> None:

@@ -355,7 +355,7 @@ def merit_at(merit: HeardMerit, step: FloatArray) -> float:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_no_step_of_many_has_less_merit_than_the_least(sizes: tuple[int, int], seed: int) -> None:
     merit, reach = bowl(sizes, seed), np.full(sizes[1], 0.4)
-    step, promised = merit.least(-reach, reach)
+    step, promised = merit.minimum(-reach, reach)
     assert promised == pytest.approx(merit_at(merit, step))
     trials = np.random.default_rng(9).uniform(-0.4, 0.4, (20_000, sizes[1]))
     assert promised <= min(merit_at(merit, trial) for trial in trials) * (1.0 + 2e-3)

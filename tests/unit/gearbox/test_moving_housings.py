@@ -33,15 +33,15 @@ def mounted() -> ReducedHousing:
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("most", [2000, 60])
+@pytest.mark.parametrize("maximum", [2000, 60])
 def test_the_surface_by_its_amplitudes_is_that_of_the_reduction(
-    mounted: ReducedHousing, most: int, monkeypatch: pytest.MonkeyPatch
+    mounted: ReducedHousing, maximum: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Under forces on the seats, static and beyond the first mode; also where few points are drawn."""
-    monkeypatch.setattr(unit_bodies, "MOST_FACETS", most)
+    monkeypatch.setattr(unit_bodies, "MAX_FACETS", maximum)
     subject = subject_of(mounted)
     hull, moved = amplitudes_move(subject)
-    assert len(hull.facets) <= most
+    assert len(hull.facets) <= maximum
     surface, modal = mounted.surface, modal_housing(subject.scene.housings[0])
     assert surface is not None
     distance, node = cKDTree(surface.points).query(hull.points)

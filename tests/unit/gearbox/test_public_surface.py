@@ -13,13 +13,13 @@ import pytest
 from faulty_units import LEFT_OUT, TWO_STAGE
 
 import lineofaction as loa
-from bounds.brief import MOST_LINES, WIDTH
+from bounds.brief import MAX_LINES, WIDTH
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, validated
 
 ROOT = Path(__file__).parents[3]
 EXAMPLES = ROOT / "examples"
-MOST_NAMES = 60
+MAX_NAMES = 60
 FUNCTIONS = {study.package: study for study in STUDIES.values()}
 
 
@@ -31,7 +31,7 @@ def blocks(page: Path) -> list[ast.Module]:
 
 
 def test_every_name_is_there_and_they_are_few() -> None:
-    assert len(loa.__all__) == len(set(loa.__all__)) <= MOST_NAMES
+    assert len(loa.__all__) == len(set(loa.__all__)) <= MAX_NAMES
     for name in loa.__all__:
         assert getattr(loa, name) is not None
     with pytest.raises(AttributeError, match="no_such"):
@@ -86,7 +86,7 @@ def test_cases_and_scenes_show_what_they_state_in_a_dozen_lines(name: str) -> No
     subject = loa.read(EXAMPLES / name)
     lines = str(subject).split("\n")
     assert lines[0] in ("Case", "Scene")
-    assert 3 < len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
+    assert 3 < len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH
     assert lines == repr(subject).split("\n") and "<table>" in subject._repr_html_()
 
 

@@ -157,7 +157,7 @@ def test_an_amount_is_taken_with_its_length(amount: str, given: dict[str, float]
     assert taken(case) == whole
 
 
-MOST_LAYERS = 36
+MAX_LAYERS = 36
 
 
 def plain_case(
@@ -200,9 +200,7 @@ def test_both_warn_of_the_same_and_return_the_pair() -> None:
 def test_a_disc_that_is_not_looked_at_is_far_from_the_limit(helix: float) -> None:
     """For every material up to a Poisson's ratio of 0.49."""
     soft = Material(210e9, 0.49)
-    left = [
-        disc_rounding(THICK * share, math.radians(helix), MOST_LAYERS, soft) for share in (0.01, 0.1, 1.0)
-    ]
+    left = [disc_rounding(THICK * share, math.radians(helix), MAX_LAYERS, soft) for share in (0.01, 0.1, 1.0)]
     assert max(left) < 0.1 * LARGEST_ROUNDING
 
 

@@ -49,9 +49,9 @@ def test_a_scene_passes_by_its_figures_alone(scene, failure) -> None:
 
 
 def test_what_meets_its_bound_exactly_is_no_margin() -> None:
-    assert Measured("answers", 1.0, least=1.0).use is None
-    assert Measured("left", 0.0, most=0.0).use is None
-    assert Measured("error", 0.5, most=2.0).use == 0.25
+    assert Measured("answers", 1.0, minimum=1.0).use is None
+    assert Measured("left", 0.0, maximum=0.0).use is None
+    assert Measured("error", 0.5, maximum=2.0).use == 0.25
 
 
 def test_cpu_time_counts_what_a_scene_starts() -> None:

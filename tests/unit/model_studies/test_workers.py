@@ -269,13 +269,13 @@ class Interrupted(Exception):
 class Here:
     """Workers of this process that count their tasks, and stop for good after so many."""
 
-    most: int = 1_000_000
+    maximum: int = 1_000_000
     cost: RunCost = field(default_factory=RunCost)
     tasks: list[str] = field(default_factory=list)
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:
-            if len(self.tasks) == self.most:
+            if len(self.tasks) == self.maximum:
                 raise Interrupted
             self.tasks.append(function.__name__)
             yield function(shared, item)
@@ -306,7 +306,7 @@ def full_pair(crowning: float = 4e-6) -> GearPair:
 @pytest.mark.law
 def test_an_interrupted_table_goes_on_where_it_was(cache: Path, tmp_path: Path) -> None:
     whole = analyze(full_pair(), **ASKED, cache=cache)
-    first = Here(most=5)
+    first = Here(maximum=5)
     with pytest.raises(Interrupted):
         analyze(full_pair(), **ASKED, cache=cache, workers=Remembering(first, tmp_path, "1"))
     second, third = Here(), Here()

@@ -15,7 +15,7 @@ from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.ste import Curve, Metadata, PairFacts, SteDatabase
 from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.pair import pair_of
-from lineofaction.report.ste.curves import MOST_LINES, few_loads, load_labels, shown_loads
+from lineofaction.report.ste.curves import MAX_LINES, few_loads, load_labels, shown_loads
 from lineofaction.report.ste.page import static_results
 
 POSITIONS = 48
@@ -288,11 +288,11 @@ def check_budget(figure: Figure, database: SteDatabase) -> None:
 def check_flanks(figure: Figure, database: SteDatabase) -> None:
     ends = rf"from {NUMBER} MPa at {NUMBER} N m to {NUMBER} MPa at {NUMBER} N m"
     found = rf"{ends}: {NUMBER} times for {NUMBER} times"
-    ((least, first, most, last, growth, by),) = re.findall(found, figure.alternative)
+    ((minimum, first, maximum, last, growth, by),) = re.findall(found, figure.alternative)
     ends = [load_labels(database).index(f"{torque} N m") for torque in (first, last)]
     assert ends == [shown_loads(database)[0], shown_loads(database)[-1]]
     low, high = (1e-6 * float(database.max_pressure[:, k, 0, 0].max()) for k in ends)
-    assert says(least, low) and says(most, high) and says(growth, high / low)
+    assert says(minimum, low) and says(maximum, high) and says(growth, high / low)
     assert says(by, float(database.torque[ends[1]] / database.torque[ends[0]]))
     assert ("mid-face" in figure.caption) == (len(figure.content) == 2)
 
@@ -306,11 +306,13 @@ def check_drawing(figure: Figure, database: SteDatabase) -> None:
         flat = f"The {name} is not modified." in figure.alternative
         assert flat == gear.modification.neutral
         if not flat:
-            ((most,),) = [re.findall(rf"At most {NUMBER} µm are removed from the {name}", figure.alternative)]
+            ((maximum,),) = [
+                re.findall(rf"At most {NUMBER} µm are removed from the {name}", figure.alternative)
+            ]
             corner = gear.modification.material_removed(
                 gear, gear.tip_form_roll_length, 0.5 * gear.face_width
             )
-            assert says(most, 1e6 * float(corner))
+            assert says(maximum, 1e6 * float(corner))
 
 
 def check_face_load(figure: Figure, database: SteDatabase) -> None:
@@ -343,7 +345,7 @@ CHECKS = {
 def check_loads(database: SteDatabase) -> None:
     shown = shown_loads(database)
     chosen = few_loads(database)
-    assert chosen == shown if len(shown) <= MOST_LINES else len(chosen) <= MOST_LINES
+    assert chosen == shown if len(shown) <= MAX_LINES else len(chosen) <= MAX_LINES
     assert (chosen[0], chosen[-1]) == (shown[0], shown[-1])
 
 

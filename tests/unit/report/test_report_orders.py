@@ -156,8 +156,8 @@ def test_octave_bands_hold_the_power_of_the_signal(run: RunResult) -> None:
     signal = shown_signal(run, RunView())
     blocks = frequency_blocks(run, signal)
     figure = octave_bands(run, signal, blocks)
-    most = panel(figure).lines[0]
-    assert float(np.max(most.y)) == pytest.approx(20.0 * np.log10(np.sqrt(0.5) * 20.0), abs=0.3)
+    maximum = panel(figure).lines[0]
+    assert float(np.max(maximum.y)) == pytest.approx(20.0 * np.log10(np.sqrt(0.5) * 20.0), abs=0.3)
 
 
 def test_at_constant_speed_the_axis_is_time(run: RunResult) -> None:
@@ -166,8 +166,8 @@ def test_at_constant_speed_the_axis_is_time(run: RunResult) -> None:
 
 
 def test_the_dynamic_factor_of_a_constant_force_is_its_ratio(run: RunResult) -> None:
-    largest, mean, least = panel(_dynamic_factor_figure(run)).lines
-    for line in (largest, mean, least):
+    largest, mean, minimum = panel(_dynamic_factor_figure(run)).lines
+    for line in (largest, mean, minimum):
         np.testing.assert_allclose(line.y, 2660.0 / 2660.44, rtol=1e-12)
 
 

@@ -331,9 +331,9 @@ def test_the_largest_force_on_a_pair_is_that_of_all_pitches(with_pitch_errors: T
     table = with_pitch_errors(50)
     share = table.load_share.copy()
     share[: 49 * 64] = 1.0 / 3.0
-    most = load_sharing(replace(table, load_share=share))
-    assert "A pair carries at most 10642 N, 100 % of the load, at 400 N m." in most.alternative
-    assert "in 1.1 % of the mesh cycle at 10 N m" in most.alternative  # 0.57 of one pitch in 50
+    maximum = load_sharing(replace(table, load_share=share))
+    assert "A pair carries at most 10642 N, 100 % of the load, at 400 N m." in maximum.alternative
+    assert "in 1.1 % of the mesh cycle at 10 N m" in maximum.alternative  # 0.57 of one pitch in 50
 
 
 def test_the_caption_says_where_a_period_is_longer_than_what_is_drawn(

@@ -50,7 +50,7 @@ def test_the_orders_of_a_row_hold_the_mean_square_of_the_curve(
     assert shade.z.shape == (len(shown_loads(table)), shade.x.size)
     for load, level in zip(shown_loads(table), shade.z, strict=True):
         ste = 1e6 * table.curve(force=float(table.force[load]), at=even_positions(period)).ste
-        drawn = 0.5 * np.sum(np.where(level > shade.least, 10.0 ** (level / 10.0), 0.0))
+        drawn = 0.5 * np.sum(np.where(level > shade.minimum, 10.0 ** (level / 10.0), 0.0))
         assert drawn == pytest.approx(float(np.var(ste)), rel=1e-4)
         for order, size in amplitudes.items():
             column = int(np.argmin(np.abs(shade.x - order)))
@@ -84,7 +84,7 @@ def test_a_long_period_has_few_cells_of_which_each_shows_its_largest_order(with_
     assert "A cell is as wide as 2 orders" in figure.caption
     levels = [_level(load_curve(table, load).spectrum.amplitude[:600]) for load in shown_loads(table)]
     largest = np.max(np.reshape(levels, (-1, 300, 2)), axis=2)
-    drawn = np.isfinite(shade.z) & (shade.z > shade.least)
+    drawn = np.isfinite(shade.z) & (shade.z > shade.minimum)
     assert drawn.any()
     np.testing.assert_allclose(shade.z[drawn], largest[drawn], rtol=1e-12)
 

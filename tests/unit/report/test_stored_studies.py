@@ -37,7 +37,7 @@ from lineofaction.report.design.optimize import _ripple_table
 from lineofaction.report.document import page_json, page_of, read_inputs, stored_figures
 from lineofaction.report.effects.ablate import PAGE
 from lineofaction.report.presentation import presentation_of
-from lineofaction.report.ste.curves import MOST_CURVES
+from lineofaction.report.ste.curves import MAX_CURVES
 from model_studies.record_file import write_record
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
@@ -186,7 +186,7 @@ def test_torques_that_count_and_those_that_get_worse_are_drawn(
     expected = {37.0, *result.torque.tolist()}
     for panel in figure.content[:2]:  # type: ignore[index]
         drawn = {float(line.name.removesuffix(" N m")) for line in panel.lines}
-        assert expected <= drawn and len(panel.lines) <= MOST_CURVES
+        assert expected <= drawn and len(panel.lines) <= MAX_CURVES
     (warning,) = study.run.warnings(wide) or ()
     assert warning["check"] == "worse_load" and "rises at 37 N m" in warning["message"]
     assert InputWarning.model_validate(warning).value == pytest.approx(optimum.expected[3] * 1e6)

@@ -60,11 +60,13 @@ def test_values_of_either_sign_have_colors_even_about_zero() -> None:
     size = np.linspace(-0.5, 2.0, len(triangles))
     front, behind = surface_panels(points, triangles, np.zeros_like(points), size, "I, W/m²", "at rest")
     assert (
-        (front.shade.least, front.shade.largest) == (-2.0, 2.0) == (behind.shade.least, behind.shade.largest)
+        (front.shade.minimum, front.shade.largest)
+        == (-2.0, 2.0)
+        == (behind.shade.minimum, behind.shade.largest)
     )
     assert front.shade.colors == palette.SIGNED
     (positive, _) = surface_panels(points, triangles, np.zeros_like(points), size + 0.5, "v, m/s", "at rest")
-    assert positive.shade.least == 0.0 and positive.shade.colors == palette.CIVIDIS
+    assert positive.shade.minimum == 0.0 and positive.shade.colors == palette.CIVIDIS
     (heat, *_) = plotly_figure(Figure("k", "t", "c", "a", (front,)))["data"]
     assert [color for _, color in heat["colorscale"]] == list(palette.SIGNED)
 

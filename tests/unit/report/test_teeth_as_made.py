@@ -40,7 +40,7 @@ def test_a_tooth_that_stands_out_is_marked_at_its_number(name):
     transverse = 5.0 * math.cos(PAIR.pinion.transverse_pressure_angle)
     np.testing.assert_allclose(all_teeth.z[:, 6], transverse)
     assert not np.delete(all_teeth.z, 6, axis=1).any()
-    assert all_teeth.x[6] == 7.0 and all_teeth.largest == -all_teeth.least == pytest.approx(transverse)
+    assert all_teeth.x[6] == 7.0 and all_teeth.largest == -all_teeth.minimum == pytest.approx(transverse)
 
 
 @pytest.mark.parametrize("name", ["pinion", "wheel"])

@@ -51,7 +51,7 @@ def test_a_large_surface_is_drawn_by_its_corners(
     pulsating: SurfaceShape, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = sent(pulsating)
-    monkeypatch.setattr(unit_motion, "MOST_FACETS", 10)
+    monkeypatch.setattr(unit_motion, "MAX_FACETS", 10)
     corners = sent(pulsating)
     assert 4 * corners["facets"].size == whole["facets"].size
     assert 3 * corners["place_mm"].size < whole["place_mm"].size

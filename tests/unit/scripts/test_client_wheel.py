@@ -53,9 +53,9 @@ def test_it_runs_from_its_own_files(tree: Path) -> None:
     command = [sys.executable, "-I", "-S", "-c", code]  # no editable install of the project in sight
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tree)
     assert done.stderr == ""
-    *away, advice = done.stdout.splitlines()
+    *away, remedy = done.stdout.splitlines()
     assert away == ["away"] * 3
-    assert "pip install lineofaction" in advice and "job.figures()" in advice
+    assert "pip install lineofaction" in remedy and "job.figures()" in remedy
 
 
 def test_it_is_small_and_is_of_this_version(tree: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 import suite_records
 import suite_selection
-from suite_records import LEAST, SuiteRecords
+from suite_records import MIN, SuiteRecords
 from suite_selection import SLOW, digest, read_costs, read_passed
 
 THIS = "tests/unit/scripts/test_suite_records.py"
@@ -38,7 +38,7 @@ def run(seconds: dict[str, float], *, whole: bool, failed: str = "") -> None:
 
 
 def test_a_run_of_all_has_the_last_word_on_its_files() -> None:
-    run({"long": 4.5, "new": SLOW + 0.1, "cheap": LEAST / 2}, whole=True)
+    run({"long": 4.5, "new": SLOW + 0.1, "cheap": MIN / 2}, whole=True)
     costs = {f"{THIS}::long": 4.5, f"{THIS}::new": SLOW + 0.1, f"{OTHER}::slow": 3.0}
     assert read_costs() == pytest.approx(costs)
     assert read_passed() == {THIS: digest(Path(__file__)), OTHER: "before"}
@@ -60,7 +60,7 @@ def test_a_run_by_day_keeps_what_it_left_out() -> None:
 
 
 def test_a_run_by_day_that_left_nothing_slow_out_renews_both() -> None:
-    run({"long": 4.0, "removed": LEAST / 2}, whole=False)
+    run({"long": 4.0, "removed": MIN / 2}, whole=False)
     assert read_passed() == {THIS: digest(Path(__file__)), OTHER: "before"}
 
 

@@ -19,9 +19,9 @@ from service_fakes import REGISTRY
 from host.children.launcher import ChildProcess, Ends, Launcher, start_child
 from host.directories import cache_home, data_home
 from service.queue import claims
-from service.queue.claims import MOST_LOST_RUNS, Claim
+from service.queue.claims import MAX_LOST_RUNS, Claim
 from service.queue.scheduler import Scheduler
-from service.settings import LEAST_MEMORY_MB, Settings
+from service.settings import MIN_MEMORY_MB, Settings
 from service.store.results import ResultStore, StoredResult
 from service.worker.usage import machine_memory_mb
 from service.worker.worker import WORK
@@ -262,7 +262,7 @@ def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path: Path
     group = tmp_path / "memory.max"
     whole = machine_memory_mb(group)  # no such file
     group.write_text("max\n")
-    assert machine_memory_mb(group) == whole > LEAST_MEMORY_MB
+    assert machine_memory_mb(group) == whole > MIN_MEMORY_MB
     group.write_text(f"{300 << 20}\n")
     assert machine_memory_mb(group) == 300
 
@@ -306,7 +306,7 @@ def fall(server: Bench, *, begun: bool = True) -> list[str]:
     scheduler = server.scheduler
     scheduler._take_up()
     runs: list[Claim] = []
-    while len(runs) < scheduler.most and (claim := _next_beside(scheduler, runs)) is not None:
+    while len(runs) < scheduler.maximum and (claim := _next_beside(scheduler, runs)) is not None:
         runs.append(claim)
     if begun:
         server.claims.note_runs(runs)
@@ -326,7 +326,7 @@ def _next_beside(scheduler: Scheduler, runs: list[Claim]) -> Claim | None:
 def test_ends_of_the_server_are_no_attempts(tmp_path: Path) -> None:
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="done")
-    for _ in range(MOST_LOST_RUNS - 1):
+    for _ in range(MAX_LOST_RUNS - 1):
         assert fall(machine) == [job.computation]
         assert machine.submissions.find(job.id).attempts == 1
     machine.scheduler.start()
@@ -339,7 +339,7 @@ def test_ends_of_the_server_are_no_attempts(tmp_path: Path) -> None:
 def test_work_that_had_not_begun_has_no_part_in_the_end_of_a_server(tmp_path: Path) -> None:
     machine = bench(tmp_path, REGISTRY)
     job = machine.submit(text="done")
-    for _ in range(3 * MOST_LOST_RUNS):
+    for _ in range(3 * MAX_LOST_RUNS):
         assert fall(machine, begun=False) == [job.computation]
     machine.scheduler._take_up()
     assert "before it had begun" in machine.submissions.find(job.id).message
@@ -360,7 +360,7 @@ def test_what_ends_its_server_again_and_again_is_known_by_who_ran(tmp_path: Path
         else:  # the server does not end: what runs is done
             for claim in machine.claims.running():
                 machine.claims.succeed(claim)
-    assert falls == MOST_LOST_RUNS
+    assert falls == MAX_LOST_RUNS
     message = machine.submissions.find(fatal.id).message
     assert message.startswith("The service ended while it ran. So ended 10 of its runs in a row, the last 7 ")
     assert "with no other job beside it" in message
@@ -377,7 +377,7 @@ def test_what_was_lost_waits_longer_each_time_and_others_go_on(tmp_path: Path) -
     assert machine.claimed().id == other.computation
     assert machine.claims.claim() is None
     until(lambda: machine.claims.claim() is not None)
-    waits = [claims.wait_s(number) for number in range(MOST_LOST_RUNS)]
+    waits = [claims.wait_s(number) for number in range(MAX_LOST_RUNS)]
     assert waits == [0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 60.0, 60.0, 60.0]
     machine.close()
 

@@ -149,7 +149,7 @@ def test_progress_ends_and_reasons_are_those_of_a_child_here(dask: DaskProcesses
 def test_a_child_over_its_memory_or_killed_ends_alone(
     dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(settlement, "MOST_LOST_RUNS", 1)
+    monkeypatch.setattr(settlement, "MAX_LOST_RUNS", 1)
     machine, workers = server(memory_limit_mb=256, attempts=1), sorted(dask.pids())
     assert "256 MB (LOA_MEMORY_LIMIT_MB)" in machine.ended(machine.submit(mode="hog")).message
     hangs = machine.submit(mode="hang")
@@ -213,7 +213,7 @@ def test_work_whose_worker_is_killed_is_begun_again_by_another(
 def test_work_that_ends_its_dask_workers_again_and_again_is_given_up(
     dask: DaskProcesses, server: MakeServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(settlement, "MOST_LOST_RUNS", 2)
+    monkeypatch.setattr(settlement, "MAX_LOST_RUNS", 2)
     machine = server()
     hangs = machine.submit(mode="hang")
     os.kill(worker_of(dask, child(dask, hangs)), signal.SIGKILL)
@@ -269,7 +269,7 @@ def test_a_scheduler_that_is_lost_costs_no_job_and_no_attempt(
     jobs = [machine.submit(mode="slow", text=f"lost {n}") for n in range(4)]
     child(dask, jobs[0])
     dask.end_scheduler()
-    until(lambda: machine.scheduler.most == 0)
+    until(lambda: machine.scheduler.maximum == 0)
     dask.end_workers()
     dask.start_scheduler()
     dask.start_workers(2)

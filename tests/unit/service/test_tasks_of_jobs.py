@@ -142,13 +142,13 @@ def test_a_job_without_tasks_does_not_look_for_the_cluster(
 class Dying(Recording):
     """This process, which ends after so many tasks of a table."""
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, maximum: int) -> None:
         super().__init__()
-        self.most, self.done, self.cost = most, 0, RunCost()
+        self.maximum, self.done, self.cost = maximum, 0, RunCost()
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:
-            if self.done == self.most:
+            if self.done == self.maximum:
                 raise RuntimeError("killed")
             self.done += 1
             yield function(shared, item)

@@ -95,7 +95,7 @@ def test_pauses_grow_and_end(machine: Bench, monkeypatch: pytest.MonkeyPatch) ->
     while (call := made.claim()) is not None:
         made.fail(call, "away")
         attempts += 1
-    assert attempts == calls.MOST_ATTEMPTS and made.of(job)[0].state == "given up"
+    assert attempts == calls.MAX_ATTEMPTS and made.of(job)[0].state == "given up"
 
 
 PRIVATE = [

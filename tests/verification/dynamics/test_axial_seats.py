@@ -105,8 +105,8 @@ def test_the_tangent_pushes_back(floating: LoadedBearing) -> None:
     """The energy has no hollows: every motion is resisted, or none."""
     for d in displacements(30):
         tangent = np.diag(SCALE) @ floating.evaluate(d).tangent @ np.diag(SCALE)
-        least, most = np.linalg.eigvalsh(tangent)[[0, -1]]
-        assert least > -1e-12 * most
+        minimum, maximum = np.linalg.eigvalsh(tangent)[[0, -1]]
+        assert minimum > -1e-12 * maximum
 
 
 def test_across_the_axis_a_floating_bearing_is_the_locating_one(

@@ -101,10 +101,10 @@ def test_radial_load_is_that_of_sjoevall_integrals(kind, extent):
     stiffness = (
         bearing.element_stiffness if kind == "deep groove" else 35948e6 * bearing.length ** (8.0 / 9.0)
     )
-    most = bearing.count * stiffness * press**exponent
+    maximum = bearing.count * stiffness * press**exponent
     force = LoadedBearing(bearing, copies=MANY).evaluate((x, 0.0, z, 0.0, 0.0), ANGLE).force
-    assert force[0] == pytest.approx(most * radial * cosine, rel=1e-6)
-    assert force[2] == pytest.approx(most * axial * sine, rel=1e-6, abs=1e-9)
+    assert force[0] == pytest.approx(maximum * radial * cosine, rel=1e-6)
+    assert force[2] == pytest.approx(maximum * axial * sine, rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -51,9 +51,9 @@ def assert_lawful(pair, torque: float) -> None:
     for problem in problems_in_parts(contact.point, contact.position, PITCHES):
         candidates = problem.candidates
         meeting = np.floor(candidates.position + 1e-9).astype(int)[:, None] - candidates.pair
-        at, least = sampled_gap(contact.point.contact.pair, model, candidates, meeting, SAMPLES)
+        at, minimum = sampled_gap(contact.point.contact.pair, model, candidates, meeting, SAMPLES)
         gap = candidates.gap.copy()
-        gap[at] = least
+        gap[at] = minimum
         touch = replace(candidates.touch, gap=gap)
         alone.append(solve_contact(problem.touching(candidates.touching(touch)), load).deflection)
     expected = np.concatenate(alone).reshape(ste.shape)

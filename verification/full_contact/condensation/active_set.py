@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.types import BoolArray, FloatArray, Status
 
-MOST_ITERATIONS = 100
+MAX_ITERATIONS = 100
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def solve_active_set(
     active = _first(system) if start is None or not start.any() else start
     seen: set[bytes] = set()
     iteration = 0
-    while iteration < MOST_ITERATIONS:
+    while iteration < MAX_ITERATIONS:
         iteration += 1
         pressure, lag = _with_active(system, torque, active)
         gap = system.gap + system.compliance @ pressure - system.closing * lag
@@ -78,8 +78,8 @@ def solve_active_set(
 def _first(system: ContactSystem) -> BoolArray:
     """Return the hats that touch first."""
     reached = system.gap / system.closing
-    least = reached.min()
-    return np.asarray(reached <= least + 1e-6 * max(system.weight.max(), abs(least)))
+    minimum = reached.min()
+    return np.asarray(reached <= minimum + 1e-6 * max(system.weight.max(), abs(minimum)))
 
 
 def _with_active(system: ContactSystem, torque: float, active: BoolArray) -> tuple[FloatArray, float]:

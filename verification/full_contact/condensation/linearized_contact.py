@@ -14,7 +14,7 @@ from verification.full_contact.condensation.active_set import ContactSystem
 from verification.full_contact.condensation.sites import ContactSite
 from verification.full_contact.line_load import LineLoad
 
-LEAST_FACING = 0.01
+MIN_FACING = 0.01
 """Hats of which less than this part of their length faces the mate carry no pressure."""
 
 

@@ -13,7 +13,7 @@ from verification.full_contact.condensation.active_set import ContactSystem
 from verification.full_contact.condensation.condensed_body import CondensedBody, freedoms
 from verification.full_contact.condensation.flank_curve import FlankCurve
 from verification.full_contact.condensation.linearized_contact import (
-    LEAST_FACING,
+    MIN_FACING,
     Configuration,
     LinearizedContact,
     Solution,
@@ -115,8 +115,8 @@ class PairGeometry:
 
     def _gathered(self, gaps: Sequence[WeakGap], at: Configuration, turn: FloatArray) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
-        facing = [_full_weights(self, site) * LEAST_FACING for site in self.sites]
-        kept = np.concatenate([gap.weight > least for gap, least in zip(gaps, facing, strict=True)])
+        facing = [_full_weights(self, site) * MIN_FACING for site in self.sites]
+        kept = np.concatenate([gap.weight > minimum for gap, minimum in zip(gaps, facing, strict=True)])
         first, second = self._forces(gaps, 0)[:, kept], turned_back(self._forces(gaps, 1)[:, kept], turn)
         moved = self.bodies[0].compliance @ first, self.bodies[1].compliance @ second
         compliance = first.T @ moved[0] + second.T @ moved[1]

@@ -49,9 +49,9 @@ class Resolution:
         """Growth from the boundary inwards."""
         return min(0.3, INNER_GROWTH / self.per_half_width)
 
-    def edge_size(self, least: float, largest: float) -> float:
+    def edge_size(self, minimum: float, largest: float) -> float:
         """Return the size at a tip edge, m, from the half-widths of least and largest load."""
-        return math.sqrt(least * largest) / (self.corner * self.per_half_width)
+        return math.sqrt(minimum * largest) / (self.corner * self.per_half_width)
 
     def part(self, share: float, module: float) -> float:
         """Return a size away from the contacts, m: a share of the module on the usual mesh."""

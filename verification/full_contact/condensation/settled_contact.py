@@ -17,7 +17,7 @@ from verification.full_contact.condensation.linearized_contact import (
 )
 from verification.full_contact.table import FullContactPoint
 
-MOST_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
+MAX_EVALUATIONS, SETTLED, ENOUGH = 6, 1e-6, 2e-4
 """Geometries of the deformed bodies; changes of the lag that end them, and that are the most allowed."""
 
 
@@ -56,7 +56,7 @@ def _settled(geometry: ContactGeometry, undeformed: LinearizedContact, torque: f
     line_torque = torque / geometry.thickness
     contact, solution = undeformed, solve_active_set(undeformed.system, line_torque)
     iterations, change = solution.iterations, np.inf
-    for _ in range(MOST_EVALUATIONS):
+    for _ in range(MAX_EVALUATIONS):
         moved = contact.moved[0] @ solution.pressure, contact.moved[1] @ solution.pressure
         contact = geometry.linearized(Configuration(solution.lag, moved))
         following = solve_active_set(contact.system, line_torque)

@@ -66,7 +66,7 @@ class Range:
 class _Widths:
     """Hertz half-widths of a pair, m: under its share of the least and the largest load, and of all of it."""
 
-    least: float
+    minimum: float
     largest: float
     alone: float
     radius: float
@@ -112,9 +112,9 @@ def _widths(pair: ParallelAxes, roll: float, held: Range, sharing: int) -> _Widt
     """Return the half-widths at a roll length of gear 1."""
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     radius = 1.0 / float(pair.relative_curvature(roll))
-    least, largest = half_width(np.array(held.line_loads) / sharing, radius, modulus).tolist()
+    minimum, largest = half_width(np.array(held.line_loads) / sharing, radius, modulus).tolist()
     alone = held.longer * float(half_width(held.line_loads[1], radius, modulus))
-    return _Widths(least, largest, alone, radius)
+    return _Widths(minimum, largest, alone, radius)
 
 
 def _corner(pair: ParallelAxes, roll: float) -> CornerContact:
@@ -153,7 +153,7 @@ def _on_path(
     reached = np.sqrt(2.0 * widths.radius * (gap - gap.min()))
     path = pair.path_of_contact
     slave = 0 if roll < 0.5 * (path.start + path.end) else 1
-    size = np.clip(reached, widths.least, widths.largest) / resolution.per_half_width
+    size = np.clip(reached, widths.minimum, widths.largest) / resolution.per_half_width
     within = np.flatnonzero(reached < TOUCHING * widths.alone)
     to_edge = tooth_profile(gears[1 - slave]).s_tip - positions[1 - slave][np.argmin(gap)]
     strips = []
@@ -164,7 +164,7 @@ def _on_path(
         at, sizes = s[within][::EVERY], size[within][::EVERY]
         if to_edge < NEAR_EDGE * widths.alone:
             faced = edge if number != slave else float(s[np.argmin(gap)]) - to_edge
-            finest = max(resolution.edge_size(widths.least, widths.alone), PER_DISTANCE * to_edge)
+            finest = max(resolution.edge_size(widths.minimum, widths.alone), PER_DISTANCE * to_edge)
             at, sizes = np.append(at, faced), np.append(sizes, finest)
         strips.append(SizedStrip(low, high, at, sizes))
     return ContactSite(ahead, slave, (strips[0], strips[1]))
@@ -181,7 +181,7 @@ def _at_corner(
     slave = 0 if roll < pair.path_of_contact.start else 1
     flank, mate = (pair.pinion, pair.wheel)[:: 1 - 2 * slave]
     at, tip = _arc(flank, float(_corner(pair, roll).flank_roll_length)), tooth_profile(mate).s_tip
-    size = np.array([resolution.edge_size(widths.least, widths.alone)])
+    size = np.array([resolution.edge_size(widths.minimum, widths.alone)])
     half = STRIP * widths.alone
     on_flank = SizedStrip(at - half, min(at + half, tooth_profile(flank).s_tip), np.array([at]), size)
     on_edge = SizedStrip(tip - MATE_STRIP * widths.alone, tip, np.array([tip]), size)

@@ -54,8 +54,8 @@ def _solved(
 ) -> SolvedPosition:
     """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
     phase = position - round(position)
-    least, most = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
-    loads = least / pair.face_width, model.largest_line_load(pair, most)
+    minimum, maximum = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
+    loads = minimum / pair.face_width, model.largest_line_load(pair, maximum)
     closer = model.closer(pair)
     held = Range(loads, 1.5 * loads[1] * softness(pair) + closer)
     for _ in range(ATTEMPTS):

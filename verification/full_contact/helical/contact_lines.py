@@ -108,12 +108,12 @@ class FacingFlanks:
             return low, np.inf
         rolls = np.linspace(low, high, _SEARCHED)
         gap = self.facing(rolls).gap
-        least = int(np.argmin(gap))
-        if 0 < least < len(rolls) - 1:
-            before, here, after = gap[least - 1 : least + 2]
+        minimum = int(np.argmin(gap))
+        if 0 < minimum < len(rolls) - 1:
+            before, here, after = gap[minimum - 1 : minimum + 2]
             step = 0.5 * (before - after) / (before - 2.0 * here + after)
-            return float(rolls[least] + step * (rolls[1] - rolls[0])), float(here)
-        return float(rolls[least]), float(gap[least])
+            return float(rolls[minimum] + step * (rolls[1] - rolls[0])), float(here)
+        return float(rolls[minimum]), float(gap[minimum])
 
 
 def _turned(angle: FloatArray) -> tuple[FloatArray, FloatArray]:

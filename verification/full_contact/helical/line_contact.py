@@ -22,7 +22,7 @@ from verification.full_contact.helical.flank_bodies import HelicalGear
 
 FARTHEST = 60e-6
 """Gap of the rigid flanks beyond which a section is left out, m."""
-LEAST_WEIGHT = 1e-4
+MIN_WEIGHT = 1e-4
 """Hats with less than this part of the largest area carry no pressure."""
 _SEARCHED = 201
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -142,7 +142,7 @@ def line_contact(
     pairs = list(_pairs(pair, gears, position, across, along, half))
     integrals = np.concatenate([each.integrals(misalignment / pair.face_width) for each in pairs], axis=1)
     gap, weight, closing, lever, cut = integrals
-    kept = np.flatnonzero(weight > LEAST_WEIGHT * weight.max())
+    kept = np.flatnonzero(weight > MIN_WEIGHT * weight.max())
     place = np.full(len(weight), -1)
     place[kept] = np.arange(len(kept))
     compliance = np.zeros((len(kept), len(kept)))

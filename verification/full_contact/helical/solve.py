@@ -53,8 +53,8 @@ class HelicalMesh:
         within("flank", self.flank, 0.05, 0.4, "0.15 is usual.")
         within("spread", self.spread, 0.5, 6.0, "1.5 is usual.")
         within("per_half_width", self.per_half_width, 1.5, 16.0, "5 is usual.")
-        for name, least, most in (("layers", 2, 24), ("across", 5, 101), ("along", 5, 201)):
-            integer(name, getattr(self, name), least, most)
+        for name, minimum, maximum in (("layers", 2, 24), ("across", 5, 101), ("along", 5, 201)):
+            integer(name, getattr(self, name), minimum, maximum)
 
     @property
     def coarser(self) -> HelicalMesh:

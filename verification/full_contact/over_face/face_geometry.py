@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray
 from verification.full_contact.condensation.active_set import ContactSystem
 from verification.full_contact.condensation.flank_curve import FlankCurve
 from verification.full_contact.condensation.linearized_contact import (
-    LEAST_FACING,
+    MIN_FACING,
     Configuration,
     LinearizedContact,
     Solution,
@@ -88,7 +88,7 @@ class FaceGeometry:
         """Join the pairs, without hats that hardly face their mate."""
         full = [self._full_weights(site) for site in self.sites]
         kept = np.concatenate(
-            [gap.weight > LEAST_FACING * most for gap, most in zip(gaps, full, strict=True)]
+            [gap.weight > MIN_FACING * maximum for gap, maximum in zip(gaps, full, strict=True)]
         )
         forces = (self._forces(gaps, 0)[:, kept], self._forces(gaps, 1)[:, kept])
         rows = [sp.csr_array(own.T) for own in forces]  # a hat loads few nodes and functions

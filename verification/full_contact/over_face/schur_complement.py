@@ -13,7 +13,7 @@ from scipy.linalg.blas import dsyrk
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
 
-MERGED, MOST_NODES = 1.6, 48
+MERGED, MAX_NODES = 1.6, 48
 """Fronts merge into the one above while it grows less than so, and up to so many eliminated nodes."""
 
 
@@ -102,7 +102,7 @@ def _fronts(graph: sp.csr_array, eliminated: int) -> list[_Front]:
         if 0 <= above < eliminated:
             head = top[above]
             merged = len(members[head]) + 1 + len(beyond[head])
-            if len(members[head]) < MOST_NODES and merged <= MERGED * (1 + len(beyond[node])) + 1:
+            if len(members[head]) < MAX_NODES and merged <= MERGED * (1 + len(beyond[node])) + 1:
                 top[node] = head
         members[top[node]].append(node)
     return [_Front(np.array(members[head][::-1]), beyond[head]) for head in sorted(members)]

@@ -14,7 +14,7 @@ from lineofaction.gearbox.signals.units import unit_of_name
 
 EXTRA = ""
 TIMES = {"time_s": 1.0, "time_ms": 1e-3}
-_ADVICE = "For example: time_s,speed_rpm,torque_n_m."
+_REMEDY = "For example: time_s,speed_rpm,torque_n_m."
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
@@ -25,7 +25,7 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
             scale = _scale(heading)
             rows = _rows(stream, len(heading))
     except (UnicodeDecodeError, csv.Error):
-        raise UnusableFile("a text file in UTF-8 with commas", _ADVICE) from None
+        raise UnusableFile("a text file in UTF-8 with commas", _REMEDY) from None
     budget = SampleBudget()
     for index, name in enumerate(heading[1:], start=1):
         if wanted(name, names):
@@ -37,7 +37,7 @@ def _scale(heading: Sequence[str]) -> float:
     """Return what one of the times is in s."""
     scale = TIMES.get(heading[0]) if heading else None
     if scale is None or len(set(heading)) < len(heading):
-        raise UnusableFile(f"a CSV file whose first column is {' or '.join(TIMES)}, each name once", _ADVICE)
+        raise UnusableFile(f"a CSV file whose first column is {' or '.join(TIMES)}, each name once", _REMEDY)
     return scale
 
 
@@ -47,7 +47,7 @@ def _rows(stream: Iterator[str], columns: int) -> np.ndarray:
             warnings.simplefilter("ignore")  # of a file without rows
             rows = np.loadtxt(stream, delimiter=",", ndmin=2)
     except ValueError as error:
-        raise UnusableFile(f"a CSV file of numbers alone below its heading ({error})", _ADVICE) from None
+        raise UnusableFile(f"a CSV file of numbers alone below its heading ({error})", _REMEDY) from None
     if rows.size and rows.shape[1] != columns:
-        raise UnusableFile(f"a CSV file with {columns} values in each row; it has {rows.shape[1]}", _ADVICE)
+        raise UnusableFile(f"a CSV file with {columns} values in each row; it has {rows.shape[1]}", _REMEDY)
     return rows.reshape(-1, columns)

@@ -23,10 +23,10 @@ _FREQUENCY = 18  # type of the abscissa, record 8
 _MOTIONS = {8: "displacement", 11: "velocity", 12: "acceleration"}  # types of the numerator, record 9
 _FORCES = (9, 13)  # types of the denominator, record 10: excitation, reaction
 _PER_FORCE = {"displacement": "m/N", "velocity": "m/(N s)", "acceleration": "m/(N s²)"}
-_MOST_FUNCTIONS = 8192  # 200 points in three directions per four bearings in three
+_MAX_FUNCTIONS = 8192  # 200 points in three directions per four bearings in three
 _TWICE = 1e-6
 """Relative difference of two statements of one unit that is no contradiction."""
-_ADVICE = "Export type and unit of numerator and denominator, or the units of the file (dataset 164)."
+_REMEDY = "Export type and unit of numerator and denominator, or the units of the file (dataset 164)."
 
 Dataset = Mapping[str, Any]
 
@@ -38,7 +38,7 @@ def channels(file: Path, _names: Sequence[str]) -> Iterator[RawChannel]:
     """
     sets = datasets(file)
     scale = next((part for part in sets if part.get("type") == UNITS), None)
-    budget = SampleBudget(_MOST_FUNCTIONS)
+    budget = SampleBudget(_MAX_FUNCTIONS)
     for part in sets:
         if part.get("type") == FUNCTION and int(part["func_type"]) == _FREQUENCY_RESPONSE:
             budget.take(len(part["data"]))
@@ -65,7 +65,7 @@ def _motion(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float
     quantity = _MOTIONS.get(kind) or (unit.quantity if unit is not None and kind == 0 else "")
     if quantity not in _PER_FORCE:
         bound = "a response of displacement, velocity or acceleration (numerator of type 8, 11 or 12)"
-        raise UnusableFile(bound, _ADVICE, name)
+        raise UnusableFile(bound, _REMEDY, name)
     return quantity, _factor(name, quantity, (label, unit), None if scale is None else scale["length"])
 
 
@@ -78,7 +78,7 @@ def _force(name: str, part: Dataset, scale: Dataset | None) -> float:
         label = below
     unit = measured_unit(label)
     if kind not in _FORCES and (kind != 0 or unit is None or unit.quantity != FORCE):
-        raise UnusableFile("a response per force (denominator of type 13 or 9)", _ADVICE, name)
+        raise UnusableFile("a response per force (denominator of type 13 or 9)", _REMEDY, name)
     return _factor(name, FORCE, (label, unit), None if scale is None else scale["force"])
 
 
@@ -100,9 +100,9 @@ def _factor(
     label, unit = labeled
     wrong = label if unit is None and per_si is None else unit is not None and unit.quantity != quantity
     if wrong:
-        raise UnusableFile(f"a response with a unit of {quantity}; its label says {label}", _ADVICE, name)
+        raise UnusableFile(f"a response with a unit of {quantity}; its label says {label}", _REMEDY, name)
     if unit is None and per_si is None:
-        raise UnusableFile(f"a response that states its unit of {quantity}", _ADVICE, name)
+        raise UnusableFile(f"a response that states its unit of {quantity}", _REMEDY, name)
     by_file = None if per_si is None else _of_file(name, float(per_si))
     if unit is None or by_file is None:
         return unit.factor if unit is not None else float(by_file or 0.0)

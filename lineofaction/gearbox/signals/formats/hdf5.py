@@ -17,9 +17,9 @@ EXTRA = ""
 TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
 _UNIT_ATTRIBUTES = ("unit", "units")
-_DEPTH, _MOST_ENTRIES = 4, 4096
+_DEPTH, _MAX_ENTRIES = 4, 4096
 _LONGEST = 256  # characters of an attribute
-_ADVICE = "Store a dataset time_s beside the vectors, or an attribute sample_rate_hz."
+_REMEDY = "Store a dataset time_s beside the vectors, or an attribute sample_rate_hz."
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
@@ -67,8 +67,8 @@ class _Walk:
 
         for name in group:
             self.entries += 1
-            if self.entries > _MOST_ENTRIES:
-                raise UnusableFile(f"a file of at most {_MOST_ENTRIES} entries", "Store fewer of them.")
+            if self.entries > _MAX_ENTRIES:
+                raise UnusableFile(f"a file of at most {_MAX_ENTRIES} entries", "Store fewer of them.")
             if not isinstance(group.get(name, getlink=True), h5py.HardLink):
                 raise UnusableFile(
                     "a file without links to other places or files", "Copy what they lead to.", name
@@ -122,7 +122,7 @@ def _abscissa(name: str, part: Any, vectors: dict[str, Any], group: Any) -> Any:
     beside = (float(lower[key][()].flat[0]) for key in RATES if key in lower and lower[key].size == 1)
     rate = next((value for value in (*stated, *beside) if value and np.isfinite(value) and value > 0.0), None)
     if rate is None:
-        raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _ADVICE, name)
+        raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _REMEDY, name)
     return 0.0, 1.0 / rate
 
 

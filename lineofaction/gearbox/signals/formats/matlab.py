@@ -17,7 +17,7 @@ _HDF5 = b"\x89HDF\r\n\x1a\n"
 _AT = 512  # bytes of a user block that MATLAB puts in front of HDF5
 TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
-_ADVICE = "Save vectors of numbers beside time_s, or beside the number sample_rate_hz."
+_REMEDY = "Save vectors of numbers beside time_s, or beside the number sample_rate_hz."
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
@@ -62,4 +62,4 @@ def _abscissa(name: str, time: Any, rate: float | None, size: int) -> Any:
         return time.astype(np.float64)
     if rate is not None and np.isfinite(rate) and rate > 0.0:
         return 0.0, 1.0 / rate
-    raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _ADVICE, name)
+    raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _REMEDY, name)

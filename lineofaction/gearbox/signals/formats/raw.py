@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-MOST_CHANNELS = 1024
-MOST_SAMPLES = 20_000_000
+MAX_CHANNELS = 1024
+MAX_SAMPLES = 20_000_000
 """Of all channels that are read together: half a GB with their times."""
 
 
 class UnusableFile(Exception):
     """A file holds no channels that can be read: what it must be, what to try, and the field at fault."""
 
-    def __init__(self, bound: str, advice: str = "Export it again.", value: str = "") -> None:
-        self.bound, self.advice, self.value = bound, advice, value
+    def __init__(self, bound: str, remedy: str = "Export it again.", value: str = "") -> None:
+        self.bound, self.remedy, self.value = bound, remedy, value
         super().__init__(bound)
 
 
@@ -40,7 +40,7 @@ class RawChannel:
 class SampleBudget:
     """Counts the samples that a reader is about to take, of at most so many channels."""
 
-    def __init__(self, most_channels: int = MOST_CHANNELS) -> None:
+    def __init__(self, most_channels: int = MAX_CHANNELS) -> None:
         self.most_channels = most_channels
         self.channels = self.samples = 0
 
@@ -51,8 +51,8 @@ class SampleBudget:
         """
         self.channels += 1
         self.samples += samples
-        if self.channels > self.most_channels or self.samples > MOST_SAMPLES:
-            bound = f"a file of at most {self.most_channels} channels and {MOST_SAMPLES} samples"
+        if self.channels > self.most_channels or self.samples > MAX_SAMPLES:
+            bound = f"a file of at most {self.most_channels} channels and {MAX_SAMPLES} samples"
             raise UnusableFile(bound, "Export a shorter stretch, or name the channels that are needed.")
 
 

@@ -99,8 +99,8 @@ class HeardLoad:
 
     def parting(self, flanks: FlankExcitation) -> float:
         """Return by what share of the static mesh force flanks part at most; 0: they do not."""
-        least = self.transfer.response(flanks).least_mesh_force.min(axis=1)
-        return float(np.max(-least / np.abs(flanks.mean_force), initial=0.0))
+        minimum = self.transfer.response(flanks).least_mesh_force.min(axis=1)
+        return float(np.max(-minimum / np.abs(flanks.mean_force), initial=0.0))
 
     def levels(self, power: FloatArray, worst_speed: bool) -> FloatArray:
         """Return the levels (K,) of a weighted power (S, H), dB."""

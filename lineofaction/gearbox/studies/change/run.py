@@ -48,7 +48,7 @@ from model_studies.stage_clock import StageClock
 
 IN_A_TASK = 5
 """Pairs of a task: some seconds. It does not depend on who does the tasks."""
-MOST_PAIRS = 10_000
+MAX_PAIRS = 10_000
 """Of a job: two contact solutions each."""
 _TABLE = 0.08
 """CPU seconds of errors and forces of the table of a pair, measured 0.11 at 12 loads and 192 positions."""
@@ -60,8 +60,8 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
         """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
-        if inputs.tolerances.samples > MOST_PAIRS:
-            raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MOST_PAIRS}")
+        if inputs.tolerances.samples > MAX_PAIRS:
+            raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MAX_PAIRS}")
         check_heard(scene, inputs.heard)
         check_driving(scene, inputs.load_cases)
         mesh = heard_mesh(scene, inputs.mesh)
@@ -167,8 +167,8 @@ def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceReq
         raise BadInput.of("scene.meshes", "a range", bound, "The tolerances vary the misalignment.")
     skew = inputs.tolerances.misalignment_um
     if skew and case.accuracy.model in PLANE:
-        advice = "A plane model has no width: take the 3-D model."
-        raise BadInput.of("tolerances.misalignment_um", skew, "0 in a plane model", advice)
+        remedy = "A plane model has no width: take the 3-D model."
+        raise BadInput.of("tolerances.misalignment_um", skew, "0 in a plane model", remedy)
     before = _design(case, "before", inputs.before or case, inputs)
     return before, _design(case, "after", inputs.after, inputs)
 

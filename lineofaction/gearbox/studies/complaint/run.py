@@ -49,7 +49,7 @@ REACH = 2.0
 """Least amplification by a mode within reach: 6 dB."""
 RESOLVED = 1.5
 """Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
-MOST_ORDERS = 100
+MAX_ORDERS = 100
 _OF_PAIR, _ASSEMBLED = 1e-3, 3
 """CPU seconds of the answer about a case; how often a scene is assembled."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
@@ -100,8 +100,8 @@ class _ComplaintStudy(
         written = subject.case if isinstance(subject, CheckedCase) else subject
         fields = with_options(written.complaint, inputs)
         if not fields:
-            bound, advice = "given by the file or by options", "For example frequency_hz and speed_rpm."
-            raise BadInput.of("complaint", None, bound, advice)
+            bound, remedy = "given by the file or by options", "For example frequency_hz and speed_rpm."
+            raise BadInput.of("complaint", None, bound, remedy)
         try:
             complaint = validated(ComplaintInput, fields)
         except BadInput as error:
@@ -138,7 +138,7 @@ class _ComplaintStudy(
             assemble(before)
             assembly = Work("assembly", cpu_seconds() - began, _ASSEMBLED)
             cost = StudyCost((assembly,)) + modes_cost(system, len(speed))
-        if speed and highest <= MOST_ORDERS:
+        if speed and highest <= MAX_ORDERS:
             with suppress(InputError, SolveError):  # nothing excites: the orders are named all the same
                 lines = response_cost(system, np.array(speed), highest).speed
                 cost += StudyCost((Work("lines", lines),))
@@ -242,7 +242,7 @@ def _highest_order(complaint: Complaint) -> int:
 def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> ForcedResponse | None:
     """Return the linear response up to the orders that pass; None: without a speed, or nothing excites."""
     highest = _highest_order(complaint)
-    if not speed or highest > MOST_ORDERS:
+    if not speed or highest > MAX_ORDERS:
         return None
     try:
         return forced_response(system, speed, highest)

@@ -14,8 +14,8 @@ from lineofaction.gearbox.schemas.loads import ACTING, Vector
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, refuse
 from lineofaction.gearbox.schemas.rules import own_or_factor, stated
 
-MOST_CASES = 64
-MOST_FORCES = 256
+MAX_CASES = 64
+MAX_FORCES = 256
 RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 
 
@@ -38,7 +38,7 @@ class CaseForceInput(BoundaryModel):
     )
 
 
-CaseForces = Annotated[Row[CaseForceInput], Field(max_length=MOST_FORCES)]
+CaseForces = Annotated[Row[CaseForceInput], Field(max_length=MAX_FORCES)]
 
 
 @with_fields(declared_in(load_case.LoadCase))
@@ -54,7 +54,7 @@ class LoadCaseInput(BoundaryModel):
     )
 
 
-LoadCases = Annotated[Row[LoadCaseInput], Field(min_length=1, max_length=MOST_CASES)]
+LoadCases = Annotated[Row[LoadCaseInput], Field(min_length=1, max_length=MAX_CASES)]
 
 
 class Inputs(BoundaryModel):
@@ -137,7 +137,7 @@ class DeflectFigures(Figures):
             force_n: float
             misalignment_um: float
             misalignment_over_cycle_um: Annotated[
-                tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
+                tuple[float, float], Source(lambda mesh: (mesh.minimum, mesh.largest))
             ]
             causes_um: dict[str, float]
             center_distance_change_um: float

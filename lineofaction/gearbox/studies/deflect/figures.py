@@ -39,33 +39,33 @@ def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
         for loads in zip(*(case.bearings for case in cases), strict=True)
     ]
     of_all = ROUNDING_OF_ALL * max(largest, default=0.0)
-    least = [max(ROUNDING * own, of_all) for own in largest]
+    minimum = [max(ROUNDING * own, of_all) for own in largest]
     loads = [load for case in cases for load in case.bearings]
     displacements = (part[:3] for load in loads for part in (load.elastic, load.clearance, load.seat))
     moved = max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
     return [
         [
             _without_rounding(load, each, ROUNDING_OF_ALL * moved)
-            for load, each in zip(case.bearings, least, strict=True)
+            for load, each in zip(case.bearings, minimum, strict=True)
         ]
         for case in cases
     ]
 
 
-def _without_rounding(load: BearingLoad, least: float, moved: float) -> BearingLoad:
-    """Return a load whose forces below `least`, N, and displacements below `moved`, m and rad, are zero."""
+def _without_rounding(load: BearingLoad, minimum: float, moved: float) -> BearingLoad:
+    """Return a load whose forces below `minimum`, N, and displacements below `moved`, m and rad, are zero."""
     return replace(
         load,
-        force=_at_least(load.force, least),
-        largest_radial=load.largest_radial if load.largest_radial >= least else 0.0,
+        force=_at_least(load.force, minimum),
+        largest_radial=load.largest_radial if load.largest_radial >= minimum else 0.0,
         elastic=_at_least(load.elastic, moved),
         clearance=_at_least(load.clearance, moved),
         seat=_at_least(load.seat, moved),
     )
 
 
-def _at_least(values: FloatArray, least: float) -> FloatArray:
-    return np.asarray(np.where(np.abs(values) < least, 0.0, values))
+def _at_least(values: FloatArray, minimum: float) -> FloatArray:
+    return np.asarray(np.where(np.abs(values) < minimum, 0.0, values))
 
 
 def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:

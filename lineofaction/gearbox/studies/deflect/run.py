@@ -100,8 +100,8 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         lost = [case for case in result.deflection.cases if case.status != "converged"]
         if lost:
             names = ", ".join(f'"{case.name}" ({case.status.replace("_", " ")})' for case in lost)
-            advice = "Check that bearings hold every shaft that is loaded."
-            return f"No equilibrium under load case {names}. {advice}"
+            remedy = "Check that bearings hold every shaft that is loaded."
+            return f"No equilibrium under load case {names}. {remedy}"
         if not result.agreed:
             change = leftover(result.change)
             return (

@@ -9,7 +9,7 @@ from pydantic import Field
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row
 
-MOST_FULL_CONTACT = 64
+MAX_FULL_CONTACT = 64
 
 
 class Inputs(BoundaryModel):
@@ -32,7 +32,7 @@ class Inputs(BoundaryModel):
     full_contact: int | None = Field(
         default=None,
         ge=1,
-        le=MOST_FULL_CONTACT,
+        le=MAX_FULL_CONTACT,
         description="Positions at which recorded full finite-element contact is compared as well, of a case "
         "whose pair has a record",
         examples=[4],

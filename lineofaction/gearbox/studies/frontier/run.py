@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.frontier import FrontierFigures, Inputs
 from lineofaction.gearbox.studies.run_cost import runs_cost
 from lineofaction.gearbox.units import in_um
 
-LEAST = 2
+MIN = 2
 
 
 class _FrontierStudy(
@@ -99,7 +99,7 @@ def _requested(inputs: Inputs, *, of_scene: bool) -> list[str]:
         names = chosen("rungs", inputs.rungs, known, "Or leave it out: all are run.")
     if not of_scene:
         names = [name for name in names if known.index(name) <= known.index(inputs.up_to)]
-    if len(names) < LEAST:
+    if len(names) < MIN:
         raise BadInput.of("rungs", names, "at least two fidelities", "An error needs two to compare.")
     return names
 

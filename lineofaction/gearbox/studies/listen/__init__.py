@@ -14,7 +14,7 @@ from lineofaction.gearbox.schemas.studied import RunHash
 Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]
 _PLACES = ("microphone_mm", "point")
 ONE_PLACE = "given, or point, one of both"
-ADVICE = "A microphone hears the sound pressure, a point its velocity."
+REMEDY = "A microphone hears the sound pressure, a point its velocity."
 _TONE = ("frequency", "tone_to_noise")
 
 
@@ -44,7 +44,7 @@ class Inputs(BoundaryModel):
         """Refuse both places, and a direction of a sound pressure."""
         names = [name for name in _PLACES if getattr(self, name) is not None]
         if len(names) > 1:
-            refuse("microphone_mm", names, ONE_PLACE, ADVICE)
+            refuse("microphone_mm", names, ONE_PLACE, REMEDY)
         if self.direction is not None and self.point is None:
             refuse("direction", self.direction, "left out with microphone_mm", "A pressure has none.")
         return self

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.model import Row
-from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, Orders, OverSpeeds, Speed
+from lineofaction.gearbox.schemas.studied import MAX_SPEEDS, Orders, OverSpeeds, Speed
 
 
 class Inputs(OverSpeeds):
@@ -17,7 +17,7 @@ class Inputs(OverSpeeds):
     at_rest: ClassVar[bool] = True
     speed_rpm: Row[Speed] = Field(
         default=(),
-        max_length=MOST_SPEEDS,
+        max_length=MAX_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing; default: at rest only",
         examples=[[0.0, 1500.0, 3000.0]],
     )

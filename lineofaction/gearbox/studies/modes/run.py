@@ -29,10 +29,10 @@ from lineofaction.gearbox.units import RPM
 if TYPE_CHECKING:
     from dynamics.vibration import SurfaceShape
 
-LEAST_SHARE = 1e-3
+MIN_SHARE = 1e-3
 _AT_REST, _LINEAR, _CUBIC = 3.5e-5, 1.2e-4, 1.9e-8
 """CPU seconds by freedoms squared, freedoms, freedoms cubed: 5 to 301 of them, within a factor of 2."""
-MOST_GROUPS = 12
+MAX_GROUPS = 12
 """Speeds whose modes are listed to be looked at."""
 
 
@@ -92,7 +92,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
         rest = zip(modes.natural_frequency, modes.natural_damping_ratio, *energies, strict=True)
         shapes = modes.natural_shape
         offered = [_offered(modes, "at rest", row, shapes[k]) for k, row in enumerate(rest)]
-        for at in chosen_rows(modes.speed.size, MOST_GROUPS) if modes.speed.size else ():
+        for at in chosen_rows(modes.speed.size, MAX_GROUPS) if modes.speed.size else ():
             whirl = modes.frequency[at], modes.damping_ratio[at], modes.strain_energy[at]
             rows = enumerate(zip(*whirl, modes.kinetic_energy[at], strict=True))
             group = f"at {engineering(modes.speed[at] / RPM, 5)} rpm"
@@ -132,8 +132,8 @@ def moved_surface(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
     return {
         "kind": modes.kind(strain, kinetic),
-        "strain_energy": {name: s for name, s in modes.held_by(strain).items() if s >= LEAST_SHARE},
-        "kinetic_energy": {name: s for name, s in modes.moved(kinetic).items() if s >= LEAST_SHARE},
+        "strain_energy": {name: s for name, s in modes.held_by(strain).items() if s >= MIN_SHARE},
+        "kinetic_energy": {name: s for name, s in modes.moved(kinetic).items() if s >= MIN_SHARE},
     }
 
 

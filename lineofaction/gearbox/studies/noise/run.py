@@ -70,8 +70,8 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
     def check(self, subject: SceneInput, inputs: Inputs) -> None:
         """Refuse a scene without a housing that has a surface, sensitivities of a run, a plane at an ear."""
         if inputs.run is not None and inputs.sensitivities:
-            advice = "They vary the linear response: leave out the run."
-            raise BadInput.of("sensitivities", True, "left out with a run", advice)
+            remedy = "They vary the linear response: leave out the run."
+            raise BadInput.of("sensitivities", True, "left out with a run", remedy)
         if inputs.microphone_mm is not None and inputs.radiation == PLANE.model_name:
             bound = f"left out with {PLANE.model_name}, which has no sound pressure"
             raise BadInput.of("microphone_mm", list(inputs.microphone_mm), bound, "Take the estimate.")

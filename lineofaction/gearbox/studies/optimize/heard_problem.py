@@ -117,7 +117,7 @@ class HeardMerit:
     """Of each limit: by how much it is exceeded."""
     penalty: float
 
-    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+    def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit.
 
         By cutting planes: tangents of the largest rows, where the last program ended.
@@ -127,10 +127,10 @@ class HeardMerit:
         found, cuts = self._merit(step), [self._cuts(step)]
         for _ in range(CUTS):
             program = LinearProgram(low.size)
-            (objective,) = program.columns(1, least=0.0)
+            (objective,) = program.columns(1, minimum=0.0)
             for value, by in cuts:
                 program.below(value, by, reach, objective)
-            exceeded = program.columns(len(self.limits), least=0.0)
+            exceeded = program.columns(len(self.limits), minimum=0.0)
             for column, (value, by) in zip(exceeded, self.limits, strict=True):
                 program.below(value, by, reach, column)
             step, bound = program.solve(low, high, objective, exceeded, self.penalty)

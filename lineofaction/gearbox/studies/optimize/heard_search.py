@@ -302,10 +302,10 @@ def _evaluator(
     """Return the evaluator of all designs, with three loads for each load case."""
     points = sorted({*zip(torque.tolist(), misalignment.tolist(), strict=True)})
     acting = {variable.name: variable.acting for variable in request.variables}
-    least = {variable.name: variable.low for variable in request.variables}
+    minimum = {variable.name: variable.low for variable in request.variables}
     skews = [skew for _, skew in points]
     space = DesignSpace(
-        request.pair, acting, request.scatter, skews, request.search.positions, request.options, least
+        request.pair, acting, request.scatter, skews, request.search.positions, request.options, minimum
     )
     run = replace(means.analysis, progress=silent)
     torques = [load for load, _ in points]

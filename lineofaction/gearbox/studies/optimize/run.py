@@ -198,8 +198,8 @@ class _OptimizeStudy(
 def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
     """Return what is heard of a scene, and the mesh; raises `BadInput`."""
     if study.heard is None:
-        advice = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
-        raise BadInput.of("heard", None, "given with a scene", advice)
+        remedy = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
+        raise BadInput.of("heard", None, "given with a scene", remedy)
     for name in OF_CASE:
         if getattr(study, name) != type(study).model_fields[name].default:
             raise BadInput.of(name, "given", "left out with a scene", "Its loads are heard.load_cases.")

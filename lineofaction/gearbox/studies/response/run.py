@@ -68,8 +68,8 @@ def _rms(response: ForcedResponse, bearing: int) -> Json:
         for part in (response.bearing_floor, response.bearing_floor_error)
     )
     rms = np.sqrt(square)
-    least = np.sqrt(np.maximum(square - off, 0.0))
-    return {"rms": rms, "left_out_rms": np.sqrt(left_out), "rms_error": rms - least}
+    minimum = np.sqrt(np.maximum(square - off, 0.0))
+    return {"rms": rms, "left_out_rms": np.sqrt(left_out), "rms_error": rms - minimum}
 
 
 RUN = _ResponseStudy()

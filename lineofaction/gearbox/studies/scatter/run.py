@@ -33,7 +33,7 @@ _DRAWN_TEETH = 2.2
 """CPU time of a pitch between drawn teeth over one of a table: their slopes and forms move where they touch.
 
 2.1 and 2.4 of a helical pair 23/67, hobbed, over its revolutions, 2.3 of a spur pair 19/28 in the plane."""
-MOST_SAMPLES = 100_000
+MAX_SAMPLES = 100_000
 """Of a job: its result holds every pair, 10 to 100 MB."""
 
 _TOLERATED = {
@@ -57,9 +57,9 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
     def normalized(self, case: CheckedCase, inputs: Inputs) -> Json:
         """Return all inputs; refuse a sample too large for a job."""
-        if inputs.samples > MOST_SAMPLES:
-            advice = "For more use loa scatter."
-            raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", advice)
+        if inputs.samples > MAX_SAMPLES:
+            remedy = "For more use loa scatter."
+            raise BadInput.of("samples", inputs.samples, f"at most {MAX_SAMPLES}", remedy)
         return super().normalized(case, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
@@ -151,8 +151,8 @@ def _stated(text: str) -> tuple[str, float]:
     name, _, value = (part.strip() for part in text.partition("="))
     if name not in _TOLERATED:
         close = difflib.get_close_matches(name[:64], _TOLERATED, n=3, cutoff=0.5)
-        advice = f"Did you mean {' or '.join(close)}?" if close else "For example pinion.profile_slope_um=4."
-        raise BadInput.of("drawing", text, "pinion or wheel, a dot, and a figure of the flanks", advice)
+        remedy = f"Did you mean {' or '.join(close)}?" if close else "For example pinion.profile_slope_um=4."
+        raise BadInput.of("drawing", text, "pinion or wheel, a dot, and a figure of the flanks", remedy)
     if not _NUMBER.fullmatch(value) or float(value) <= 0.0:
         bound = f"{name}= and a tolerance above 0 in the unit of the name"
         raise BadInput.of("drawing", text, bound, f"For example {name}=4.")

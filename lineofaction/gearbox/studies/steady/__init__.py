@@ -8,7 +8,7 @@ from pydantic import Field
 
 from lineofaction.gearbox.schemas.figures import Figures, Ledger, Part, ReductionCosts, Seconds
 from lineofaction.gearbox.schemas.model import Row
-from lineofaction.gearbox.schemas.studied import MOST_SPEEDS, OverSpeeds, TurningSpeed
+from lineofaction.gearbox.schemas.studied import MAX_SPEEDS, OverSpeeds, TurningSpeed
 
 
 class Inputs(OverSpeeds):
@@ -17,7 +17,7 @@ class Inputs(OverSpeeds):
     usual_speeds: ClassVar[int] = 30
     speed_rpm: Row[TurningSpeed] = Field(
         min_length=1,
-        max_length=MOST_SPEEDS,
+        max_length=MAX_SPEEDS,
         description="Speeds of the first driven shaft in rpm, increasing",
         examples=[[11000.0, 12000.0, 13000.0]],
     )

@@ -51,7 +51,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
             single = steady_cost(sized(scene), speeds[-1:], **how)
         except (InputError, SolveError):
             return None  # the study says it, on its own tables
-        return replace(cost, advice=_advice(single, inputs.speed_rpm[-1]))
+        return replace(cost, remedy=_advice(single, inputs.speed_rpm[-1]))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
         with boundary_errors():

@@ -27,7 +27,7 @@ QuantityName = Literal[
 """Of `dynamics.study.QUANTITIES`, which takes longer to load than a service to start."""
 _KINDS = ("levels", "values", "normal", "uniform", "iso1328_class")
 SAMPLED = _KINDS[2:]
-MOST_POINTS = 100_000
+MAX_POINTS = 100_000
 """Of a job: its result holds every run's figures."""
 
 
@@ -70,7 +70,7 @@ class FactorInput(BoundaryModel):
     values: Values | None = Field(
         default=None,
         min_length=1,
-        max_length=MOST_POINTS,
+        max_length=MAX_POINTS,
         description="Values of a list, which change together with those of other lists",
         examples=[[50.0, 100.0]],
     )
@@ -139,7 +139,7 @@ class Inputs(BoundaryModel):
     samples: int = Field(
         default=1,
         ge=1,
-        le=MOST_POINTS,
+        le=MAX_POINTS,
         description="Number of samples of the distributions, the same for every combination of levels",
         examples=[1],
     )

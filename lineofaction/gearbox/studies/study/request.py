@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.case import table_axes
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.study import MOST_POINTS, FactorInput, Inputs
+from lineofaction.gearbox.studies.study import MAX_POINTS, FactorInput, Inputs
 from lineofaction.gearbox.studies.study.scenes import (
     Place,
     check_flank,
@@ -110,8 +110,8 @@ def _check_values(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[
                 with_value(table, place, value)
             scene_of_json(table)
     count = inputs.samples * math.prod(len(f.levels) for f in inputs.factors if f.levels)
-    if count > MOST_POINTS:
-        raise BadInput.of("factors", count, f"at most {MOST_POINTS} points in all")
+    if count > MAX_POINTS:
+        raise BadInput.of("factors", count, f"at most {MAX_POINTS} points in all")
 
 
 def _ends(factor: FactorInput) -> tuple[float, ...]:

@@ -92,8 +92,8 @@ def _below(model: type[BaseModel], field: str, path: str, rest: str) -> Iterator
 
 def _unknown(field: str, path: str, name: str, known: Sequence[str] | Mapping[str, Any]) -> BadInput:
     close = difflib.get_close_matches(name[:64], list(known), n=3)
-    advice = f"Did you mean {' or '.join(close)}?" if close else f"Known here: {', '.join(known)}."
-    return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', advice)
+    remedy = f"Did you mean {' or '.join(close)}?" if close else f"Known here: {', '.join(known)}."
+    return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', remedy)
 
 
 def mesh_of_case(place: Place) -> int | None:

@@ -68,8 +68,8 @@ class _Swept:
     def spellings(self) -> set[str]:
         """What it may be called: the path, its last names, and these without the unit."""
         names = self.path.split(".")
-        least = 2 if self.what is not None and "*" not in names else 1
-        tails = {".".join(names[-count:]) for count in range(least, len(names) + 1)}
+        minimum = 2 if self.what is not None and "*" not in names else 1
+        tails = {".".join(names[-count:]) for count in range(minimum, len(names) + 1)}
         last = self.name.rpartition(".")[2]
         return tails | {f"{head}{dot}{last}" for head, dot, _ in (tail.rpartition(".") for tail in tails)}
 
@@ -113,11 +113,11 @@ def _named(text: str, name: str) -> _Swept:
             return swept
     short = [swept.name for swept in SWEEPABLE.values()]
     close = difflib.get_close_matches(name[:64], short, n=3, cutoff=0.5)
-    advice = f"Did you mean {' or '.join(close)}?" if close else f"For example {', '.join(short[:4])}."
+    remedy = f"Did you mean {' or '.join(close)}?" if close else f"For example {', '.join(short[:4])}."
     bound = (
         "the torque, the alignment or a flank modification of a case; other bodies need tables of their own"
     )
-    raise BadInput.of("over", text, bound, advice)
+    raise BadInput.of("over", text, bound, remedy)
 
 
 def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
@@ -137,10 +137,10 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         return list(loads) if len(loads) >= _EACH else _evenly(0.2 * loads[-1], loads[-1])
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
-        most = _DISTANCE * pair.center_distance / swept.factor
-        return list(changes) if len(changes) > 1 else _evenly(0.0, most)
-    most = max(map(abs, case.errors.misalignment_um)) or _SKEW_UM
-    return _evenly(-most, most)
+        maximum = _DISTANCE * pair.center_distance / swept.factor
+        return list(changes) if len(changes) > 1 else _evenly(0.0, maximum)
+    maximum = max(map(abs, case.errors.misalignment_um)) or _SKEW_UM
+    return _evenly(-maximum, maximum)
 
 
 def _evenly(first: float, last: float) -> list[float]:
@@ -259,7 +259,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             },
             "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
             "least": {
-                QUANTITIES[own.name].field.format(""): _at(result, own.least)
+                QUANTITIES[own.name].field.format(""): _at(result, own.minimum)
                 | {"points_within_error": int(own.like_least.sum())}
                 for own in swept.quantities
                 if swept.usable

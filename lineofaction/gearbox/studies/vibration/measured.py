@@ -93,10 +93,10 @@ class MeasuredHousingVibration:
             if len(axes) < 3
         ]
         if vibration.omitted:
-            most = engineering(100.0 * float(np.max(vibration.omitted_force)), 3)
+            maximum = engineering(100.0 * float(np.max(vibration.omitted_force)), 3)
             forces = ", ".join(map(str, vibration.omitted))
             sentences.append(
-                f"Forces without a measured function do not move the points: {forces}, up to {most} % of "
+                f"Forces without a measured function do not move the points: {forces}, up to {maximum} % of "
                 "the sum of the squared forces."
             )
         if vibration.moments:

@@ -47,7 +47,7 @@ from lineofaction.gearbox.studies.vibration.measured import (
 from lineofaction.gearbox.units import RPM
 
 MM_PER_S = 1e-3
-_ADVICE = "Give a housing by step_file, mesh_file, modes_file or frf_file: see docs/how-to/vibration.md."
+_REMEDY = "Give a housing by step_file, mesh_file, modes_file or frf_file: see docs/how-to/vibration.md."
 
 
 @brief
@@ -102,7 +102,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
         """Refuse a scene of whose housings none has a solid, a file of modes or measured responses."""
         if not any(map(_vibrates, scene.housings)):
             value = f"{len(scene.housings)} by their matrices" if scene.housings else "none"
-            raise BadInput.of("housings", value, "one with mass, a surface or points", _ADVICE)
+            raise BadInput.of("housings", value, "one with mass, a surface or points", _REMEDY)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
         """Return what the forces on bearings take, with which the motion of the housing is a product."""
@@ -189,11 +189,11 @@ def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]
     """Return the housing of a name, or the first with a surface or points."""
     if name is not None and name not in tabled.housings:
         known = ", ".join(part.name for part in tabled.inputs.housings if _vibrates(part))
-        raise BadInput.of("housing", name, f"one of {known or 'none'}", _ADVICE)
+        raise BadInput.of("housing", name, f"one of {known or 'none'}", _REMEDY)
     for own, housing in tabled.housings.items():
         if own == name or (name is None and (housing.surface is not None or housing.points)):
             return own, housing
-    raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _ADVICE)
+    raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _REMEDY)
 
 
 def _point(vibration: HousingVibration, point: int) -> Json:

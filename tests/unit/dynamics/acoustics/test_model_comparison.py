@@ -66,14 +66,14 @@ def test_monopoles_take_more_at_high_frequency() -> None:
 def test_boundary_elements_take_the_predicted_multiple_of_fewer_panels() -> None:
     """Each within 1.3, their ratio within its square; the lesser of two counts."""
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
-    model, hulls, least = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
+    model, hulls, minimum = BoundaryElements(), (sphere(3), sphere(5)), [np.inf, np.inf]
     for _ in range(2):
         for index, hull in enumerate(hulls):
             began = time.process_time()
             model.resistance(hull, 30.0, np.ones((len(hull.areas), 1)), AIR)
-            least[index] = min(least[index], time.process_time() - began)
+            minimum[index] = min(minimum[index], time.process_time() - began)
     small, large = (model.cost(len(hull.areas), 1.0, 1).seconds for hull in hulls)
-    assert 1.0 / 1.3**2 < (large / small) / (least[1] / least[0]) < 1.3**2
+    assert 1.0 / 1.3**2 < (large / small) / (minimum[1] / minimum[0]) < 1.3**2
 
 
 def test_the_whole_of_7040_panels_is_what_was_measured() -> None:

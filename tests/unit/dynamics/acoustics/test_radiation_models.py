@@ -49,10 +49,10 @@ def test_the_efficiencies_of_the_sphere_are_the_known_fractions() -> None:
 
 def test_the_sphere_exceeds_its_equivalent_radiated_power_as_stated() -> None:
     ka = np.linspace(0.05, 30.0, 2000)
-    most = [10.0 * np.log10(max(sphere_efficiency(order, x) for x in ka)) for order in range(6)]
-    assert most[0] < 0.0
-    assert most[1] < 0.0
-    assert 0.25 < most[2] < most[5] < 1.5
+    maximum = [10.0 * np.log10(max(sphere_efficiency(order, x) for x in ka)) for order in range(6)]
+    assert maximum[0] < 0.0
+    assert maximum[1] < 0.0
+    assert 0.25 < maximum[2] < maximum[5] < 1.5
 
 
 @pytest.mark.parametrize("ka", [0.3, 1.0, 2.5])

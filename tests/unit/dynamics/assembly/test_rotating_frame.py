@@ -182,23 +182,23 @@ def undamped(scene):
 
 
 def test_it_is_on_where_it_shifts_a_frequency_by_a_hundredth():
-    def decided(scene, part):
+    def decision(scene, part):
         ledger = assemble(scene).ledger
         return next(e for e in ledger.entries if e.effect == "gyroscopic" and e.part == part)
 
-    assert decided(disc_scene(choice="auto"), "disc").on
+    assert decision(disc_scene(choice="auto"), "disc").on
     slow = disc_scene(choice="auto")
     slow = replace(slow, drives=(replace(slow.drives[0], speed=TimeLaw.constant(1.0)),))
-    assert not decided(slow, "disc").on
-    assert decided(planetary("auto"), "carrier").on
-    assert not decided(planetary("off"), "carrier").on
+    assert not decision(slow, "disc").on
+    assert decision(planetary("auto"), "carrier").on
+    assert not decision(planetary("off"), "carrier").on
     bare = planetary("off")
     off = assemble(replace(bare, effects={**bare.effects, "centrifugal_load": "off"}))
     assert Law.ROTATING_FRAME not in off.arrays.elements.law
     scene = planetary("on")
     torn = replace(scene, drives=scene.drives[1:], free_rotations=(FreeRotation("train", "sun", 100.0),))
     if scene.drives[0].shaft == "sun":
-        assert not decided(torn, "carrier").on
+        assert not decision(torn, "carrier").on
 
 
 def test_gyroscopic_moments_follow_a_changing_speed():

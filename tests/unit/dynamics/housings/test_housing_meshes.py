@@ -418,8 +418,8 @@ def test_no_facet_of_a_coarse_surface_is_a_line() -> None:
     inside = (mesh.points > 1e-9) & (mesh.points < sides - 1e-9)
     moved = np.random.default_rng(1).uniform(-0.45, 0.45, mesh.points.shape) * sides / cells
     fine = DrawnSurface(mesh.points + np.where(inside, moved, 0.0), mesh.surface[:, :3])
-    for most in (300, 600, 1000):
-        drawn, _ = fine.reduced(most)
+    for maximum in (300, 600, 1000):
+        drawn, _ = fine.reduced(maximum)
         one, two, three = np.moveaxis(drawn.points[drawn.facets], 1, 0)
         assert np.linalg.norm(np.cross(two - one, three - one), axis=1).min() > 1e-12, "m^2"
 
@@ -440,11 +440,11 @@ def volume_of(surface: DrawnSurface) -> float:
     return float(np.sum(np.cross(one, two) * three) / 6.0)
 
 
-@pytest.mark.parametrize("most", [600, 1000, 2000])
-def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall: DrawnSurface, most: int) -> None:
+@pytest.mark.parametrize("maximum", [600, 1000, 2000])
+def test_both_skins_of_a_thin_wall_are_kept_apart(thin_wall: DrawnSurface, maximum: int) -> None:
     """Facets are 5 to 10 times as wide as the wall: none joins its skins, nor does it thicken."""
-    drawn, _ = thin_wall.reduced(most)
-    assert 0.9 * most < len(drawn.facets) <= most < len(thin_wall.facets)
+    drawn, _ = thin_wall.reduced(maximum)
+    assert 0.9 * maximum < len(drawn.facets) <= maximum < len(thin_wall.facets)
     end = np.abs(drawn.points - 0.5 * np.array([0.2, 0.1, 0.06])) - 0.5 * np.array([0.2, 0.1, 0.06])
     inside = (end.max(axis=1) < -1e-3)[drawn.facets]
     assert np.array_equal(inside.any(axis=1), inside.all(axis=1))
@@ -470,7 +470,7 @@ def test_what_hangs_together_in_no_surface_is_refused(tmp_path: Path) -> None:
     soup = np.array([rng.choice(40, 4, replace=False) for _ in range(400)])
     meshlane.Mesh(rng.uniform(size=(40, 3)), [("tetra", soup)]).write(tmp_path / "soup.vtu")
     with pytest.raises(InputError) as caught:
-        drawn_mesh(tmp_path / "soup.vtu", "m", most=100)
+        drawn_mesh(tmp_path / "soup.vtu", "m", maximum=100)
     assert caught.value.field == "mesh_file.facets"
 
 

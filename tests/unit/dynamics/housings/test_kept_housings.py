@@ -107,17 +107,17 @@ def test_cost_grows_with_freedoms_modes_and_seats() -> None:
 def test_the_predicted_cost_of_two_sizes_is_in_the_ratio_of_the_measured() -> None:
     """Each is within 1.3 of what it takes, their ratio within the square; the lesser of two counts."""
     sizes = [meshed(), meshed((24, 1, 10))]
-    least = [math.inf, math.inf]
+    minimum = [math.inf, math.inf]
     for _ in range(2):
         for index, housing in enumerate(sizes):
             began = time.process_time()
             reduce_housing(housing)
-            least[index] = min(least[index], time.process_time() - began)
+            minimum[index] = min(minimum[index], time.process_time() - began)
     motions = [sum(seat.motions for seat in housing.seats) for housing in sizes]
     facts = zip(sizes, motions, strict=True)
     small, large = (reduction_cost(own.mesh.freedoms, own.modes, seated).seconds for own, seated in facts)
     assert large / small > 2.0
-    assert 1.0 / WITHIN**2 < (large / small) / (least[1] / least[0]) < WITHIN**2
+    assert 1.0 / WITHIN**2 < (large / small) / (minimum[1] / minimum[0]) < WITHIN**2
 
 
 def test_the_cost_is_kept_with_the_housing_and_told_before(tmp_path: Path) -> None:

@@ -146,8 +146,8 @@ def test_an_effect_that_only_loads_call_for_is_not_neglected_for_a_tolerance() -
     influence = estimate_influences(scene)["housing_modes"]
     assert np.max(np.abs(influence.bearing_orders)) < 1e-6 * np.max(np.abs(influence.bearing_force))
     assert influence.relative_bearing_force > 0.1
-    decided = decide_effects(scene)
-    assert decided.scene.effects.get("housing_modes", "auto") == "auto"
+    decision = decide_effects(scene)
+    assert decision.scene.effects.get("housing_modes", "auto") == "auto"
 
 
 @pytest.mark.parametrize(("rpm", "reach"), [(300.0, 0.095), (1000.0, 0.095), (3000.0, 0.095)])
@@ -195,9 +195,9 @@ def test_a_tolerance_leaves_off_what_cannot_be_seen_and_says_so() -> None:
     influences = estimate_influences(scene)
     assert 1e-6 < influences["axial"].largest < 0.01 < influences["lateral"].largest
     loose = min(0.5, 11.0 * influences["axial"].largest)
-    decided = decide_effects(replace(scene, tolerance=loose))
-    assert decided.scene.effects.get("axial") == "off"
-    assert decided.scene.effects.get("lateral", "auto") == "auto"
+    decision = decide_effects(replace(scene, tolerance=loose))
+    assert decision.scene.effects.get("axial") == "off"
+    assert decision.scene.effects.get("lateral", "auto") == "auto"
     tight = decide_effects(replace(scene, tolerance=9.0 * influences["axial"].largest))
     assert "axial" not in tight.automatic
     run, off = simulate(replace(scene, tolerance=loose)), simulate(replace(scene, effects={"axial": "off"}))

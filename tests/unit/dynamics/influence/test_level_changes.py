@@ -14,7 +14,7 @@ from dynamics.ablation import ablate
 from dynamics.acoustics import a_weighting
 from dynamics.assembly.assemble import System, assemble
 from dynamics.influence import decide_effects, estimate_influences, neglected_check, response_influences
-from dynamics.influence.level_change import MOST, BearingForces, level_change
+from dynamics.influence.level_change import MAX, BearingForces, level_change
 from dynamics.influence.linear_figures import LinearFigures, linear_figures
 from dynamics.influence.operating_conditions import OperatingCondition, conditions_at
 from dynamics.linearize import forced_response
@@ -70,7 +70,7 @@ def test_levels_follow_amplitudes() -> None:
     back = level_change({1.0: 4.0, 2.0: 36.0}, LINES, "force")
     assert back.decibels == pytest.approx(-change.decibels)
     gone = level_change(LINES, {}, "force")
-    assert gone.decibels == -MOST and gone.relative == 1.0
+    assert gone.decibels == -MAX and gone.relative == 1.0
     assert gone.words == "more than -60 dB of force at order 2"
 
 

@@ -15,7 +15,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError
 from dynamics.influence import decide_effects, estimate_influences, neglected_check
 from dynamics.influence.content_key import content_key
-from dynamics.influence.neglected_check import Decided
+from dynamics.influence.neglected_check import Decision
 from dynamics.linearize import partial_fractions
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited
@@ -62,8 +62,8 @@ def test_an_effect_that_no_rule_calls_for_is_on_beyond_the_tolerance_alone() -> 
     size = estimate_influences(scene)["flexible_shafts"]
     assert not size.on and size.decibels > 0.01
     for tolerance, choice in ((0.9 * size.decibels, "on"), (1.1 * size.decibels, None)):
-        decided = decide_effects(replace(scene, level_tolerance=tolerance))
-        assert decided.scene.effects.get("flexible_shafts") == choice
+        decision = decide_effects(replace(scene, level_tolerance=tolerance))
+        assert decision.scene.effects.get("flexible_shafts") == choice
 
 
 def test_where_flanks_part_nothing_is_neglected_by_a_level() -> None:
@@ -112,16 +112,16 @@ def test_a_minimal_receipt_has_sizes_of_what_is_decided_alone() -> None:
 
 def test_an_ablation_decides_once_for_the_scene_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     """Toggled scenes decide nothing anew: each differs from the scene by one effect."""
-    decided: list[float | None] = []
+    decision: list[float | None] = []
 
-    def recorded(scene: Scene) -> Decided:
-        decided.append(scene.level_tolerance)
+    def recorded(scene: Scene) -> Decision:
+        decision.append(scene.level_tolerance)
         return decide_effects(scene)
 
     monkeypatch.setattr(to_file, "decide_effects", recorded)
     found = ablate(helical(level_tolerance=0.1), only=["axial", "lateral"])
     assert {entry.name: entry.on for entry in found.effects} == {"axial": False, "lateral": True}
-    assert decided and set(decided) == {None}
+    assert decision and set(decision) == {None}
 
 
 def test_every_field_that_sizes_read_is_part_of_the_key() -> None:
@@ -162,8 +162,8 @@ def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.M
         scene, meshes=tuple(replace(mesh, table=square_wave_table()) for mesh in scene.meshes), duration=0.05
     )
     found = []
-    for least in (3, 1000):
-        monkeypatch.setattr(neglected_check, "SCREENED", least)
+    for minimum in (3, 1000):
+        monkeypatch.setattr(neglected_check, "SCREENED", minimum)
         monkeypatch.setattr(neglected_check, "_KNOWN", {})
         found.append(estimate_influences(scene))
     screened, whole = found
@@ -179,11 +179,11 @@ def test_screened_sizes_are_those_of_stiffness_that_varies(monkeypatch: pytest.M
 
 def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.MonkeyPatch) -> None:
     system = assemble(flexible_pair(table=square_wave_table(), duration=0.01))
-    assert len(system.arrays.mass) >= partial_fractions.LEAST
+    assert len(system.arrays.mass) >= partial_fractions.MIN
     at, found = excited(system, 0.0, 6), []
     speed, rate = np.linspace(50.0, 900.0, 9), np.full(9, 5.0)
-    for least in (partial_fractions.LEAST, 10_000):
-        monkeypatch.setattr(partial_fractions, "LEAST", least)
+    for minimum in (partial_fractions.MIN, 10_000):
+        monkeypatch.setattr(partial_fractions, "MIN", minimum)
         found.append(parametric_response(at, speed, rate, 6)[0])
     size = np.max(np.abs(found[1].bearing_force))
     np.testing.assert_allclose(found[0].bearing_force, found[1].bearing_force, rtol=0.0, atol=1e-9 * size)

@@ -12,7 +12,7 @@ from planetary_scenes import planetary_scene, published_set
 from scipy.linalg import expm
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.arrays.modal_freedoms import LEAST, TOGETHER, modal_freedoms_of
+from dynamics.arrays.modal_freedoms import MIN, TOGETHER, modal_freedoms_of
 from dynamics.arrays.sparse_rows import joined_by_chains, sparse_matrices
 from dynamics.assembly import bearing_rest
 from dynamics.assembly.assemble import assemble
@@ -205,7 +205,7 @@ def test_amplitudes_of_a_housing_are_modal_and_rotors_are_not():
 
 @pytest.mark.parametrize("bound", ["coupled", "moves a position", "loaded"])
 def test_a_freedom_that_more_than_elements_bind_is_not_modal(bound):
-    n = 2 * LEAST
+    n = 2 * MIN
     mass, damping, stiffness, direction = np.eye(n), np.zeros((n, n)), np.eye(n), np.ones((3, n))
     others = np.zeros((2, n))
     assert modal_freedoms_of(mass, damping, stiffness, direction, others).first == 0

@@ -291,14 +291,14 @@ def unlike_shafts():
 
 
 @pytest.mark.law
-@pytest.mark.parametrize(("scene", "most"), [(disc_scene(), FINEST), (unlike_shafts(), 2 * INTERVALS)])
-def test_fewer_speeds_tell_the_same_branches(scene, most) -> None:
+@pytest.mark.parametrize(("scene", "maximum"), [(disc_scene(), FINEST), (unlike_shafts(), 2 * INTERVALS)])
+def test_fewer_speeds_tell_the_same_branches(scene, maximum) -> None:
     """Those of 33 speeds: the same modes at speeds of both, between them within 0.2 % of straight lines."""
     system = assemble(scene)
     linear, highest = linearize(system), float(system.scene.references[0].speed.extreme)
     every = whirl_branches(system, linear, np.linspace(0.0, highest, FINEST + 1))
     found = branches_up_to(system, linear, highest)
-    assert INTERVALS < found.speed.size <= most
+    assert INTERVALS < found.speed.size <= maximum
     assert found.speed[[0, -1]].tolist() == [0.0, highest]
     rows = np.searchsorted(every.speed, found.speed)
     np.testing.assert_array_equal(every.speed[rows], found.speed)

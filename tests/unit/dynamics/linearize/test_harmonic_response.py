@@ -174,6 +174,6 @@ def test_orders_of_a_long_common_period_meet_in_all_phases():
     amplitude = (chance.normal(size=24) + 1j * chance.normal(size=24))[None, None]
     turns = 2.0j * np.pi * chance.uniform(0.0, 693.0, 20_000)
     wave = np.real(np.exp(turns[:, None] * order) @ amplitude[0, 0])
-    least, most = np.ravel(extremes(amplitude, order))
-    assert least <= wave.min() < 0.8 * least
-    assert 0.8 * most < wave.max() <= most
+    minimum, maximum = np.ravel(extremes(amplitude, order))
+    assert minimum <= wave.min() < 0.8 * minimum
+    assert 0.8 * maximum < wave.max() <= maximum

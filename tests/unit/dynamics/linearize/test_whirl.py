@@ -245,11 +245,11 @@ def test_a_varying_stiffness_is_that_of_the_time_domain(rpm):
     scene = with_mesh(scene, damping_ratio=0.1)
     at = excited(assemble(scene), 0.0, 24, 256)
     found, shift = parametric_response(at, np.array([rpm * RPM]), np.zeros(1), 24)
-    least, most = extremes(found.dynamic_transmission_error, found.order)
+    minimum, maximum = extremes(found.dynamic_transmission_error, found.order)
     outputs = Outputs(sample_rate=1e5, energy_audit=False, receipt="minimal")
     run = simulate(replace(scene, outputs=outputs, integration=Integration(tolerance=1e-10)))
     error = run.dynamic_transmission_error[0, run.time.size // 2 :]
-    assert (most - least)[0, 0] == pytest.approx(np.ptp(error), rel=0.05)
+    assert (maximum - minimum)[0, 0] == pytest.approx(np.ptp(error), rel=0.05)
     mean = np.mean(at.cycles[0].static_error) + shift[0, 0]
     assert mean == pytest.approx(np.mean(error), rel=2e-3)
     force = run.bearing_force[0, 1, run.time.size // 2 :]

@@ -43,8 +43,8 @@ def predicted(low: float, high: float, divisions: int = 6) -> Cost:
 
 
 def test_it_grows_with_the_range_and_with_panels() -> None:
-    octave, two, most = predicted(200.0, 400.0), predicted(200.0, 800.0), predicted(100.0, 1200.0)
-    assert octave.seconds < two.seconds < most.seconds
+    octave, two, maximum = predicted(200.0, 400.0), predicted(200.0, 800.0), predicted(100.0, 1200.0)
+    assert octave.seconds < two.seconds < maximum.seconds
     assert octave.seconds < predicted(400.0, 800.0).seconds
     coarse, fine = predicted(200.0, 800.0), predicted(200.0, 800.0, 12)
     assert coarse.seconds < fine.seconds and coarse.bytes < fine.bytes

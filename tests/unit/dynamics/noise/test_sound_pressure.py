@@ -319,9 +319,9 @@ def test_a_resonance_that_only_the_housing_damps_falls_by_the_ratio():
     ranges = {"housing_damping": Range(0.5, 1.0, 2.0)}
     band = sound_band(model, fine, 1, ranges, cases=16).largest[0]
     assert order.tolist() == [1.0]
-    least, low, high, most = (20.0 * np.log10(0.5 + 1.5 * share) for share in (0.0, 0.12, 0.88, 1.0))
-    assert least < band.nominal - band.high < low
-    assert high < band.nominal - band.low < most
+    minimum, low, high, maximum = (20.0 * np.log10(0.5 + 1.5 * share) for share in (0.0, 0.12, 0.88, 1.0))
+    assert minimum < band.nominal - band.high < low
+    assert high < band.nominal - band.low < maximum
     assert band.above["housing_damping"] == pytest.approx(band.high - band.nominal, abs=0.1)
 
 

@@ -481,7 +481,7 @@ def test_two_housings_alike_are_3_db_louder_than_one() -> None:
 
 def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypatch) -> None:
     module = import_module("dynamics.noise.housing_radiation")
-    monkeypatch.setattr(module, "LEAST_COST", 0.0)
+    monkeypatch.setattr(module, "MIN_COST", 0.0)
     body = rigid_housing(1.0, 1e6, 0.02, sphere(6, 0.1))
     first = kept_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
     monkeypatch.setattr(module, "housing_radiation", None)

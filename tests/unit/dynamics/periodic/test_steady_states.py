@@ -91,8 +91,8 @@ def test_a_small_ripple_gives_the_harmonic_response():
     np.testing.assert_allclose(found.peak_to_peak_error[up, 0], 2.0 * amplitude, rtol=2e-4)
     force = np.sqrt(0.5 * np.sum(np.abs(linear.bearing_force[:, :3, :, 0]) ** 2, axis=1)).T
     np.testing.assert_allclose(found.rms_bearing_force[up], force, rtol=1e-4)
-    least = linear.mean_force - np.abs(linear.mesh_force[:, :, 0]).T
-    np.testing.assert_allclose(found.least_force[up], least, rtol=1e-5)
+    minimum = linear.mean_force - np.abs(linear.mesh_force[:, :, 0]).T
+    np.testing.assert_allclose(found.least_force[up], minimum, rtol=1e-5)
     np.testing.assert_array_equal(found.instability, 0)
 
 

@@ -10,7 +10,7 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear
 from planetary_scenes import planetary_scene, published_set
 
-from bounds.brief import MOST_LINES, WIDTH
+from bounds.brief import MAX_LINES, WIDTH
 from dynamics.assembly.assemble import assemble
 from dynamics.errors import InputError, ResultError
 from dynamics.loads import TimeLaw
@@ -56,7 +56,7 @@ def test_bearings_carry_the_mesh_and_what_accelerates_the_shaft():
 def test_the_text_of_a_run_says_its_parts_and_forces_in_a_dozen_lines(result):
     lines = repr(result).split("\n")
     assert lines[0] == f"RunResult, 0.2 s in {result.time.size} samples, completed"
-    assert len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
+    assert len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH
     assert "2 shafts, 1 mesh, 4 bearings, 1 drive" in lines[1]
     assert f"{result.mesh_force.max():.4g} N" in lines[2]
 
@@ -222,7 +222,7 @@ def test_the_dynamic_factor_is_one_in_the_quasi_static_limit():
     assert 1.0 < quiet.largest.max() < 1.02
     loud = dynamic_factor(simulate(gear_pair_scene(duration=0.1)), pitches=1)
     assert loud.largest.max() > 1.1
-    assert np.all(loud.least <= loud.mean)
+    assert np.all(loud.minimum <= loud.mean)
     assert np.all(loud.mean <= loud.largest)
 
 

@@ -166,9 +166,9 @@ def test_memory_does_not_grow_with_duration(tmp_path):
         scene = replace(run_up(duration), outputs=Outputs(sample_rate=200e3, displacements=True))
         tracemalloc.start()
         simulate_to_file(scene, tmp_path / "run.nc")
-        _, most = tracemalloc.get_traced_memory()
+        _, maximum = tracemalloc.get_traced_memory()
         tracemalloc.stop()
-        return most
+        return maximum
 
     peak(0.05)
     short, long = peak(0.2), peak(0.8)

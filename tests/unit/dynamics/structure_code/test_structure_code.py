@@ -138,7 +138,7 @@ def test_code_is_made_after_as_long_as_it_takes_and_sooner_when_seen_before(stor
     key = key_of(system)
     run(system, monkeypatch, math.inf)
     assert not store.seen(key)  # too short to be noted
-    monkeypatch.setattr(code_choice, "LEAST", 0.0)
+    monkeypatch.setattr(code_choice, "MIN", 0.0)
     run(system, monkeypatch, math.inf)
     assert store.seen(key)
     assert store.get(key) is None

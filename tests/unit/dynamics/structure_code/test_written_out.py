@@ -60,9 +60,9 @@ def _weighted(plan: Plan, work: Work, row: int, scale: float) -> tuple[float, fl
 
 
 @compiled
-def _found(work: Work, least: float) -> int:
+def _found(work: Work, minimum: float) -> int:
     for i in range(work.x.size):
-        if work.x[i] < least:
+        if work.x[i] < minimum:
             continue
         if work.x[i] > 1.0 or (work.hint[i] > 3 and work.x[i] > 0.0):
             return i

@@ -159,10 +159,10 @@ def test_a_cycle_that_needs_many_pitches_is_solved_whole(exact, monkeypatch):
 
 def test_drawn_pitches_do_not_test_themselves():
     envelope = Envelope.of(contact_of(1.0))
-    least = envelope.least.ste[envelope.drawn]
-    own = least == envelope.exact[: envelope.drawn.size]
+    minimum = envelope.minimum.ste[envelope.drawn]
+    own = minimum == envelope.exact[: envelope.drawn.size]
     assert own.any()
-    assert np.all(envelope.without.ste[own] > least[own])
+    assert np.all(envelope.without.ste[own] > minimum[own])
 
 
 def test_a_revolution_of_few_teeth_is_solved_whole():

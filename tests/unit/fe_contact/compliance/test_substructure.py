@@ -226,9 +226,9 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
 @pytest.mark.law
 def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> None:
     layers = SectorRecipe.draft(disc(1.0)).layers
-    least = least_face_width(disc(1.0), layers) / 4e-3
-    assert disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
-    allowed, thinner = disc(1.001 * least), disc(0.999 * least)
+    minimum = least_face_width(disc(1.0), layers) / 4e-3
+    assert disc_rounding(slenderness(disc(minimum)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
+    allowed, thinner = disc(1.001 * minimum), disc(0.999 * minimum)
     check_request(
         GearPair(allowed, mate_of(allowed)), *table_request(torques=[1.0], model="3d", level="draft")
     )

@@ -326,9 +326,9 @@ def test_curves_move_the_contacts_as_the_means_of_their_slices_do() -> None:
 def test_a_misleading_start_is_given_up(springs: ContactProblem) -> None:
     """Where bodies are barely definite, forces on a few points may lead nowhere: a guess of its own does."""
     present = springs.candidates.slices.present
-    least = np.linalg.eigvalsh(springs.bodies[0][np.ix_(present[0], present[0])])[0]
+    minimum = np.linalg.eigvalsh(springs.bodies[0][np.ix_(present[0], present[0])])[0]
     compliance, at = springs.compliance.copy(), np.arange(present.shape[1])
-    compliance[:, at, at] -= np.where(present, 2.7 * least, 0.0)
+    compliance[:, at, at] -= np.where(present, 2.7 * minimum, 0.0)
     barely = replace(springs, compliance=compliance)
     cold = solve_contact(barely, THREE_LOADS)
     assert cold.converged

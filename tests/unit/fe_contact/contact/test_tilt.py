@@ -138,7 +138,7 @@ def energy(problem: PointProblem, held: np.ndarray) -> float:
     """h'K h/2, what is least of the tilted gaps, from samples of the place, and that of strips at edges."""
     tilt = problem.tilt @ held
     y = np.linspace(-problem.law.length, problem.law.length, 1_000_001)[:, None]
-    least = (y * tilt + 0.5 * y**2 / problem.radius).min(axis=0)
+    minimum = (y * tilt + 0.5 * y**2 / problem.radius).min(axis=0)
     at_edges = 0.0
     for j in np.flatnonzero(problem.edge[:, SIDE]):
         side, offset, radius, softness, patch, *_ = problem.edge[j]
@@ -146,8 +146,8 @@ def energy(problem: PointProblem, held: np.ndarray) -> float:
         forces = held[j] * (np.arange(2000) + 0.5) / 2000.0
         corner = np.mean([edge_motion(problem.edge, j, force, 0.0).corner for force in forces])
         at_edges += held[j] * (side * tilt[j] * (place - patch) + corner)
-        least[j] = 0.0
-    return float(0.5 * held @ problem.bodies @ held + held @ least + at_edges)
+        minimum[j] = 0.0
+    return float(0.5 * held @ problem.bodies @ held + held @ minimum + at_edges)
 
 
 def state_of(problem: PointProblem, held: np.ndarray) -> State:

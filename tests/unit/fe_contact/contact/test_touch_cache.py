@@ -47,12 +47,12 @@ def test_other_positions_are_found_anew():
 
 
 def test_the_cache_is_bounded(monkeypatch):
-    monkeypatch.setattr(touch_cache, "_MOST", 3)
+    monkeypatch.setattr(touch_cache, "_MAX", 3)
     for relief in np.linspace(1e-6, 9e-6, 6).tolist():
         pair, model, plain = candidates_of(relief)
         with_gaps(pair, plain, model)
     assert len(touch_cache._entries) == 3
-    monkeypatch.setattr(touch_cache, "_MOST_BYTES", 0)
+    monkeypatch.setattr(touch_cache, "_MAX_BYTES", 0)
     pair, model, plain = candidates_of(2e-5)
     assert np.isfinite(with_gaps(pair, plain, model).gap).any()
     assert not touch_cache._entries

@@ -43,16 +43,16 @@ def touching(pair, pitches):
 def assert_least(pair, pitches=(1, 2, 3)):
     """Compare with samples; what is designed counts at tip edges by their lever arms, which have a test."""
     model, candidates, meeting = touching(pair, pitches)
-    at, least = sampled_gap(pair, model, candidates, meeting, SAMPLES)
+    at, minimum = sampled_gap(pair, model, candidates, meeting, SAMPLES)
     if model.gaps:
         levers = candidates.touch.lever_1[at], candidates.touch.lever_2[at]
         on_line = (levers[0] == 1.0) & (levers[1] == 1.0)
-        at, least = tuple(index[on_line] for index in at), least[on_line]
+        at, minimum = tuple(index[on_line] for index in at), minimum[on_line]
     touch = candidates.touch
     rolls = rolls_at(pair, touch.s_1[at], touch.s_2[at])
     teeth = MeetingTeeth(pair, meeting[at], *rolls, candidates.face_position[at[1]])
     of_teeth = model.gap_of_teeth(teeth)  # a lag, while the slope of gear 2 turns what is designed
-    above = (candidates.gap[at] - of_teeth) / (touch.lag[at] if model.gaps else 1.0) + of_teeth - least
+    above = (candidates.gap[at] - of_teeth) / (touch.lag[at] if model.gaps else 1.0) + of_teeth - minimum
     assert above.max() < 1e-9
     assert above.min() > -RESOLVED
     assert np.all(candidates.touch.curvature[at] > 0.0)
@@ -126,8 +126,8 @@ def test_gaps_of_two_valleys_are_followed_into_the_deeper_one():
         return np.minimum(deep, (x + 0.5) ** 2 - 0.1)
 
     x, of = np.tile(np.linspace(-1.0, 1.0, 9), 2), np.repeat([0, 1], 9)
-    place, least = least_gap(gap, x, of, np.full(2, 1e-6))
-    assert least == pytest.approx([-0.4, -0.1], abs=0.02)
+    place, minimum = least_gap(gap, x, of, np.full(2, 1e-6))
+    assert minimum == pytest.approx([-0.4, -0.1], abs=0.02)
     assert place == pytest.approx([0.55, -0.5], abs=0.01)
     end, low = least_gap(
         lambda x, of: (x - 0.1) ** 2, np.array([0.0, 1.0]), np.zeros(2, int), np.full(1, 1e-6)

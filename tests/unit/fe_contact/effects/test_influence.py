@@ -39,7 +39,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
     checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
-    found = estimate_influence(checked.request.scene, checked.decided, name)
+    found = estimate_influence(checked.request.scene, checked.decision, name)
     assert found is not None
     return found
 
@@ -144,7 +144,7 @@ def test_what_a_scene_does_not_hold_changes_nothing_and_more_more() -> None:
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
         assert influence(PAIR, name).largest == 0.0
     checked = check_request(HELICAL, TableAxes(normal_forces=[2000.0]))
-    assert estimate_influence(checked.request.scene, checked.decided, "face_load_distribution") is None
+    assert estimate_influence(checked.request.scene, checked.decision, "face_load_distribution") is None
     small, large = (influence(PAIR, "misalignment", misalignments=[x]) for x in (2e-6, 20e-6))
     assert large.largest > 10.0 * small.largest > 0.0
 

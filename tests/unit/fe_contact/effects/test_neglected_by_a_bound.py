@@ -74,7 +74,7 @@ def test_the_end_of_a_measured_trace_is_not_dropped(removed: tuple[float, ...], 
     rough = GearPair(GEAR, replace(wheel, tooth_flanks=(ToothFlank(tooth, flank_grid=grid),)))
     for tolerance in (0.3, 0.02):
         asked = TOLERANCE | {"tolerance": tolerance, "pitches": 67}
-        assert check_request(rough, *table_request(**asked)).decided["tooth_deviations"] == "on"
+        assert check_request(rough, *table_request(**asked)).decision["tooth_deviations"] == "on"
 
 
 def drawn(seed: int) -> GearPair:
@@ -100,8 +100,8 @@ def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed: i
     allowed, request = checked.request.options.allowed, checked.request
     bounds = []
     for name in request.neglected:
-        scene, decided = checked.assessing(name)
-        influence = estimate_influence(scene, decided, name)
+        scene, decision = checked.assessing(name)
+        influence = estimate_influence(scene, decision, name)
         extent = scene.effect(name).extent(scene)
         assert influence is not None
         assert np.all(np.abs(influence.mean) <= extent.reach + 1e-12)

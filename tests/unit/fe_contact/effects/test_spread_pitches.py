@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.effects.influence.estimated_curve import MOST_PITCHES, spread_pitches
+from fe_contact.effects.influence.estimated_curve import MAX_PITCHES, spread_pitches
 
 PAIRS = [(23, 67), (20, 64), (32, 96), (34, 55), (17, 23), (53, 102), (61, 125), (199, 500)]
 """Teeth: hunting, with common factors, of Fibonacci, many."""
@@ -17,7 +17,7 @@ PAIRS = [(23, 67), (20, 64), (32, 96), (34, 55), (17, 23), (53, 102), (61, 125),
 @pytest.mark.parametrize("teeth", PAIRS, ids=lambda pair: "/".join(map(str, pair)))
 def test_run_outs_and_their_beat_are_seen_whole_and_have_no_mean(teeth: tuple[int, int]) -> None:
     pitch = spread_pitches(teeth)
-    assert len(set(pitch)) == len(pitch) == MOST_PITCHES
+    assert len(set(pitch)) == len(pitch) == MAX_PITCHES
     assert np.all((pitch >= 0) & (pitch < math.lcm(*teeth)))
     rates = [1.0 / number for number in teeth] + [2.0 / number for number in teeth]
     one, other = rates[:2]

@@ -127,8 +127,8 @@ def test_edges_count_where_a_design_of_the_bounds_reaches_them() -> None:
         design_request(LONG_RELIEFS, [TORQUE], [replace(one, low=low) for one in AMOUNTS], **DRAFT).space
         for low in (0.0, 50e-6)
     )
-    assert low.check([TORQUE]).decided["corner_contact"] == "on"
-    assert high.check([TORQUE]).decided["corner_contact"] == "off"
+    assert low.check([TORQUE]).decision["corner_contact"] == "on"
+    assert high.check([TORQUE]).decision["corner_contact"] == "off"
 
 
 @pytest.mark.law

@@ -45,7 +45,7 @@ class Tangent:
 
     away: FloatArray
 
-    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+    def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         step = np.where(self.away > 0.0, low, high)
         return step, 1.0 + float((self.away**2).sum() + 2.0 * self.away @ step)
 
@@ -337,7 +337,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
     )
     asked: Any = SimpleNamespace(own=(0.0,), search=Search())
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
-    study: Any = SimpleNamespace(decided=SimpleNamespace(checked=checked, plan=None))
+    study: Any = SimpleNamespace(decision=SimpleNamespace(checked=checked, plan=None))
     found = choice.choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)
     places = [0.1 * k for k in range(1, rounds + 1)]
     assert searched == [sorted([0.0, 0.5, *places[: k + 1]]) for k in range(rounds)]
@@ -428,7 +428,7 @@ def merit_at(merit: LinearMerit, step: np.ndarray) -> float:
 @pytest.mark.parametrize("seed", range(5))
 def test_the_least_is_that_of_the_merit_itself(objective, seed):
     merit = some_merit(objective, seed)
-    step, promised = merit.least(LOW, HIGH)
+    step, promised = merit.minimum(LOW, HIGH)
     assert ((step >= LOW - 1e-9) & (step <= HIGH + 1e-9)).all()
     assert promised == pytest.approx(merit_at(merit, step), rel=1e-7)
     rng = np.random.default_rng(seed)

@@ -11,7 +11,7 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
 from fe_contact.analysis.position_nodes import adaptive_nodes
-from fe_contact.analysis.request.model_choice import TRIED_WORK, Decided, decide
+from fe_contact.analysis.request.model_choice import TRIED_WORK, Decision, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run, predicted_designs
 from fe_contact.geometry import InternalGearPair
@@ -113,7 +113,7 @@ def test_positions_follow_a_tolerance_that_is_smaller_than_usual():
         assert search(0.05, helix).tolerance == usual.tolerance
         tight = search(0.001, helix)
         assert tight.tolerance == pytest.approx(POSITION_SHARE * 0.001)
-        assert tight.most > usual.most
+        assert tight.maximum > usual.maximum
         assert search(1e-4, helix).tolerance == pytest.approx(max(CLOSEST * usual.tolerance, 5e-5))
 
 
@@ -141,11 +141,11 @@ def test_what_costs_a_tenth_is_tried_first():
 TOLERANCES = np.geomspace(0.05, 5e-4, 14)
 
 
-def usual_effort(decided: Decided) -> float:
+def usual_effort(decision: Decision) -> float:
     """Return the work of a mesh with the positions of a run without a tolerance."""
-    nodes = FACE_NODES if decided.checked.model.across_face else PLANE_NODES
-    plan, request = dataclasses.replace(decided.plan, nodes=nodes), decided.checked.request
-    return effort(request.pair, plan, decided.checked.model, request.alignments)
+    nodes = FACE_NODES if decision.checked.model.across_face else PLANE_NODES
+    plan, request = dataclasses.replace(decision.plan, nodes=nodes), decision.checked.request
+    return effort(request.pair, plan, decision.checked.model, request.alignments)
 
 
 @pytest.mark.law
@@ -168,9 +168,9 @@ def test_a_looser_tolerance_is_never_expected_to_cost_more(
     work = []
     for tolerance in TOLERANCES:
         axes, options = table_request(normal_forces=[80e3 * width], tolerance=AllowedError(tolerance, 0.0))
-        decided = decide(check_request(helical, axes, options), tried=True)
-        work.append(sum(made.mesh.option.effort for made in decided.passes))
-        first, *others = (usual_effort(made) for made in decided.passes)
+        decision = decide(check_request(helical, axes, options), tried=True)
+        work.append(sum(made.mesh.option.effort for made in decision.passes))
+        first, *others = (usual_effort(made) for made in decision.passes)
         assert all(first <= TRIED_WORK * other for other in others)
     assert np.all(np.diff(work) >= -1e-9 * np.array(work[1:]))
 

@@ -287,13 +287,13 @@ def test_positions_of_spur_pairs_are_those_expected_at_one_load_and_at_several(m
 
 
 @pytest.mark.parametrize(
-    ("tolerance", "least", "most"), [(None, 0.6, 1.6), (AllowedError(0.05, 1e-7), 0.65, 1.4)]
+    ("tolerance", "minimum", "maximum"), [(None, 0.6, 1.6), (AllowedError(0.05, 1e-7), 0.65, 1.4)]
 )
-def test_positions_of_helical_pairs_do_not_grow_with_the_loads(tolerance, least, most):
+def test_positions_of_helical_pairs_do_not_grow_with_the_loads(tolerance, minimum, maximum):
     """Their handovers are gentle; without a floor their small ripple asks for more."""
     gears = pair(helix=0.35, width=20e-3)
     level = {"level": "draft"} if tolerance is None else {"tolerance": tolerance}
     for loads in ([2e3], [2e2 * 1.3**k for k in range(12)]):
         asked = check_request(gears, *table_request(normal_forces=loads, model="3d", **level))
         solved = analyze(asked).position.size
-        assert least < expected_positions(gears, decide(asked).plan) / solved < most
+        assert minimum < expected_positions(gears, decide(asked).plan) / solved < maximum

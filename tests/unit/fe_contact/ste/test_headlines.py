@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bounds.brief import MOST_LINES, WIDTH
+from bounds.brief import MAX_LINES, WIDTH
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 
@@ -38,7 +38,7 @@ def test_a_unit_of_another_quantity_is_refused() -> None:
 def test_the_text_of_a_database_says_its_figures_in_a_dozen_lines(spur: SteDatabase) -> None:
     lines = repr(spur).split("\n")
     assert lines[0] == "SteDatabase 20/20, center distance 80 mm"
-    assert len(lines) <= MOST_LINES and max(map(len, lines)) <= WIDTH
+    assert len(lines) <= MAX_LINES and max(map(len, lines)) <= WIDTH
     torque = float(spur.torque[-1])
     figures = next(line for line in lines if line.split()[:2] == ["at", f"{torque:.4g}"])
     curve = spur.curve(torque=torque, misalignment=0.0, center_distance_change=0.0)

@@ -78,8 +78,8 @@ def test_over_a_hunting_cycle_a_tooth_is_largest_over_all_its_mates() -> None:
     assert table.period == TEETH[0] * TEETH[1]
     pinion, wheel = table.tooth_loads(torque=TORQUE)
     assert (pinion.gear, pinion.most_loaded, wheel.gear, wheel.most_loaded) == (0, (3,), 1, (20,))
-    most = table.force[1] * table.load_share[:, 1].max()
-    assert pinion.force.max() == pytest.approx(most) and wheel.force.max() == pytest.approx(most)
+    maximum = table.force[1] * table.load_share[:, 1].max()
+    assert pinion.force.max() == pytest.approx(maximum) and wheel.force.max() == pytest.approx(maximum)
     assert (pinion.force.size, wheel.force.size) == TEETH
 
 

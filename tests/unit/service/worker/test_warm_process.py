@@ -103,7 +103,7 @@ def test_a_stop_ends_the_warm_process(machine: Bench) -> None:
 def test_after_so_many_children_another_takes_its_place(
     machine: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("host.children.launcher.MOST_FORKS", 2)
+    monkeypatch.setattr("host.children.launcher.MAX_FORKS", 2)
     machine.scheduler._crew._launcher.warm_up()
     warm = warm_process(machine)
     for text in ("a", "b", "c"):
@@ -116,7 +116,7 @@ def test_nobody_waits_for_a_warm_process_that_forks_no_more(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As long as one of its children lives it has no successor."""
-    monkeypatch.setattr("host.children.launcher.MOST_FORKS", 1)
+    monkeypatch.setattr("host.children.launcher.MAX_FORKS", 1)
     monkeypatch.setattr(Launcher.launch, "__defaults__", (600.0,))
     machine = bench(tmp_path, REGISTRY, workers=2)
     machine.scheduler.start()

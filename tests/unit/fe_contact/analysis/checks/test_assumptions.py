@@ -134,7 +134,7 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache:
 )
 def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) -> None:
     checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
-    assert checked.decided["misalignment"] == "on"
+    assert checked.decision["misalignment"] == "on"
     assert checked.model.across_face
 
 

@@ -14,7 +14,7 @@ from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.database import kept_tolerance
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
 from fe_contact.analysis.estimates import held_out_loads
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.options import AnalysisOptions, Run, TableAxes
@@ -39,7 +39,7 @@ def nothing_but_discretization(monkeypatch) -> None:
 def from_draft(monkeypatch) -> None:
     """Begin with the draft, whatever is expected of it: what follows is about what is measured."""
 
-    def drafted(checked, cache=None, **_) -> Decided:
+    def drafted(checked, cache=None, **_) -> Decision:
         first = decide(checked, cache)
         return first.refined("draft", first.mesh.slices, first.plan.nodes, "the coarsest")
 
@@ -102,7 +102,7 @@ def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
     table = analyze(SPUR, tolerance=allowed, **PLANE, cache=tmp_path)
     used = [one["used"] for one in receipt(table)["passes"]]
     assert used == sorted(used, reverse=True)
-    assert len(set(used)) == len(used) <= kept_tolerance.MOST_PASSES
+    assert len(set(used)) == len(used) <= kept_tolerance.MAX_PASSES
     stated = [
         getattr(table, name)(torque=torque)
         for torque in PLANE["torques"]
@@ -171,8 +171,8 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
     computed: list[list[str]] = []
     predicted: list[float] = []
 
-    def counted(checked, case, run, decided, clock) -> _Computed:
-        done = compute_pass(checked, case, run, decided, clock)
+    def counted(checked, case, run, decision, clock) -> _Computed:
+        done = compute_pass(checked, case, run, decision, clock)
         computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
         predicted.append(receipt(done.table)["prediction"]["cpu_seconds"])
         return done
@@ -189,9 +189,9 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
 def refine_positions(monkeypatch) -> None:
     """Let the next pass search its positions more closely, whatever dominates."""
 
-    def closer(decided, _shares):
-        plan = decided.plan
-        finer = decided.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
+    def closer(decision, _shares):
+        plan = decision.plan
+        finer = decision.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
         return kept_tolerance.Refinement(finer, "position", ("positions",), 0.5)
 
     monkeypatch.setattr(kept_tolerance, "next_pass", closer)
@@ -277,7 +277,7 @@ def figures_at(table, torque):
 
 def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkeypatch):
     """Without a limit on halvings it would be: met is said of the intervals, too."""
-    monkeypatch.setattr(held_out_loads, "MOST_HALVINGS", 0)
+    monkeypatch.setattr(held_out_loads, "MAX_HALVINGS", 0)
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [1.0, 80.0]}), cache=tmp_path)
     kept = receipt(wide)["tolerance"]
     (beyond,) = kept["between_nodes"]

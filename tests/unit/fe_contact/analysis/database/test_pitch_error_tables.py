@@ -110,9 +110,9 @@ def test_pitches_solved_in_parts_are_the_whole_table(monkeypatch, edges):
         return solve_sets(problem, sets)
 
     monkeypatch.setattr(kept_contact, "solve_sets", counted)
-    for most in (2**18, 100, 1):
+    for maximum in (2**18, 100, 1):
         sizes.append([])
-        monkeypatch.setattr(kept_contact, "POINTS_AT_ONCE", most)
+        monkeypatch.setattr(kept_contact, "POINTS_AT_ONCE", maximum)
         tables.append(analyze(GearPair(first, gear(23)), **options))
     assert len(sizes[0]) == 1 and max(sizes[1]) <= 100 and len(sizes[2]) == 17
     whole, *parted = tables

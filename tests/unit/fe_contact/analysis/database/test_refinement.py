@@ -11,7 +11,7 @@ from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
 from fe_contact.analysis.database.refinement import AIM, MESH_STEP, Refinement, next_pass
-from fe_contact.analysis.request.model_choice import Decided, decide
+from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.planning.discretization import SLICE_ORDER
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
@@ -23,7 +23,7 @@ def pair(helix: float = 0.0, width: float = 16e-3, **more) -> GearPair:
     return GearPair(gear, mate, 40e-3 / math.cos(helix))
 
 
-def ran(gears: GearPair, level: str, slices: int = 1, **asked) -> Decided:
+def ran(gears: GearPair, level: str, slices: int = 1, **asked) -> Decision:
     """What a pass ran; tolerances of nothing but a part."""
     wish = {"normal_forces": [400.0, 1600.0], "tolerance": AllowedError(0.01, 0.0)} | asked
     first = decide(check_request(gears, *table_request(**wish)))
@@ -38,19 +38,19 @@ def shares(**by_source: float) -> np.ndarray:
     return found
 
 
-def refined(decided: Decided, **by_source: float) -> Refinement:
-    made = next_pass(decided, shares(**by_source))
+def refined(decision: Decision, **by_source: float) -> Refinement:
+    made = next_pass(decision, shares(**by_source))
     assert isinstance(made, Refinement), made
     return made
 
 
 def told(made: Refinement | str) -> object:
     """What is decided, without its arrays."""
-    return made if isinstance(made, str) else (made.source, made.steps, made.expected, made.decided.mesh)
+    return made if isinstance(made, str) else (made.source, made.steps, made.expected, made.decision.mesh)
 
 
 @pytest.fixture(scope="module")
-def helical() -> Decided:
+def helical() -> Decision:
     return ran(pair(0.3), "standard", 15)
 
 
@@ -65,15 +65,15 @@ def test_the_source_that_dominates_is_refined_and_the_rest_kept(helical):
     assert positions.steps == ("positions 0.5 -> 0.12 % of the ripple",)
     plan = helical.plan
     mesh, slices, positions = (
-        refined(helical, **{source: 1.5}).decided.plan for source in ("discretisation", "slices", "position")
+        refined(helical, **{source: 1.5}).decision.plan for source in ("discretisation", "slices", "position")
     )
     assert (mesh.level, mesh.discretization.slices, mesh.nodes) == ("fine", 15, plan.nodes)
     assert (slices.level, slices.discretization.slices) == ("standard", 23)
     assert slices.discretization.recipes == plan.discretization.recipes
     assert positions.discretization == plan.discretization
     assert positions.nodes.tolerance == plan.nodes.tolerance / 4.0
-    assert positions.nodes.most == 2 * plan.nodes.most
-    assert refined(helical, slices=1.5).decided.checked == helical.checked
+    assert positions.nodes.maximum == 2 * plan.nodes.maximum
+    assert refined(helical, slices=1.5).decision.checked == helical.checked
 
 
 def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
@@ -88,8 +88,8 @@ def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
 
 def test_sources_are_refined_as_far_and_as_many_as_needed(helical):
     few, many = (refined(helical, slices=share) for share in (1.2, 3.3))
-    assert few.decided.mesh.slices == 23
-    assert (many.decided.plan.level, many.decided.mesh.slices) == ("fine", 27)  # all that layers resolve
+    assert few.decision.mesh.slices == 23
+    assert (many.decision.plan.level, many.decision.mesh.slices) == ("fine", 27)  # all that layers resolve
     assert many.expected == pytest.approx(3.3 * (15 / 27) ** SLICE_ORDER)
     assert max(few.expected, many.expected) < AIM
     assert not any("positions" in step for step in many.steps)  # they take nothing
@@ -105,12 +105,12 @@ def test_sources_are_refined_as_far_and_as_many_as_needed(helical):
 def test_a_pass_goes_up_one_mesh_level_for_elements_or_layers():
     draft = ran(pair(0.3), "draft", 15)
     made = refined(draft, discretisation=3.0)
-    assert made.decided.plan.level == "standard"
+    assert made.decision.plan.level == "standard"
     assert made.expected == pytest.approx(3.0 * MESH_STEP["face"]["draft"])
     assert draft.mesh.slices == 12
     made = refined(draft, slices=1.3)
-    assert made.decided.plan.level == "standard"
-    assert made.decided.mesh.slices == 15
+    assert made.decision.plan.level == "standard"
+    assert made.decision.mesh.slices == 15
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_e
     tolerance = {"tolerance": AllowedError(0.008, 0.0), "normal_forces": [100.0]}
     made = refined(ran(narrow, "standard", **tolerance), finite_width=1.2, discretisation=0.3)
     assert made.source == "finite_width"
-    assert made.decided.checked.model.across_face
+    assert made.decision.checked.model.across_face
     assert "-> three dimensions" in made.words
     tight = {"tolerance": AllowedError(0.001, 0.0)}
     for plain in (
@@ -166,7 +166,7 @@ def test_a_width_that_was_left_out_is_corrected_for():
     assert "finite_width" in loose.checked.request.neglected
     made = refined(loose, finite_width=1.5)
     assert made.steps == ("model plane strain -> plane strain corrected for the finite width",)
-    assert made.decided.checked.model.finite_width
+    assert made.decision.checked.model.finite_width
     fixed = refined(loose, finite_width=1.5, position=0.7)
     assert fixed.expected == pytest.approx(math.hypot(made.expected, 0.7))
 

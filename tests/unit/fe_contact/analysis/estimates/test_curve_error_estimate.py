@@ -95,10 +95,10 @@ def test_what_few_slices_change_is_carried_on_along_the_curve():
         helical().center_distance,
     )
     checked = check_request(quiet, *table_request(normal_forces=[FORCE], level="draft", positions=32))
-    decided = decide(checked)
-    made = decided.plan.discretization
+    decision = decide(checked)
+    made = decision.plan.discretization
     table, few = (
-        compute_database(checked, {}, Run(), decided.in_slices(count))
+        compute_database(checked, {}, Run(), decision.in_slices(count))
         for count in (made.slices, made.coarse_slices)
     )
     own, sliced = (one.static_transmission_error[:, 0, 0, 0] for one in (table, few))

@@ -56,7 +56,7 @@ def test_center_distances_are_inserted_until_every_interval_meets_the_tolerance(
 
 
 def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatch) -> None:
-    monkeypatch.setattr(held_out_alignments, "MOST_HALVINGS", 0)
+    monkeypatch.setattr(held_out_alignments, "MAX_HALVINGS", 0)
     table = spur(center_distance_changes=CHANGES, cache=cache)
     kept = table.metadata.receipt["tolerance"]
     (beyond,) = kept["between_nodes"]
@@ -68,7 +68,7 @@ def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatc
 
 def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkeypatch) -> None:
     """They agree with those of a table without to the last bit."""
-    monkeypatch.setattr(held_out_alignments, "MOST_HALVINGS", 0)
+    monkeypatch.setattr(held_out_alignments, "MAX_HALVINGS", 0)
     plain = spur(center_distance_changes=CHANGES, cache=cache)
     for name in GRID:
         assert requested(refined, name).tobytes() == getattr(plain, name).tobytes(), name

@@ -14,7 +14,7 @@ DAY = (0, 3)
 @pytest.mark.law
 def test_drawn_tables_cover_what_is_solved_between_their_loads(tmp_path: Path) -> None:
     drawn = list(drawn_tables(count=DAY[-1] + 1))
-    assess([drawn[k] for k in DAY], tmp_path, least=0.9)  # of ten points nine
+    assess([drawn[k] for k in DAY], tmp_path, minimum=0.9)  # of ten points nine
 
 
 @pytest.mark.nightly
@@ -22,10 +22,10 @@ def test_thirty_drawn_tables_cover_what_is_solved_between_their_nodes(tmp_path: 
     assess(list(drawn_tables()), tmp_path)
 
 
-def assess(drawn, cache, least=0.95):
+def assess(drawn, cache, minimum=0.95):
     found = [between_nodes(*table, cache) for table in drawn]
     ripple, mean = (np.concatenate([getattr(one, name) for one in found]) for name in ("ripple", "mean"))
-    assert covered(ripple) >= least
+    assert covered(ripple) >= minimum
     assert covered(mean) >= 0.95
     assert np.mean([one.outside for one in found]) <= 0.05
     assert within(np.concatenate([one.ripple for one in found if one.met])) == 1.0

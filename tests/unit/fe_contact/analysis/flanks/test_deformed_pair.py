@@ -249,8 +249,8 @@ def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Pa
         beside=0,
     )
     for gear, other in ((found.pinion, found.wheel), (found.wheel, found.pinion)):
-        most = gear.points[gear.von_mises.argmax()]
-        assert most[2] == pytest.approx(-0.5 * pair.face_width, rel=1e-6)
+        maximum = gear.points[gear.von_mises.argmax()]
+        assert maximum[2] == pytest.approx(-0.5 * pair.face_width, rel=1e-6)
         near = 0.4 * pair.pinion.normal_module  # two elements of the draft flank
         stressed = gear.points[
             gear.von_mises > 0.9 * gear.von_mises.max()

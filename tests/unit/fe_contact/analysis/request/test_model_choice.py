@@ -33,7 +33,7 @@ def replace_materials(pair: GearPair, material: Material) -> GearPair:
     return GearPair(*gears, pair.center_distance)
 
 
-def decided(pair: GearPair, **asked):
+def decision(pair: GearPair, **asked):
     return decide(check_request(pair, *table_request(normal_forces=LOADS, **asked)))
 
 
@@ -44,12 +44,12 @@ def model_of(found) -> str:
 def test_a_looser_tolerance_never_takes_more_work():
     """Down to plane strain, where what it leaves out is within the tolerance."""
     for case in (pair(), pair(0.3), pair(width=3e-3)):
-        found = [decided(case, tolerance=t) for t in (0.2, 0.05, 0.02, 0.01, 0.005, 0.002)]
+        found = [decision(case, tolerance=t) for t in (0.2, 0.05, 0.02, 0.01, 0.005, 0.002)]
         effort = [one.mesh.option.effort for one in found if one.mesh.met]
         assert effort == sorted(effort)
         assert all(one.mesh.option.error.total <= t for one, t in zip(found, (0.2, 0.05), strict=False))
-    assert model_of(decided(pair(), tolerance=0.05)) == "plane strain"
-    assert model_of(decided(pair(), tolerance=0.01)) == "plane strain corrected for the finite width"
+    assert model_of(decision(pair(), tolerance=0.05)) == "plane strain"
+    assert model_of(decision(pair(), tolerance=0.01)) == "plane strain corrected for the finite width"
 
 
 def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
@@ -58,8 +58,8 @@ def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
     plain = pair(width=2e-3)
     narrow = replace_materials(plain, soft)
     assert 0.03 * finite_width_excess(narrow)[0] > 0.0035 > 0.03 * finite_width_excess(plain)[0]
-    assert model_of(decided(plain, tolerance=0.0035)) == "plane strain corrected for the finite width"
-    found = decided(narrow, tolerance=0.0035)
+    assert model_of(decision(plain, tolerance=0.0035)) == "plane strain corrected for the finite width"
+    found = decision(narrow, tolerance=0.0035)
     assert model_of(found) == "three dimensions"
     entry = next(e for e in found.checked.ledger if e.name == "face_load_distribution")
     assert entry.on
@@ -68,7 +68,7 @@ def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
 
 
 def test_the_ledger_says_why_the_finite_width_is_left_out():
-    found = decided(pair(), tolerance=0.05)
+    found = decision(pair(), tolerance=0.05)
     entry = next(e for e in found.checked.ledger if e.name == "finite_width")
     assert (entry.on, entry.choice, entry.verdict.on) == (False, "auto", True)
     assert "left out for the requested accuracy: expected error" in entry.override
@@ -102,7 +102,7 @@ def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
 
 
 def test_helical_pairs_get_the_cheapest_mesh_and_slices_that_are_exact_enough():
-    found = [decided(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
+    found = [decision(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
     assert found[0].mesh.level == "draft"
     assert found[1].mesh.option.error.total < 0.01 < found[0].mesh.option.error.total
     assert found[1].plan.discretization.slices == found[1].mesh.slices
@@ -116,12 +116,12 @@ def test_a_small_ripple_asks_for_more():
     ]
     parts = [(one.peak_to_peak / one.mean).min() for one in curves]
     assert parts[1] < 0.3 * parts[0]
-    efforts = [decided(one, tolerance=0.02).mesh.option.effort for one in (pair(0.15), smooth)]
+    efforts = [decision(one, tolerance=0.02).mesh.option.effort for one in (pair(0.15), smooth)]
     assert efforts[1] > 1.5 * efforts[0]
 
 
 def test_the_choice_knows_neither_host_nor_cache(tmp_path, monkeypatch):
-    before = decided(pair(0.3), tolerance=0.01).to_json()
+    before = decision(pair(0.3), tolerance=0.01).to_json()
     monkeypatch.setattr("fe_contact.planning.cost_model.host_slowness", lambda _: 40.0)
     asked = check_request(pair(0.3), *table_request(normal_forces=LOADS, tolerance=AllowedError(0.01)))
     assert decide(asked, tmp_path).to_json() == before
