@@ -19,12 +19,12 @@ from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.gearbox.studies.change.question import heard_mesh
+from lineofaction.gearbox.studies.change.question import flank_mesh
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
-from lineofaction.gearbox.studies.optimize.heard_problem import HeardProblem
-from lineofaction.gearbox.studies.optimize.heard_search import heard_problem, misalignments
 from lineofaction.gearbox.studies.optimize.run import request_of
+from lineofaction.gearbox.studies.optimize.sound_problem import HeardProblem
+from lineofaction.gearbox.studies.optimize.sound_search import misalignments, sound_problem
 from lineofaction.gearbox.workbench import tabled
 from model_studies.workers import InProcess
 
@@ -101,8 +101,8 @@ def _problem(folder: Path, variables: dict[str, Any] | None = None) -> HeardProb
     study = Inputs.model_validate(own if variables is None else own | {"variables": variables})
     subject, question = tabled(folder / "before" / "cased.toml"), study.heard
     assert question is not None
-    mesh = heard_mesh(subject.inputs, question.mesh)
+    mesh = flank_mesh(subject.inputs, question.mesh)
     assert mesh.case is not None
     means = Means(cache_home(), lambda _stage, _part: None)
     skew = misalignments(subject, mesh, question, means)
-    return heard_problem(subject, mesh, question, request_of(mesh.case, study), skew, means).problem
+    return sound_problem(subject, mesh, question, request_of(mesh.case, study), skew, means).problem

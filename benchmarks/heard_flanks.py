@@ -9,11 +9,11 @@ import numpy as np
 import lineofaction as loa
 from benchmarks.figures import Figure
 from host.directories import cache_home
-from lineofaction.gearbox.studies.change.question import heard_mesh
+from lineofaction.gearbox.studies.change.question import flank_mesh
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.optimize import Inputs
-from lineofaction.gearbox.studies.optimize.heard_search import heard_problem
 from lineofaction.gearbox.studies.optimize.run import request_of
+from lineofaction.gearbox.studies.optimize.sound_search import sound_problem
 from lineofaction.gearbox.workbench import tabled
 
 SUBJECT = "flanks searched by sound against flanks of least peak-to-peak"
@@ -73,10 +73,10 @@ def _level(scene: dict[str, Any], values: dict[str, float]) -> float:
     """Return how loud flanks are in a scene, dB."""
     study = Inputs.model_validate({"variables": FREE, "search": SEARCH, "heard": HEARD})
     subject = tabled(scene)
-    mesh = heard_mesh(subject.inputs, None)
+    mesh = flank_mesh(subject.inputs, None)
     assert mesh.case is not None and study.heard is not None
     request, means = request_of(mesh.case, study), Means(cache_home(), lambda _stage, _part: None)
-    problem = heard_problem(subject, mesh, study.heard, request, np.zeros(1), means).problem
+    problem = sound_problem(subject, mesh, study.heard, request, np.zeros(1), means).problem
     return problem.evaluated(values)[0]
 
 

@@ -13,8 +13,8 @@ from small_inputs import small_inputs
 
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.registry import change, response, scatter
-from lineofaction.gearbox.studies.change.heard_flanks import HeardFlanks
 from lineofaction.gearbox.studies.change.result import FlankChange
+from lineofaction.gearbox.studies.change.sound_flanks import HeardFlanks
 
 Json = dict[str, Any]
 PAIRS = 12

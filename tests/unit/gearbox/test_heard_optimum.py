@@ -22,16 +22,16 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import change, optimize
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.change.heard_flanks import system_with
-from lineofaction.gearbox.studies.change.question import heard_mesh
+from lineofaction.gearbox.studies.change.question import flank_mesh
+from lineofaction.gearbox.studies.change.sound_flanks import system_with
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import Work
 from lineofaction.gearbox.studies.optimize import Inputs
-from lineofaction.gearbox.studies.optimize import heard_problem as heard_problem_module
-from lineofaction.gearbox.studies.optimize.heard_problem import HeardMerit, HeardProblem, Powers
-from lineofaction.gearbox.studies.optimize.heard_search import LINEARIZED, heard_problem, misalignments
+from lineofaction.gearbox.studies.optimize import sound_problem as sound_problem_module
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.studies.optimize.run import RUN, request_of
+from lineofaction.gearbox.studies.optimize.sound_problem import HeardMerit, HeardProblem, Powers
+from lineofaction.gearbox.studies.optimize.sound_search import LINEARIZED, misalignments, sound_problem
 from lineofaction.gearbox.workbench import tabled
 from lineofaction.report.design.optimize import PAGE
 from model_studies.spread import quantiles
@@ -63,12 +63,12 @@ def inputs(**heard: Any) -> Json:
 def problem(**heard: Any) -> HeardProblem:
     study = Inputs.model_validate(inputs(**heard))
     subject = tabled(scene())
-    mesh = heard_mesh(subject.inputs, None)
+    mesh = flank_mesh(subject.inputs, None)
     assert mesh.case is not None and study.heard is not None
     request = request_of(mesh.case, study)
     loads = len(study.heard.load_cases)
     means = Means(cache_home(), lambda _stage, _part: None)
-    return heard_problem(subject, mesh, study.heard, request, np.zeros(loads), means).problem
+    return sound_problem(subject, mesh, study.heard, request, np.zeros(loads), means).problem
 
 
 DESIGN = {"pinion.tip_relief": 5e-6, "pinion.profile_crowning": 1.5e-6, "wheel.tip_relief": 3.5e-6}
@@ -182,7 +182,7 @@ def test_a_usual_search_takes_the_contacts_that_are_predicted(monkeypatch: pytes
         solved[evaluator.position.size] += LINEARIZED if slopes else 1.0
         return tabled_loads(evaluator, values, nodes, *slopes)
 
-    monkeypatch.setattr(heard_problem_module, "tabled_loads", counted)
+    monkeypatch.setattr(sound_problem_module, "tabled_loads", counted)
     searched(inputs())
     few, full = predicted()["designs"]
     (pairs,) = predicted()["pairs"]
@@ -256,7 +256,7 @@ def test_a_quantile_of_the_pairs_is_minimized() -> None:
 def test_a_mesh_that_states_its_misalignment_is_heard_at_it() -> None:
     """It would be deflected twice: the misalignment stated is part of what a deflection finds."""
     study, subject = Inputs.model_validate(inputs()), tabled(scene())
-    mesh = heard_mesh(subject.inputs, None)
+    mesh = flank_mesh(subject.inputs, None)
     assert study.heard is not None
     table = subject.databases["mesh"]
     receipt = table.metadata.receipt

@@ -28,23 +28,23 @@ class HeardQuestion(Protocol):
     def heard(self) -> HeardInput: ...  # noqa: D102
 
 
-def check_heard(scene: SceneInput, heard: HeardInput) -> None:
+def check_receiver(scene: SceneInput, receiver: HeardInput) -> None:
     """Refuse what a scene does not let hear."""
-    if heard.quantity not in (None, BEARING_FORCE) or heard.microphone_mm is not None:
+    if receiver.quantity not in (None, BEARING_FORCE) or receiver.microphone_mm is not None:
         require_surface(scene)
-    pressure = heard.quantity == SOUND_PRESSURE or (
-        heard.quantity is None and heard.microphone_mm is not None
+    pressure = receiver.quantity == SOUND_PRESSURE or (
+        receiver.quantity is None and receiver.microphone_mm is not None
     )
-    if pressure != (heard.microphone_mm is not None):
-        bound = "given with sound_pressure" if pressure else f"left out with {heard.quantity}"
-        raise BadInput.of("heard.microphone_mm", heard.microphone_mm, bound)
-    if pressure or heard.quantity == SURFACE_VELOCITY:
-        heard_housing(scene, heard)
-    if heard.bearing is not None:
+    if pressure != (receiver.microphone_mm is not None):
+        bound = "given with sound_pressure" if pressure else f"left out with {receiver.quantity}"
+        raise BadInput.of("heard.microphone_mm", receiver.microphone_mm, bound)
+    if pressure or receiver.quantity == SURFACE_VELOCITY:
+        housing_of(scene, receiver)
+    if receiver.bearing is not None:
         known = [part.name for part in scene.bushings]
         known += [part.name for part in scene.rolling_bearings]
         known += [part.name for part in scene.planet_bearings]
-        _require_named("heard.bearing", heard.bearing, known)
+        _require_named("heard.bearing", receiver.bearing, known)
 
 
 def check_driving(scene: SceneInput, load_cases: Sequence[LoadCaseInput]) -> None:
@@ -55,20 +55,20 @@ def check_driving(scene: SceneInput, load_cases: Sequence[LoadCaseInput]) -> Non
             raise BadInput.of(f"load_cases[{index}].direction", case.direction, bound)
 
 
-def heard_housing(scene: SceneInput, heard: HeardInput) -> str:
+def housing_of(scene: SceneInput, receiver: HeardInput) -> str:
     """Return the housing whose surface is heard; raises `BadInput`."""
     known = [part.name for part in scene.housings if part.has_surface]
-    if heard.housing is None and len(known) == 1:
+    if receiver.housing is None and len(known) == 1:
         return known[0]
-    if heard.housing is None:
+    if receiver.housing is None:
         raise BadInput.of("heard.housing", None, f"one of {', '.join(known)}", "Name the housing.")
-    _require_named("heard.housing", heard.housing, known)
-    return heard.housing
+    _require_named("heard.housing", receiver.housing, known)
+    return receiver.housing
 
 
-def heard_mesh(scene: SceneInput, mesh: str | None) -> MeshInput:
+def flank_mesh(scene: SceneInput, mesh: str | None) -> MeshInput:
     """Return the mesh whose flanks are heard; raises `BadInput`."""
-    by_name = {each.name: each for each in scene.meshes if each.case or each.case_file}
+    by_name = {part.name: part for part in scene.meshes if part.case or part.case_file}
     if mesh is None and len(by_name) == 1:
         return next(iter(by_name.values()))
     if not by_name:

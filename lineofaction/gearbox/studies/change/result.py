@@ -108,7 +108,7 @@ class FlankChange:
     def influence(self) -> FloatArray:
         """Rank correlation (2, d, L) of each deviation with the change and the level after it, all orders."""
         of_change, of_level = self.change[:, :, 0], self.after.pairs[:, :, 0]
-        return np.stack([rank_correlation(self.deviation, each) for each in (of_change, of_level)])
+        return np.stack([rank_correlation(self.deviation, response) for response in (of_change, of_level)])
 
     @property
     def met(self) -> bool | None:

@@ -26,17 +26,17 @@ from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.change import ChangeFigures, Inputs
-from lineofaction.gearbox.studies.change.heard_flanks import (
+from lineofaction.gearbox.studies.change.question import check_driving, check_receiver, flank_mesh
+from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
+from lineofaction.gearbox.studies.change.sound_flanks import (
     UNITS,
     FlankLevels,
     HeardFlanks,
-    heard_loads,
     levels_cost,
     line_names,
     quantity_of,
+    sound_loads,
 )
-from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
-from lineofaction.gearbox.studies.change.result import DesignLevels, FlankChange
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scatter.run import tolerance_request
@@ -62,15 +62,15 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
         """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
         if inputs.tolerances.samples > MAX_PAIRS:
             raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MAX_PAIRS}")
-        check_heard(scene, inputs.heard)
+        check_receiver(scene, inputs.heard)
         check_driving(scene, inputs.load_cases)
-        mesh = heard_mesh(scene, inputs.mesh)
+        mesh = flank_mesh(scene, inputs.mesh)
         if mesh.case is not None:
             _designs(mesh.case, inputs)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
         """Return what transfer functions and pairs take; gears are condensed with the scene's table."""
-        mesh = heard_mesh(scene, inputs.mesh)
+        mesh = flank_mesh(scene, inputs.mesh)
         if mesh.case is None:
             return None
         with boundary_errors():
@@ -78,26 +78,26 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             design = predicted_designs(CASES.of(mesh.case).checked, cache).design
         if levels is None:
             return None
-        pairs = Work("pairs", design + _TABLE + levels.each, 2 * (inputs.tolerances.samples + 1))
+        pairs = Work("pairs", design + _TABLE + levels.per_table, 2 * (inputs.tolerances.samples + 1))
         return StudyCost((Work("transfer functions", levels.transfer), pairs))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> FlankChange:
         clock = StageClock(means.workers.cost)
-        mesh = heard_mesh(subject.inputs, inputs.mesh)
+        mesh = flank_mesh(subject.inputs, inputs.mesh)
         assert mesh.case is not None  # a scene with its tables has its cases written out
         before, after = _designs(mesh.case, inputs)
         tolerances, sampling = before.tolerances, before.sampling
         names, deviation = tuple(tolerances.widths), tolerances.sample(sampling.samples, sampling.seed)
         with boundary_errors():
             with clock.stage("transfer functions"):
-                heard, nominal, each = _heard(subject, mesh, (before.pair, after.pair), inputs, means)
-            expected = 2.0 * each * len(deviation)
+                model, nominal, cost = _level_model(subject, mesh, (before.pair, after.pair), inputs, means)
+            expected = 2.0 * cost * len(deviation)
             announce(means.report, "pairs", expected, f"{len(deviation)} before and after")
             with clock.stage("pairs"):
-                levels = _levels(heard, (before.pair, after.pair), names, deviation, means)
+                levels = _levels(model, (before.pair, after.pair), names, deviation, means)
         first, second = (
-            DesignLevels(own.level, pairs, own.parting, error)
-            for (own, error), pairs in zip(nominal, levels, strict=True)
+            DesignLevels(design.level, pairs, design.parting, error)
+            for (design, error), pairs in zip(nominal, levels, strict=True)
         )
         quantity = quantity_of(subject, inputs.heard)
         return FlankChange(
@@ -106,7 +106,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             UNITS[quantity],
             inputs.heard.over_speeds,
             line_names(inputs.orders),
-            heard.torque,
+            model.torque,
             np.array(inputs.speed_rpm) * RPM,
             names,
             deviation,
@@ -143,7 +143,7 @@ def _load_case(result: FlankChange, load: int) -> Json:
         for line, name in enumerate(result.lines)
     ]
     names = [boundary_name(name) for name in result.names]
-    of_change, of_level = (dict(zip(names, own[:, load].tolist(), strict=True)) for own in result.influence)
+    of_change, of_level = (dict(zip(names, rank[:, load].tolist(), strict=True)) for rank in result.influence)
     return {
         "torque_n_m": float(result.torque[load]),
         "lines": lines,
@@ -173,12 +173,12 @@ def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceReq
     return before, _design(case, "after", inputs.after, inputs)
 
 
-def _design(case: Case, name: str, own: Case, inputs: Inputs) -> ToleranceRequest:
-    for path, stated, known in _bodies(own, case):
-        if stated != known:
+def _design(case: Case, name: str, design: Case, inputs: Inputs) -> ToleranceRequest:
+    for path, value, known in _bodies(design, case):
+        if value != known:
             bound = f"{known}, as in the case of the mesh: only flanks may differ"
-            raise BadInput.of(f"{name}.pair.{path}", stated, bound)
-    checked = CheckedCase(case.model_copy(update={"pair": own.pair}))
+            raise BadInput.of(f"{name}.pair.{path}", value, bound)
+    checked = CheckedCase(case.model_copy(update={"pair": design.pair}))
     try:
         request = checked.request(tolerance_request, inputs.tolerances)
         with boundary_errors():
@@ -199,12 +199,12 @@ def _leaves(table: Mapping[str, Any], path: str) -> dict[str, Any]:
     for name, value in table.items():
         if path and name in (*FLANKS, "flank_grid"):
             continue
-        here = f"{path}.{name}" if path else name
-        leaves |= _leaves(value, here) if name in GEARS else {here: value}
+        leaf = f"{path}.{name}" if path else name
+        leaves |= _leaves(value, leaf) if name in GEARS else {leaf: value}
     return leaves
 
 
-def _heard(
+def _level_model(
     subject: TabledScene,
     mesh: MeshInput,
     pairs: tuple[ParallelAxes, ParallelAxes],
@@ -218,19 +218,19 @@ def _heard(
         CheckedCase(mesh.case).pair, database, dict(mesh.case.effects), cache, compute=True
     )
     assert bodies is not None
-    heard = HeardFlanks(database, bodies, inputs.heard.over_speeds == "worst")
-    first = heard.table(pairs[0])
-    cases = heard_loads(subject, mesh.name, inputs, [first] * len(inputs.load_cases), means)
-    heard = replace(heard, load_cases=cases)
-    before, began = heard.levels(first), cpu_seconds()
-    second = heard.table(pairs[1])
-    after = heard.levels(second)  # as every pair; all is compiled by now
-    each = cpu_seconds() - began
-    return heard, [(before, heard.errors(first)), (after, heard.errors(second))], each
+    level_model = HeardFlanks(database, bodies, inputs.heard.over_speeds == "worst")
+    first = level_model.table(pairs[0])
+    cases = sound_loads(subject, mesh.name, inputs, [first] * len(inputs.load_cases), means)
+    level_model = replace(level_model, load_cases=cases)
+    before, began = level_model.levels(first), cpu_seconds()
+    second = level_model.table(pairs[1])
+    after = level_model.levels(second)  # as every pair; all is compiled by now
+    seconds = cpu_seconds() - began
+    return level_model, [(before, level_model.errors(first)), (after, level_model.errors(second))], seconds
 
 
 def _levels(
-    heard: HeardFlanks,
+    level_model: HeardFlanks,
     pairs: tuple[ParallelAxes, ParallelAxes],
     names: tuple[str, ...],
     deviation: FloatArray,
@@ -239,14 +239,14 @@ def _levels(
     """Return the levels (N, L, K) of both designs with the same deviations (N, d), m."""
     tasks = [deviation[k : k + IN_A_TASK] for k in range(0, len(deviation), IN_A_TASK)]
     parts = []
-    for done, part in enumerate(means.workers.run(_levels_of_pairs, (heard, pairs, names), tasks)):
+    for done, part in enumerate(means.workers.run(_levels_of_pairs, (level_model, pairs, names), tasks)):
         parts.append(part)
         means.report("pairs", (done + 1) / len(tasks))
     before, after = np.concatenate(parts, axis=1)
-    for own in (before, after):
-        bad = int((~np.isfinite(own)).any(axis=(1, 2)).sum())
+    for design_levels in (before, after):
+        bad = int((~np.isfinite(design_levels)).any(axis=(1, 2)).sum())
         if bad:
-            raise SolveError(f"{bad} of {len(own)} pairs have no level", own)
+            raise SolveError(f"{bad} of {len(design_levels)} pairs have no level", design_levels)
     return before, after
 
 
@@ -254,9 +254,9 @@ def _levels_of_pairs(
     shared: tuple[HeardFlanks, tuple[ParallelAxes, ParallelAxes], tuple[str, ...]], deviation: FloatArray
 ) -> FloatArray:
     """Return the levels (2, n, L, K) of some pairs (n, d): one task."""
-    heard, pairs, names = shared
+    level_model, pairs, names = shared
     return np.stack(
-        [np.stack([heard.of_pair(pair, names, own).level for own in deviation]) for pair in pairs]
+        [np.stack([level_model.of_pair(pair, names, row).level for row in deviation]) for pair in pairs]
     )
 
 

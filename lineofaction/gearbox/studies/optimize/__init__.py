@@ -19,14 +19,14 @@ from lineofaction.gearbox.studies.change import HeardInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput, LoadCases
 from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
-TRIALS, HEARD_TRIALS = 3, 8
+TRIALS, SOUND_TRIALS = 3, 8
 PAIRS = 32
 """Over which start and optimum are told: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
-_EACH = (Strict(False), Field(min_length=1, max_length=64))
-Torques = Annotated[tuple[Load, ...], *_EACH]
+_LIST = (Strict(False), Field(min_length=1, max_length=64))
+Torques = Annotated[tuple[Load, ...], *_LIST]
 Misalignments = Annotated[
-    Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_EACH, MANY], ONE_OR_MANY
+    Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_LIST, MANY], ONE_OR_MANY
 ]
 _FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
@@ -117,7 +117,7 @@ class SearchInput(BoundaryModel):
         ge=0,
         le=64,
         description="Number of best start designs from which a search begins; left out: "
-        f"{TRIALS}, of a scene {HEARD_TRIALS}",
+        f"{TRIALS}, of a scene {SOUND_TRIALS}",
         examples=[TRIALS],
     )
     population: int = Field(
@@ -192,15 +192,15 @@ class HeardObjectiveInput(OverOrders, HeardInput):
         return self
 
     @model_validator(mode="after")
-    def _heard_orders(self) -> Self:
+    def _orders_in_range(self) -> Self:
         """Refuse orders that are not heard, and misalignments of other load cases."""
         for index, order in enumerate(self.counted_orders):
             if order > self.orders:
                 refuse(f"counted_orders[{index}]", order, f"at most orders, {self.orders}", "Raise orders.")
-        stated, loads = self.misalignment_um, len(self.load_cases)
-        if isinstance(stated, tuple) and len(stated) not in (1, loads):
+        misalignment, loads = self.misalignment_um, len(self.load_cases)
+        if isinstance(misalignment, tuple) and len(misalignment) not in (1, loads):
             bound = f"one value, or {loads}, one for each load case"
-            refuse("misalignment_um", f"{len(stated)} values", bound)
+            refuse("misalignment_um", f"{len(misalignment)} values", bound)
         return self
 
 
@@ -294,7 +294,7 @@ class Inputs(BoundaryModel):
         default=None,
         description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
         examples=[None],
-        exclude_if=lambda heard: heard is None,
+        exclude_if=lambda value: value is None,
     )
     search: SearchInput = Field(default=SearchInput(), description="Search method and its settings")
 
@@ -308,10 +308,10 @@ class Inputs(BoundaryModel):
     @model_validator(mode="after")
     def _loads(self) -> Self:
         """Refuse misalignments of other loads, torques that fall, and a load twice."""
-        torques, stated_um = self.torque_n_m, self.misalignment_um
+        torques, misalignment_um = self.torque_n_m, self.misalignment_um
         if torques is None:
             return self
-        misalignments = stated_um if isinstance(stated_um, tuple) else (stated_um,)
+        misalignments = misalignment_um if isinstance(misalignment_um, tuple) else (misalignment_um,)
         if len(misalignments) not in (1, len(torques)):
             bound = f"one value, or {len(torques)}, one for each torque"
             refuse("misalignment_um", f"{len(misalignments)} values", bound)
@@ -426,21 +426,19 @@ class OptimizeFigures(Figures):
         scatter_error_um: float
         violation: float
         peak_to_peak_um: Annotated[list[Any], Source("figures.peak_to_peak")]
-        face_load_factor: Annotated[list[float], Source(lambda own: own.figures.face_load_factor.max(axis=0))]
+        face_load_factor: Annotated[list[float], Source(lambda d: d.figures.face_load_factor.max(axis=0))]
         face_load_factor_error: Annotated[
-            list[float | None], Source(lambda own: own.figures.face_load_factor_error.max(axis=0))
+            list[float | None], Source(lambda d: d.figures.face_load_factor_error.max(axis=0))
         ]
-        edge_load_share: Annotated[list[float], Source(lambda own: own.figures.edge_load_share.max(axis=0))]
+        edge_load_share: Annotated[list[float], Source(lambda d: d.figures.edge_load_share.max(axis=0))]
         harris_map: HarrisMapFigures
-        max_pressure_mpa: Annotated[list[float], Source(lambda own: own.figures.pressure.max(axis=0))]
+        max_pressure_mpa: Annotated[list[float], Source(lambda d: d.figures.pressure.max(axis=0))]
         max_pressure_error_mpa: Annotated[
-            list[float | None], Source(lambda own: own.figures.pressure_error.max(axis=0))
+            list[float | None], Source(lambda d: d.figures.pressure_error.max(axis=0))
         ]
-        root_stress_mpa: Annotated[
-            list[float | None], Source(lambda own: own.figures.root_stress.max(axis=0))
-        ]
+        root_stress_mpa: Annotated[list[float | None], Source(lambda d: d.figures.root_stress.max(axis=0))]
         root_stress_error_mpa: Annotated[
-            list[float | None], Source(lambda own: own.figures.root_stress_error.max(axis=0))
+            list[float | None], Source(lambda d: d.figures.root_stress_error.max(axis=0))
         ]
 
     class SearchFigures(Part):

@@ -124,18 +124,18 @@ class HeardOptimization:
         levels = (
             f"{start.value:.1f} to {optimum.value:.1f} {self.unit}, errors {engineering(gain.error, 2)} dB"
         )
-        words = {
+        sentences = {
             Outcome.IMPROVED: f"Quieter by {gain.value:.1f} dB: {levels}",
             Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
             Outcome.NOT_IMPROVED: f"No quieter flanks were found: {levels}",
             Outcome.LIMITS_KEPT: f"The limits are kept, which the start exceeds: {levels}",
             Outcome.LIMITS_EXCEEDED: f"The best design exceeds the limits by {over}: {levels}",
         }
-        return words[self.outcome]
+        return sentences[self.outcome]
 
     def ended(self) -> str:
         """Return how the search ended, and how many of its starts agree, in a sentence."""
-        run, ends = self.runs[self.best_run], np.array([end for each in self.runs for end in each.ends])
+        run, ends = self.runs[self.best_run], np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
         same = max(AUDIBLE, self.optimum.objective.error)
         agreeing = int(np.sum(ends <= ends.min(initial=np.inf) + same))
@@ -175,8 +175,8 @@ class HeardOptimization:
         floor = max(before.level.max(), after.level.max()) - FALL
         for flat in np.argsort(-after.level, axis=None, kind="stable").tolist():
             load, line = np.unravel_index(flat, change.shape)
-            told = max(AUDIBLE, float(error[load, line]))
-            if change[load, line] >= told and after.level[load, line] > floor:
+            threshold = max(AUDIBLE, float(error[load, line]))
+            if change[load, line] >= threshold and after.level[load, line] > floor:
                 name = "all orders" if self.lines[line] == ALL else f"order {self.lines[line]}"
                 yield (
                     f"{name} at {self.torque[load]:.4g} N m {change[load, line]:+.1f} dB to "

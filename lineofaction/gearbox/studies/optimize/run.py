@@ -38,11 +38,11 @@ from lineofaction.gearbox.schemas.gear import with_figures
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
-from lineofaction.gearbox.studies.change.question import check_driving, check_heard, heard_mesh
+from lineofaction.gearbox.studies.change.question import check_driving, check_receiver, flank_mesh
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.optimize import (
-    HEARD_TRIALS,
+    SOUND_TRIALS,
     TRIALS,
     GearScatterInput,
     GearVariablesInput,
@@ -52,8 +52,8 @@ from lineofaction.gearbox.studies.optimize import (
     ScatterInput,
     SearchInput,
 )
-from lineofaction.gearbox.studies.optimize.heard_search import heard_cost, heard_optimum
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
+from lineofaction.gearbox.studies.optimize.sound_search import sound_cost, sound_optimum
 from lineofaction.gearbox.units import UM, factor, in_um
 
 MPA = 1e6
@@ -98,8 +98,8 @@ class _OptimizeStudy(
             with boundary_errors():
                 _ = subject.request(_library_request, study).checked
             return
-        heard, mesh = _heard_of(subject, study)
-        check_heard(subject, heard)
+        question, mesh = _question_of(subject, study)
+        check_receiver(subject, question)
         if mesh.case is not None:
             with boundary_errors():
                 _ = request_of(mesh.case, study).checked
@@ -109,25 +109,25 @@ class _OptimizeStudy(
     ) -> StudyCost | None:
         """Return what the gears, the designs of a usual search and both analyses at the end take."""
         if isinstance(subject, SceneInput):
-            heard, mesh = _heard_of(subject, study)
-            check_heard(subject, heard)
+            question, mesh = _question_of(subject, study)
+            check_receiver(subject, question)
             assert mesh.case is not None  # cases are written out
             with boundary_errors():
-                return heard_cost(subject, mesh, heard, request_of(mesh.case, study), cache)
+                return sound_cost(subject, mesh, question, request_of(mesh.case, study), cache)
         with boundary_errors():
             request = subject.request(_library_request, study)
             predicted = predicted_designs(request.checked, cache)
         load = np.size(request.torques) / request.checked.request.load.size
-        each = load * request.scatter.nodes().weight.size * predicted.design
+        seconds = load * request.scatter.nodes().weight.size * predicted.design
         designs = usual_designs(request.search)
         confirmed = Work("analyses", predicted.table, 2)
         return StudyCost(
-            (Work("gears", predicted.bodies), Work("designs", each, designs), confirmed), predicted.bytes
+            (Work("gears", predicted.bodies), Work("designs", seconds, designs), confirmed), predicted.bytes
         )
 
     def normalized(self, subject: CheckedCase | SceneInput, study: Inputs) -> Json:
         """Return all inputs, with the usual variables if none are named."""
-        case = subject.case if isinstance(subject, CheckedCase) else _heard_of(subject, study)[1].case
+        case = subject.case if isinstance(subject, CheckedCase) else _question_of(subject, study)[1].case
         return super().normalized(subject, study if case is None else _with_variables(case, study))
 
     def compute(
@@ -139,9 +139,9 @@ class _OptimizeStudy(
         """
         with boundary_errors():
             if isinstance(subject, TabledScene):
-                heard, mesh = _heard_of(subject.inputs, study)
+                question, mesh = _question_of(subject.inputs, study)
                 assert mesh.case is not None  # a scene with its tables has its cases written out
-                return heard_optimum(subject, mesh, heard, request_of(mesh.case, study), means)
+                return sound_optimum(subject, mesh, question, request_of(mesh.case, study), means)
             return optimize(
                 subject.request(_library_request, study),
                 means.analysis,
@@ -150,7 +150,7 @@ class _OptimizeStudy(
             )
 
     def _derived(self, result: Optimization | HeardOptimization) -> Json:
-        return _heard_figures(result) if isinstance(result, HeardOptimization) else self._of_case(result)
+        return _sound_figures(result) if isinstance(result, HeardOptimization) else self._of_case(result)
 
     def _of_case(self, result: Optimization) -> Json:
         limits = dict(result.asked["limits"])
@@ -195,7 +195,7 @@ class _OptimizeStudy(
         return [_worse_load_warning(before, after, int(index)) for index in result.rising]
 
 
-def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
+def _question_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
     """Return what is heard of a scene, and the mesh; raises `BadInput`."""
     if study.heard is None:
         remedy = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
@@ -205,7 +205,7 @@ def _heard_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, Me
             raise BadInput.of(name, "given", "left out with a scene", "Its loads are heard.load_cases.")
     try:
         check_driving(scene, study.heard.load_cases)
-        return study.heard, heard_mesh(scene, study.heard.mesh)
+        return study.heard, flank_mesh(scene, study.heard.mesh)
     except BadInput as error:
         raise error.within("heard") from None
 
@@ -216,7 +216,7 @@ def request_of(case: Case, study: Inputs) -> OptimizationRequest:
     return request
 
 
-def _heard_figures(result: HeardOptimization) -> Json:
+def _sound_figures(result: HeardOptimization) -> Json:
     lines = [
         [
             {
@@ -235,11 +235,11 @@ def _heard_figures(result: HeardOptimization) -> Json:
         name: (design, {"values": _at_boundary(design.values)})
         for name, design in (("start", result.start), ("optimum", result.optimum))
     }
-    told: Json = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
-    told["pairs"] = None
+    notes: Json = {"worse": list(result.worse()), "parting": list(result.partings()), "ended": result.ended()}
+    notes["pairs"] = None
     if result.pairs.size:
         names = "before_db", "after_db", "change_db"
-        told["pairs"] = {
+        notes["pairs"] = {
             "tolerance_class": result.tolerance_class,
             "pairs": result.pairs.shape[1],
             **dict(zip(names, map(tuple, result.bands.tolist()), strict=True)),
@@ -250,7 +250,7 @@ def _heard_figures(result: HeardOptimization) -> Json:
         {"name": boundary_name(var.name), "bounds": _range(var.name, var.low, var.high)}
         for var in result.variables
     ]
-    return of_case | {"variables": variables, "heard": (result, {**designs, "levels": lines, **told})}
+    return of_case | {"variables": variables, "heard": (result, {**designs, "levels": lines, **notes})}
 
 
 def _with_variables(case: Case, study: Inputs) -> Inputs:
@@ -280,15 +280,15 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
     variables = [
         DesignVariable(name, *(end * unit for end in ends))
         for gear, fields in gears.items()
-        for name, ends, unit in _stated_fields(gear, fields)
+        for name, ends, unit in _set_fields(gear, fields)
     ]
-    stated = study.limits
+    limits_input = study.limits
     limits = Limits(
-        _si(stated.max_pressure_mpa, MPA),
-        stated.face_load_factor,
-        stated.edge_load_share,
-        _si(stated.peak_to_peak_um, UM),
-        _si(stated.root_stress_mpa, MPA),
+        _si(limits_input.max_pressure_mpa, MPA),
+        limits_input.face_load_factor,
+        limits_input.edge_load_share,
+        _si(limits_input.peak_to_peak_um, UM),
+        _si(limits_input.root_stress_mpa, MPA),
     )
     return OptimizationRequest(
         pair,
@@ -298,7 +298,7 @@ def _library_request(checked: CheckedCase, study: Inputs) -> OptimizationRequest
         np.asarray(study.misalignment_um) * UM,
         objective,
         limits,
-        _search(study.search, heard=study.heard is not None),
+        _search(study.search, of_sound=study.heard is not None),
         checked.options,
     )
 
@@ -314,12 +314,12 @@ def _scatter_of(scatter: ScatterInput, seed: int) -> Scatter:
     deviations = {
         name: value * unit
         for gear, fields in gears.items()
-        for name, value, unit in _stated_fields(gear, fields)
+        for name, value, unit in _set_fields(gear, fields)
     }
     return Scatter(scatter.misalignment_um * UM, deviations, rule)
 
 
-def _stated_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
+def _set_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> list[tuple[str, Any, float]]:
     """Return name in the library, value and unit of the fields that are given."""
     return [
         (f"{gear}.{field.rpartition('_')[0]}", value, factor(field))
@@ -328,11 +328,11 @@ def _stated_fields(gear: str, inputs: GearVariablesInput | GearScatterInput) -> 
     ]
 
 
-def _search(search: SearchInput, *, heard: bool) -> Search:
+def _search(search: SearchInput, *, of_sound: bool) -> Search:
     """Return the search; few positions tell a level nearly as well as many, but not a ripple."""
     linear: Method = (
-        StagedLinearProgramming(search.sample, HEARD_TRIALS if search.trials is None else search.trials)
-        if heard
+        StagedLinearProgramming(search.sample, SOUND_TRIALS if search.trials is None else search.trials)
+        if of_sound
         else SequentialLinearProgramming(search.sample, TRIALS if search.trials is None else search.trials)
     )
     methods: dict[str, Method] = {
@@ -378,7 +378,7 @@ def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json
     error = float(before.expected_error[index] + after.expected_error[index]) / UM
     torque = float(before.torque[index])
     reason = "the search makes another load better at the cost of this one"
-    words = f"from {first:.3g} to {second:.3g} µm, errors {engineering(error, 2)} µm: {reason}"
+    text = f"from {first:.3g} to {second:.3g} µm, errors {engineering(error, 2)} µm: {reason}"
     return {
         "check": "worse_load",
         "field": f"torque_n_m = {torque:.6g}",
@@ -389,7 +389,7 @@ def _worse_load_warning(before: HarrisMap, after: HarrisMap, index: int) -> Json
         "reason": reason,
         "source": "the design from which the search starts",
         "whole": "",
-        "message": f"expected peak-to-peak rises at {torque:.6g} N m {words}",
+        "message": f"expected peak-to-peak rises at {torque:.6g} N m {text}",
     }
 
 

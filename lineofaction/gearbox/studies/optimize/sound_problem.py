@@ -20,11 +20,11 @@ from fe_contact.microgeometry.linearized_table import TabledLoads, tabled_loads
 from fe_contact.microgeometry.objective import Rows
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.ste import SteDatabase
-from lineofaction.gearbox.studies.change.heard_flanks import HeardLoad
+from lineofaction.gearbox.studies.change.sound_flanks import HeardLoad
 from model_studies.spread import quantiles
 from model_studies.workers import InProcess, Workers, divided
 
-BESIDE_EACH = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
+LOAD_FACTORS = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
 """Loads of a table in parts of that of a load case: beside it, for how arm and stiffness change with it."""
 STEP = 2e-9
 """Largest change of a transmission error, m, over which the derivative of an excitation is a difference."""
@@ -66,15 +66,15 @@ class HeardAt:
         transfer, form = self.case.transfer, self.case.form
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
-        own, *beside = tabled.moved(np.vstack([np.zeros(steps.size), np.diag(steps)]))
-        flanks = self.case.others.with_table(own)
+        nominal, *shifted = tabled.moved(np.vstack([np.zeros(steps.size), np.diag(steps)]))
+        flanks = self.case.others.with_table(nominal)
         excitation = flanks.excitation
         inputs = transfer.inputs(excitation)
-        changes = transfer.input_changes(excitation, inputs, flanks.changes(beside)) / steps
-        moved = np.swapaxes(changes.conj(), 2, 3)
+        changes = transfer.input_changes(excitation, inputs, flanks.changes(shifted)) / steps
+        adjoint = np.swapaxes(changes.conj(), 2, 3)
         weight = form.weighting * self.counted
-        along = (moved @ (form.matrix @ inputs[..., None]))[..., 0].real
-        across = (moved @ form.matrix @ changes).real
+        along = (adjoint @ (form.matrix @ inputs[..., None]))[..., 0].real
+        across = (adjoint @ form.matrix @ changes).real
         return Powers(
             np.asarray(form.weighted(inputs) @ self.counted),
             np.asarray(2.0 * np.einsum("sh,sha->sa", weight, along)),
@@ -96,7 +96,7 @@ class HeardObjective:
     def rows(self, values: FloatArray) -> FloatArray:
         """Return what is the largest of (R, ...): of values (L, S, ...) by load case and speed."""
         if not self.worst_load:
-            share = np.array([each.share for each in self.at])
+            share = np.array([load.share for load in self.at])
             values = np.tensordot(share, values, 1)[None]
         if not self.worst_speed:
             values = values.mean(axis=1, keepdims=True)
@@ -124,7 +124,7 @@ class HeardMerit:
         """
         reach = np.maximum(np.abs(low), np.abs(high))
         step = best = np.zeros(low.size)
-        found, cuts = self._merit(step), [self._cuts(step)]
+        least, cuts = self._merit(step), [self._cuts(step)]
         for _ in range(CUTS):
             program = LinearProgram(low.size)
             (objective,) = program.columns(1, minimum=0.0)
@@ -135,12 +135,12 @@ class HeardMerit:
                 program.below(value, by, reach, column)
             step, bound = program.solve(low, high, objective, exceeded, self.penalty)
             merit = self._merit(step)
-            if merit < found:
-                best, found = step, merit
-            if not found - bound > CLOSE * found:
+            if merit < least:
+                best, least = step, merit
+            if not least - bound > CLOSE * least:
                 break
             cuts.append(self._cuts(step))
-        return best, found
+        return best, least
 
     def amplitudes(self, step: FloatArray) -> FloatArray:
         """Return the amplitudes of the rows (R,) after a step (d,)."""
@@ -150,10 +150,10 @@ class HeardMerit:
     def _cuts(self, step: FloatArray) -> Rows:
         """Return tangents of the largest rows: values at no step, and derivatives."""
         amplitude = self.amplitudes(step)
-        kept = np.argsort(-amplitude)[:FOLLOWED]
-        kept = kept[amplitude[kept] > 0.0]
-        by = (self.powers.slope + 2.0 * self.powers.bend @ step)[kept] / (2.0 * amplitude[kept, None])
-        return amplitude[kept] - by @ step, by
+        largest = np.argsort(-amplitude)[:FOLLOWED]
+        largest = largest[amplitude[largest] > 0.0]
+        by = (self.powers.slope + 2.0 * self.powers.bend @ step)[largest] / (2.0 * amplitude[largest, None])
+        return amplitude[largest] - by @ step, by
 
     def _merit(self, step: FloatArray) -> float:
         excess = sum(max(0.0, float(np.max(value + by @ step))) for value, by in self.limits)
@@ -169,7 +169,7 @@ class HeardProblem(SearchProblem):
     power.
     """
 
-    heard: HeardObjective = field(kw_only=True)
+    sound: HeardObjective = field(kw_only=True)
     quantile: float | None = field(default=None, kw_only=True)
 
     def at(self, positions: int) -> Self:
@@ -178,8 +178,8 @@ class HeardProblem(SearchProblem):
 
     def rough(self, positions: int) -> Self:
         """Return the problem without scatter, at fewer positions."""
-        own = self.at(positions)
-        return replace(own, evaluator=replace(own.evaluator, nodes=ONE_NODE))
+        problem = self.at(positions)
+        return replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
         """Evaluate the design at a point (d,) with the derivatives of what excites."""
@@ -190,13 +190,13 @@ class HeardProblem(SearchProblem):
             parts = [*chain(*by.run(_linearized_nodes, self, tasks))]
         except (FeContactError, DynamicsError):
             return self._with_merit(math.inf, math.inf), _no_merit(point.size)
-        powers = Powers(*(np.stack(each) for each in zip(*(part[1] for part in parts), strict=True)))
+        powers = Powers(*(np.stack(power) for power in zip(*(part[1] for part in parts), strict=True)))
         objective, weight = self._over_nodes(powers.constant)
-        expected = Powers(*(np.tensordot(weight, each, 1) for each in powers))
+        expected = Powers(*(np.tensordot(weight, power, 1) for power in powers))
         violation = self._violation([figures for part in parts for figures in part[0]])
-        level = self.heard.level(expected.constant) - objective + self.scale  # of the start, on its scale
-        start = self.heard.at[0].case.form.reference * 10.0 ** (level / 10.0)
-        rows = Powers(*(self.heard.rows(each) / start for each in expected))
+        level = self.sound.level(expected.constant) - objective + self.scale  # of the start, on its scale
+        start = self.sound.at[0].case.form.reference * 10.0 ** (level / 10.0)
+        rows = Powers(*(self.sound.rows(power) / start for power in expected))
         ranges, limits = self.ranges, _joined([part[2] for part in parts])
         scaled = Powers(rows.constant, rows.slope * ranges, rows.bend * ranges[:, None] * ranges)
         merit = HeardMerit(scaled, tuple((value, by * ranges) for value, by in limits), PENALTY)
@@ -209,7 +209,7 @@ class HeardProblem(SearchProblem):
         except (FeContactError, DynamicsError):
             return math.inf, math.inf
         level, _ = self._over_nodes(np.stack([part[1] for part in parts]))
-        return level, self._violation([each for part in parts for each in part[0]])
+        return level, self._violation([figures for part in parts for figures in part[0]])
 
     def levels(self, values: dict[str, float], workers: Workers) -> FloatArray:
         """Return the levels of a design at each node (N,), dB; NaN where one cannot be solved."""
@@ -224,8 +224,8 @@ class HeardProblem(SearchProblem):
         """
         if self.quantile is None:
             weight = self.evaluator.nodes.weight
-            return self.heard.level(np.tensordot(weight, power, 1)), weight
-        levels = np.array([self.heard.level(own) for own in power])
+            return self.sound.level(np.tensordot(weight, power, 1)), weight
+        levels = np.array([self.sound.level(node_power) for node_power in power])
         level = float(quantiles(levels, self.quantile))
         loud = levels >= min(level, levels.max())
         return level, loud / loud.sum()
@@ -239,26 +239,26 @@ class HeardProblem(SearchProblem):
 
     def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
         """Return the table of each load case, at its own load and beside it, of those of a node."""
-        count, groups, own = BESIDE_EACH.size, self.evaluator.groups, []
-        for case in range(len(self.heard.at)):
+        count, groups, tables = LOAD_FACTORS.size, self.evaluator.groups, []
+        for case in range(len(self.sound.at)):
             of_case = [np.flatnonzero(group // count == case) for group in groups]
             (at,) = (k for k, loads in enumerate(of_case) if loads.size)
-            own.append(tabled[at].at_loads(of_case[at]))
-        return own
+            tables.append(tabled[at].at_loads(of_case[at]))
+        return tables
 
 
 def _node(problem: HeardProblem, values: dict[str, float], node: int) -> _Node:
     """Return figures of a design at a node of its scatter, and its powers (L, S)."""
     tabled = list(tabled_loads(problem.evaluator, values, (node,)))
-    at = zip(problem.heard.at, problem.tables_of(tabled), strict=True)
-    return [each.figures for each in tabled], np.stack([load.power(own.table) for load, own in at])
+    at = zip(problem.sound.at, problem.tables_of(tabled), strict=True)
+    return [part.figures for part in tabled], np.stack([load.power(case.table) for load, case in at])
 
 
 def _level_at(shared: tuple[HeardProblem, dict[str, float]], node: int) -> float:
     """Return the level of a design at a node, dB: one task."""
     problem, values = shared
     try:
-        return problem.heard.level(_node(problem, values, node)[1])
+        return problem.sound.level(_node(problem, values, node)[1])
     except (FeContactError, DynamicsError):
         return math.nan
 
@@ -271,18 +271,18 @@ def _linearized_nodes(
     parts = []
     for node in nodes:
         tabled = list(tabled_loads(problem.evaluator, values, (node,), problem.names, problem.limits))
-        at = zip(problem.heard.at, problem.tables_of(tabled), strict=True)
-        powers = [load.powers(own) for load, own in at]
-        stacked = Powers(*(np.stack(each) for each in zip(*powers, strict=True)))
-        parts.append(([each.figures for each in tabled], stacked, _joined([own.limits for own in tabled])))
+        at = zip(problem.sound.at, problem.tables_of(tabled), strict=True)
+        powers = [load.powers(case) for load, case in at]
+        stacked = Powers(*(np.stack(part) for part in zip(*powers, strict=True)))
+        parts.append(([part.figures for part in tabled], stacked, _joined([case.limits for case in tabled])))
     return parts
 
 
 def _joined(limits: Sequence[tuple[Rows, ...]]) -> tuple[Rows, ...]:
     """Return the rows of each limit of several tables, in one."""
     return tuple(
-        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
-        for each in zip(*limits, strict=True)
+        (np.concatenate([part[0] for part in rows]), np.concatenate([part[1] for part in rows]))
+        for rows in zip(*limits, strict=True)
     )
 
 
@@ -292,6 +292,6 @@ def _no_merit(variables: int) -> HeardMerit:
     return HeardMerit(nothing, (), PENALTY)
 
 
-def with_loads_beside(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
+def with_neighbor_loads(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return loads (3 L,) and misalignments of an evaluator: those of the cases, and beside each."""
-    return np.outer(load, BESIDE_EACH).ravel(), np.repeat(misalignment, BESIDE_EACH.size)
+    return np.outer(load, LOAD_FACTORS).ravel(), np.repeat(misalignment, LOAD_FACTORS.size)

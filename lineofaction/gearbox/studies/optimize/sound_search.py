@@ -36,13 +36,13 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.studies.change.heard_flanks import (
+from lineofaction.gearbox.studies.change.sound_flanks import (
     UNITS,
-    heard_loads,
     levels_cost,
     line_names,
     mesh_index,
     quantity_of,
+    sound_loads,
 )
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.cost import StudyCost, Work
@@ -50,14 +50,14 @@ from lineofaction.gearbox.studies.deflect import Inputs as DeflectInputs
 from lineofaction.gearbox.studies.deflect.cases import load_cases
 from lineofaction.gearbox.studies.deflect.run import RUN as DEFLECT
 from lineofaction.gearbox.studies.optimize import HeardObjectiveInput
-from lineofaction.gearbox.studies.optimize.heard_problem import (
-    BESIDE_EACH,
+from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
+from lineofaction.gearbox.studies.optimize.sound_problem import (
+    LOAD_FACTORS,
     HeardAt,
     HeardObjective,
     HeardProblem,
-    with_loads_beside,
+    with_neighbor_loads,
 )
-from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
 from lineofaction.gearbox.studies.scatter.run import tolerances_of
 from lineofaction.gearbox.units import RPM, UM
 from model_studies.progress import announce, silent
@@ -68,7 +68,7 @@ WALK, FINISH, LINEARIZED = 20, 8, 2.5
 
 
 @dataclass(frozen=True)
-class Heard:
+class SoundSearch:
     """What a search and its confirmation work on."""
 
     problem: HeardProblem
@@ -82,7 +82,7 @@ class Heard:
     """
 
 
-def heard_optimum(
+def sound_optimum(
     subject: TabledScene,
     mesh: MeshInput,
     question: HeardObjectiveInput,
@@ -99,22 +99,22 @@ def heard_optimum(
     with clock.stage("deflection"):
         misalignment = misalignments(subject, mesh, question, means)
     with clock.stage("transfer functions"):
-        heard = heard_problem(subject, mesh, question, request, misalignment, means)
+        setup = sound_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
-        own, sample = dict(zip(heard.problem.names, request.own, strict=True)), heard.sample
-        problem = _scaled(heard.problem if question.quantile is None or sample is None else sample, own)
-        expected, cancel = _expected_seconds(problem, own, request.search), means.cancel or never
+        start, sample = dict(zip(setup.problem.names, request.own, strict=True)), setup.sample
+        problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
+        expected, cancel = _expected_seconds(problem, start, request.search), means.cancel or never
         announce(means.report, "search", expected)
         runs = search_all(problem, request.search, request.own, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
-    designs = own, problem.values(runs[best].place)
+    designs = start, problem.values(runs[best].place)
     with clock.stage("confirmation"):
-        before, after = (_confirmed(replace(heard, problem=problem), values, run.cache) for values in designs)
+        before, after = (_confirmed(replace(setup, problem=problem), values, run.cache) for values in designs)
     with clock.stage("pairs"):
         rough = None if sample is None or cancel() else sample.at(request.search.exploration)
         pairs = [np.zeros(0) if rough is None else rough.levels(values, means.workers) for values in designs]
     run.progress("confirmation", 1.0)
-    spent = {"evaluations": sum(each.evaluations for each in runs), "search_expected_cpu_seconds": expected}
+    spent = {"evaluations": sum(part.evaluations for part in runs), "search_expected_cpu_seconds": expected}
     quantity = quantity_of(subject, question)
     return HeardOptimization(
         mesh.name,
@@ -125,8 +125,8 @@ def heard_optimum(
         line_names(question.orders),
         request.variables,
         tuple(case.name for case in question.load_cases),
-        heard.torque,
-        heard.misalignment,
+        setup.torque,
+        setup.misalignment,
         np.array(question.speed_rpm) * RPM,
         before,
         after,
@@ -150,15 +150,15 @@ def _scaled(problem: HeardProblem, start: dict[str, float]) -> HeardProblem:
 def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: Search) -> float:
     """Return the CPU seconds of a usual search, by a design at few positions and one in full."""
     rough, seconds = problem.rough(search.exploration), []
-    for each in (rough, rough, problem):  # the first loads code
+    for timed in (rough, rough, problem):  # the first loads code
         began = cpu_seconds()
-        each.evaluated(values)
+        timed.evaluated(values)
         seconds.append(cpu_seconds() - began)
-    few, many = usual_heard_designs(search)
+    few, many = usual_sound_designs(search)
     return few * seconds[1] + many * seconds[2]
 
 
-def usual_heard_designs(search: Search) -> tuple[float, float]:
+def usual_sound_designs(search: Search) -> tuple[float, float]:
     """Return what a usual search takes, in values of designs at few positions and of designs in full."""
     method, few, many = search.method, 0.0, float(search.evaluations)
     if isinstance(method, StagedLinearProgramming):
@@ -167,7 +167,7 @@ def usual_heard_designs(search: Search) -> tuple[float, float]:
     return search.starts * few, search.starts * many
 
 
-def heard_cost(
+def sound_cost(
     scene: SceneInput,
     mesh: MeshInput,
     question: HeardObjectiveInput,
@@ -181,22 +181,22 @@ def heard_cost(
     levels = levels_cost(scene, mesh.name, question)
     if levels is None:
         return None
-    predicted, search, stated = predicted_designs(request.checked, cache), request.search, question.tolerances
-    share = len(question.load_cases) * BESIDE_EACH.size / request.checked.request.load.size
+    predicted, search, pairs = predicted_designs(request.checked, cache), request.search, question.tolerances
+    share = len(question.load_cases) * LOAD_FACTORS.size / request.checked.request.load.size
     rough, full = (
-        share * predicted.design * part + levels.each
+        share * predicted.design * part + levels.per_table
         for part in (min(search.exploration / search.positions, 1.0), 1.0)
     )
     spread = question.quantile is not None
-    nodes = stated.samples if spread else request.scatter.nodes().weight.size
-    few, many = usual_heard_designs(search)
+    nodes = pairs.samples if spread else request.scatter.nodes().weight.size
+    few, many = usual_sound_designs(search)
     parts = [
         Work("gears", predicted.bodies),
         Work("transfer functions", levels.transfer),
         Work("designs", rough, few),
         Work("designs", full, many * nodes),
         Work("analyses", share * (predicted.design + predicted.errors), 2),
-        Work("pairs", rough, 2 * stated.samples),
+        Work("pairs", rough, 2 * pairs.samples),
     ]
     cost = StudyCost(tuple(parts), predicted.bytes)
     stands = levels.scene.meshes[mesh_index(levels.scene, mesh.name)].misalignment
@@ -214,63 +214,63 @@ def misalignments(
     """
     known, shape = subject.databases[mesh.name], (len(question.load_cases),)
     plane = known.metadata.receipt["plan"]["model"] in ("plane_strain", "plane_stress")
-    own = subject.scene.meshes[mesh_index(subject.scene, mesh.name)].misalignment
+    nominal = subject.scene.meshes[mesh_index(subject.scene, mesh.name)].misalignment
     if question.misalignment_um is not None:
         return np.broadcast_to(np.asarray(question.misalignment_um, dtype=float) * UM, shape).copy()
-    if plane or own:
-        return np.full(shape, own)
+    if plane or nominal:
+        return np.full(shape, nominal)
     deflected = DEFLECT.compute(subject, DeflectInputs(load_cases=question.load_cases), means)
     if failure := DEFLECT.failure(deflected):
         raise SolveError(failure)
     return np.array(
         [
-            own.misalignment
+            deflection.misalignment
             for case in deflected.deflection.cases
-            for own in case.meshes
-            if own.name == mesh.name
+            for deflection in case.meshes
+            if deflection.name == mesh.name
         ]
     )
 
 
-def heard_problem(
+def sound_problem(
     subject: TabledScene,
     mesh: MeshInput,
     question: HeardObjectiveInput,
     request: OptimizationRequest,
     misalignment: FloatArray,
     means: Means,
-) -> Heard:
+) -> SoundSearch:
     """Return the problem of a search at misalignments (L,) in m, its scale 0 dB."""
     assert mesh.case is not None
     cache, known = means.home / "compliance", subject.databases[mesh.name]
     bodies = condensed_pair(request.pair, known, dict(mesh.case.effects), cache, compute=True)
     assert bodies is not None
     torque = _torques(subject, mesh.name, question)
-    tables = [_table(bodies, request, *each) for each in zip(torque, misalignment, strict=True)]
-    loads = heard_loads(subject, mesh.name, question, tables, means)
+    tables = [_table(bodies, request, *load_case) for load_case in zip(torque, misalignment, strict=True)]
+    loads = sound_loads(subject, mesh.name, question, tables, means)
     evaluator = _evaluator(request, torque, misalignment, means)
-    shares = np.array([each.load.share for each in loads])
+    shares = np.array([load_case.load.share for load_case in loads])
     counted = list(question.counted_orders)  # the first line is all orders, then each
     at = tuple(
         HeardAt(case, case.lines[counted].sum(axis=0) if counted else case.lines[0], float(share))
         for case, share in zip(loads, shares / shares.sum(), strict=True)
     )
     objective = HeardObjective(at, question.over_speeds == "worst", question.over_loads == "worst")
-    problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, heard=objective)
-    return Heard(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
+    problem = HeardProblem(evaluator, request.variables, request.limits, 0.0, sound=objective)
+    return SoundSearch(problem, _sampled(problem, mesh.case, question), bodies, torque, misalignment)
 
 
 def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
     """Return the problem with pairs within tolerances as nodes; what an effect that is off hides stays."""
-    evaluator, stated = problem.evaluator, question.tolerances
+    evaluator, tolerance_input = problem.evaluator, question.tolerances
     try:
         across = evaluator.contact.face is not None
-        tolerances = tolerances_of(evaluator.contact.pair, stated, across_face=across)
+        tolerances = tolerances_of(evaluator.contact.pair, tolerance_input, across_face=across)
     except InputError as error:
         if {"tolerances", "quantile"} & question.model_fields_set:
             raise error.within("heard.tolerances") from None
         return None
-    drawn = tolerances.sample(stated.samples, stated.seed)
+    drawn = tolerances.sample(tolerance_input.samples, tolerance_input.seed)
     skew = {MISALIGNMENT: named(EFFECTS, MISALIGNMENT)}
     effect = {name: skew.get(name) or effect_of(name, EFFECTS) for name in tolerances.widths}
     acting = [k for k, name in enumerate(effect) if case.effects.get(effect[name]) != "off"]
@@ -293,7 +293,7 @@ def _table(
     bodies: CondensedPair, request: OptimizationRequest, torque: float, misalignment: float
 ) -> SteDatabase:
     """Return the table of the start under a load case, with loads beside it."""
-    return bodies.table(request.pair, torque * BESIDE_EACH, misalignment)
+    return bodies.table(request.pair, torque * LOAD_FACTORS, misalignment)
 
 
 def _evaluator(
@@ -311,39 +311,39 @@ def _evaluator(
     torques = [load for load, _ in points]
     study = design_study(space, torques, (), StageClock(), run, limits=request.limits)
     force = torque / float(request.pair.torque(1.0))
-    load, alignment = with_loads_beside(force, misalignment)
+    load, alignment = with_neighbor_loads(force, misalignment)
     return replace(study.evaluator, load=load, misalignment=alignment)
 
 
-def _confirmed(heard: Heard, values: dict[str, float], cache: Path | None) -> HeardDesign:
+def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
     """Tell a design, its errors by what rougher contacts change of it: fewer slices, coarser meshes."""
-    problem, pair = heard.problem, modified(heard.bodies.checked.request.pair, values)
-    points = list(zip(np.outer(heard.torque, BESIDE_EACH), heard.misalignment, strict=True))
-    tables = [heard.bodies.table(pair, *point) for point in points]
-    rougher = zip(*(_rougher(heard.bodies, pair, *point) for point in points), strict=True)
-    contacts = [_levels(problem, each) for each in (tables, *rougher)]
-    levels = np.stack([each.level for each in contacts])
-    objectives = np.array([each.objective for each in contacts])
+    problem, pair = setup.problem, modified(setup.bodies.checked.request.pair, values)
+    points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
+    tables = [setup.bodies.table(pair, *point) for point in points]
+    rougher = zip(*(_rougher(setup.bodies, pair, *point) for point in points), strict=True)
+    contacts = [_levels(problem, contact) for contact in (tables, *rougher)]
+    levels = np.stack([contact.level for contact in contacts])
+    objectives = np.array([contact.objective for contact in contacts])
     objective, violation = problem.evaluated(values)
     figures = confirmed_figures(problem.evaluator, values, cache)
-    own = slice(1, None, BESIDE_EACH.size)
+    nominal_loads = slice(1, None, LOAD_FACTORS.size)
     ripple = [table.peak_to_peak(force=float(table.force[1])) for table in tables]
     return HeardDesign(
         dict(values),
         Estimate(objective, float(np.linalg.norm(objectives[1:] - objectives[0])), "dB"),
         levels[0],
         np.linalg.norm(levels[1:] - levels[0], axis=0),
-        np.array([each.value for each in ripple]),
-        np.array([each.error for each in ripple]),
-        figures.pressure.max(axis=0)[own],
-        figures.face_load_factor.max(axis=0)[own],
-        figures.edge_load_share.max(axis=0)[own],
+        np.array([estimate.value for estimate in ripple]),
+        np.array([estimate.error for estimate in ripple]),
+        figures.pressure.max(axis=0)[nominal_loads],
+        figures.face_load_factor.max(axis=0)[nominal_loads],
+        figures.edge_load_share.max(axis=0)[nominal_loads],
         contacts[0].parting,
         violation,
-        figures.root_stress.max(axis=0)[own],
-        figures.root_stress_error.max(axis=0)[own],
-        figures.pressure_error.max(axis=0)[own],
-        figures.face_load_factor_error.max(axis=0)[own],
+        figures.root_stress.max(axis=0)[nominal_loads],
+        figures.root_stress_error.max(axis=0)[nominal_loads],
+        figures.pressure_error.max(axis=0)[nominal_loads],
+        figures.face_load_factor_error.max(axis=0)[nominal_loads],
     )
 
 
@@ -357,14 +357,14 @@ class _Levels(NamedTuple):
 
 def _levels(problem: HeardProblem, tables: Sequence[SteDatabase]) -> _Levels:
     """Return the levels of tables, one for each load case."""
-    heard, level, power, parting = problem.heard, [], [], []
-    for at, table in zip(heard.at, tables, strict=True):
+    sound, level, power, parting = problem.sound, [], [], []
+    for at, table in zip(sound.at, tables, strict=True):
         flanks = at.case.with_table(table).excitation
         weighted = at.case.power(flanks)
-        level.append(at.case.levels(weighted, heard.worst_speed))
+        level.append(at.case.levels(weighted, sound.worst_speed))
         power.append(weighted @ at.counted)
         parting.append(at.case.parting(flanks))
-    return _Levels(np.stack(level), heard.level(np.stack(power)), np.array(parting))
+    return _Levels(np.stack(level), sound.level(np.stack(power)), np.array(parting))
 
 
 def _rougher(

@@ -47,7 +47,7 @@ from lineofaction.gearbox.studies.change import (
     SURFACE_VELOCITY,
     HeardInput,
 )
-from lineofaction.gearbox.studies.change.question import HeardQuestion, heard_housing
+from lineofaction.gearbox.studies.change.question import HeardQuestion, housing_of
 from lineofaction.gearbox.studies.change.result import ALL
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.studies.deflect.cases import load_cases
@@ -119,19 +119,19 @@ class HeardLoad:
         errors = excitation_errors(table, table.facts.normal_force(torque))
         known = np.minimum(np.arange(len(self.lines) - 1), errors.load_arm.size - 1)
         of_table = errors.transmission_error, errors.load_arm, errors.friction
-        parts = tuple(own[known] @ self.lines[1:] for own in of_table)
+        parts = tuple(level[known] @ self.lines[1:] for level in of_table)
         changes = self.transfer.excitation_errors(scene.at.system, flanks, scene.mesh, parts)
         inputs = self.transfer.inputs(flanks)
         added = np.moveaxis(self.transfer.input_changes(flanks, inputs, changes), 3, 0)
-        off = np.sqrt(sum(self.form.weighted(each) for each in added))
+        off = np.sqrt(sum(self.form.weighted(amplitude) for amplitude in added))
         size = np.sqrt(self.form.weighted(inputs))
-        low, own, high = (
-            self.levels(each**2, worst_speed)
-            for each in (np.maximum(size - off, CANCELED * size), size, size + off)
+        low, level, high = (
+            self.levels(amplitude**2, worst_speed)
+            for amplitude in (np.maximum(size - off, CANCELED * size), size, size + off)
         )
         varied = self.transfer.varied_inputs(scene.at, flanks)[0]
-        left_out = self.levels(self.form.weighted(varied), worst_speed) - own
-        return np.stack([own - low - np.minimum(left_out, 0.0), high - own + np.maximum(left_out, 0.0)])
+        left_out = self.levels(self.form.weighted(varied), worst_speed) - level
+        return np.stack([level - low - np.minimum(left_out, 0.0), high - level + np.maximum(left_out, 0.0)])
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class HeardFlanks:
         return self.levels(self.table(deviating(pair, by_name), misalignment))
 
 
-def heard_loads(
+def sound_loads(
     subject: TabledScene, mesh: str, question: HeardQuestion, tables: Sequence[SteDatabase], means: Means
 ) -> tuple[HeardLoad, ...]:
     """Solve the transfer functions under every load case, each about the flanks of its own table."""
@@ -188,7 +188,7 @@ def heard_loads(
     index = mesh_index(subject.scene, mesh)
     speed, transfers = np.array(question.speed_rpm) * RPM, []
     for done, system in enumerate(systems):
-        orders = orders_heard(system, mesh, question.orders)
+        orders = period_orders(system, mesh, question.orders)
         transfers.append(flank_transfer(system, speed, orders, cache=means.home / FOLDER))
         means.report("transfer functions", (done + 1) / len(systems))
     quantity = quantity_of(subject, question.heard)
@@ -196,8 +196,8 @@ def heard_loads(
     cases = []
     for load, system, transfer in zip(loads, systems, transfers, strict=True):
         step = abs(common_period(system).pitches[index])
-        own = (step * np.arange(1, question.orders + 1))[:, None] == transfer.harmonics
-        lines = np.vstack([own.any(axis=0), own]).astype(float)
+        of_order = (step * np.arange(1, question.orders + 1))[:, None] == transfer.harmonics
+        lines = np.vstack([of_order.any(axis=0), of_order]).astype(float)
         form = _form(subject, transfer, model, question.heard)
         cases.append(HeardLoad(load, OtherFlanks.of(system, index, transfer), transfer, form, lines))
     return tuple(cases)
@@ -207,7 +207,7 @@ class LevelsCost(NamedTuple):
     """CPU seconds of the transfer functions of all load cases, and of the levels of a table; the scene."""
 
     transfer: float
-    each: float
+    per_table: float
     scene: Scene
 
 
@@ -222,14 +222,14 @@ def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> Levels
     cases, speed = len(question.load_cases), np.array(question.speed_rpm) * RPM
     try:
         system = sized(scene)
-        transfer = cases * transfer_seconds(system, speed, orders_heard(system, mesh, question.orders))
+        transfer = cases * transfer_seconds(system, speed, period_orders(system, mesh, question.orders))
     except (DynamicsError, InputError):
         return None  # the study says it, on its own tables
     at_rest = _AT_REST[0] + _AT_REST[1] * system.freedoms.column.size**2
     return LevelsCost(transfer, cases * at_rest + _LEVEL * transfer, before)
 
 
-def orders_heard(system: System, mesh: str, orders: int) -> int:
+def period_orders(system: System, mesh: str, orders: int) -> int:
     """Return how many orders of the first mesh that turns orders of a mesh reach to."""
     period, index = common_period(system), mesh_index(system.scene, mesh)
     if not period.pitches[index]:
@@ -247,14 +247,14 @@ def line_names(orders: int) -> tuple[str, ...]:
     return (ALL, *map(str, range(1, orders + 1)))
 
 
-def quantity_of(subject: TabledScene, heard: HeardInput) -> str:
+def quantity_of(subject: TabledScene, receiver: HeardInput) -> str:
     """Return the quantity that is heard: sound power where a housing has a surface, unless it is stated."""
-    if heard.quantity is not None:
-        return heard.quantity
-    if heard.microphone_mm is not None:
+    if receiver.quantity is not None:
+        return receiver.quantity
+    if receiver.microphone_mm is not None:
         return SOUND_PRESSURE
     sounds = any(body.surface is not None for body in subject.housings.values())
-    return SOUND_POWER if sounds and heard.bearing is None else BEARING_FORCE
+    return SOUND_POWER if sounds and receiver.bearing is None else BEARING_FORCE
 
 
 def system_with(subject: TabledScene, mesh: str, table: SteDatabase, load: LoadCase) -> System:
@@ -282,18 +282,18 @@ def _sound_model(
 
 
 def _form(
-    subject: TabledScene, transfer: FlankTransfer, model: SoundModel, heard: HeardInput
+    subject: TabledScene, transfer: FlankTransfer, model: SoundModel, receiver: HeardInput
 ) -> QuantityForm:
-    of_bearings = transfer.bearing if heard.bearing is None else (heard.bearing,)
+    of_bearings = transfer.bearing if receiver.bearing is None else (receiver.bearing,)
     parts: dict[str, Callable[[], tuple[Quantity, ...]]] = {
         SOUND_POWER: lambda: (SoundPower(),),
-        SURFACE_VELOCITY: lambda: (SurfaceVelocity(heard_housing(subject.inputs, heard)),),
-        SOUND_PRESSURE: lambda: (SoundPressure(heard_housing(subject.inputs, heard), _microphone(heard)),),
+        SURFACE_VELOCITY: lambda: (SurfaceVelocity(housing_of(subject.inputs, receiver)),),
+        SOUND_PRESSURE: lambda: (SoundPressure(housing_of(subject.inputs, receiver), _microphone(receiver)),),
         BEARING_FORCE: lambda: tuple(map(BearingForce, of_bearings)),
     }
-    return Together(parts[quantity_of(subject, heard)]()).form(transfer, model)
+    return Together(parts[quantity_of(subject, receiver)]()).form(transfer, model)
 
 
-def _microphone(heard: HeardInput) -> tuple[float, float, float]:
-    x, y, z = heard.microphone_mm or (0.0, 0.0, 0.0)
+def _microphone(receiver: HeardInput) -> tuple[float, float, float]:
+    x, y, z = receiver.microphone_mm or (0.0, 0.0, 0.0)
     return x * MM, y * MM, z * MM
