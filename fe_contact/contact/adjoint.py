@@ -113,7 +113,7 @@ def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> Float
             state.slope[q] = 1.0 / approach(problem.law, q, force[q])[1]
     system = empty_system(problem)
     size = newton_system(problem, state, system)
-    pressed, motion = np.zeros((2, state.held.size))
+    pressed, motion = np.zeros((2, state.curve_load.size))
     right, out = np.zeros((len(rows), size)), np.full(rows.shape, np.nan)
     for a in range(len(rows)):
         press(problem, state.slope * rows[a], pressed)

@@ -32,7 +32,7 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> tuple[FloatA
     endless = _unchamfered(gap)._replace(low=-none, high=none)
     endless = endless._replace(slope=np.where(at_edge, 0.0, endless.slope))
     half = _strips(gap_table(endless), line_load, problem.modulus)
-    chamfer = np.where(gap.jump >= _EDGE, np.abs(gap.place), np.inf).min(axis=-1, initial=np.inf)
+    chamfer = np.where(gap.jump >= _EDGE, np.abs(gap.offset), np.inf).min(axis=-1, initial=np.inf)
     reach = np.minimum(np.minimum(-gap.low, gap.high), chamfer)[:, None]
     pressure, edge = np.zeros(force.shape), np.zeros(force.shape, dtype=np.bool_)
     row, contact = loaded
@@ -50,7 +50,7 @@ def _unchamfered(about: Gap) -> Gap:
     what the chamfer to the right of it is added to.
     """
     chamfer = about.jump >= _EDGE
-    at_chamfer = chamfer & (about.place == 0.0)
+    at_chamfer = chamfer & (about.offset == 0.0)
     to_the_left = at_chamfer & (about.slope[..., None] < -0.5 * about.jump)
     return about._replace(
         slope=np.where(at_chamfer.any(axis=-1), 0.0, about.slope),

@@ -87,7 +87,7 @@ class EdgeMotion(NamedTuple):
 
 
 @inner(error_model="numpy")
-def edge_place(
+def edge_position(
     offset: float, radius: float, softness: float, force: float
 ) -> tuple[float, float, float, float, float]:
     """Return where a strip at an edge presses.
@@ -114,8 +114,8 @@ def edge_place(
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
     """Return what a force in N on slice i and a tilt of its flanks do; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
-    place = edge_place(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
-    centroid, middle, turned, twice, growth = place
+    position = edge_position(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
+    centroid, middle, turned, twice, growth = position
     # the length by the angle is -growth times the length, of which the middle is half
     slid = -growth * middle if growth > 0.0 else -radius
     corner, slope = _corner(edge, i, force)
@@ -139,7 +139,7 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
     scaled = max(softness * force, _SHORTEST * radius)
     half, rigid, reached, far = math.sqrt(scaled * radius), 0.25 * scaled, 0.0, offset
     if half >= offset:
-        half = far = edge_place(offset, radius, softness, force)[1]
+        half = far = edge_position(offset, radius, softness, force)[1]
         rigid = (0.75 * half * half - offset * half) / radius
         if offset > 0.0:
             rigid += 0.5 * offset * offset / radius

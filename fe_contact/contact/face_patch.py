@@ -227,8 +227,8 @@ def add_compliance(
     slice at all of them.
     """
     ends = _ends(tooth)
-    needed, place = _needed(order, loads, at[1], ends)
-    slices = _slice_forces(loads, at, lever, place, ends)
+    needed, rank = _needed(order, loads, at[1], ends)
+    slices = _slice_forces(loads, at, lever, rank, ends)
     room = np.empty(needed[:, 0].max() ** 2)
     for a in range(ends.size - 1):
         for b in range(ends.size - 1):
@@ -256,17 +256,17 @@ class _SliceForces(NamedTuple):
 
 @inner()
 def _slice_forces(
-    loads: FaceLoads, at: IntArray, lever: FloatArray, place: IntArray, ends: IntArray
+    loads: FaceLoads, at: IntArray, lever: FloatArray, rank: IntArray, ends: IntArray
 ) -> _SliceForces:
     """Lay the forces of all slices beside each other."""
-    low, width, start = _ranges(loads, at[1], place, ends)
+    low, width, start = _ranges(loads, at[1], rank, ends)
     count = lever.shape[0]
     force = np.zeros(start[-1] * count)
     for r in range(at.shape[1]):
         p, i = at[0, r], at[1, r]
         begin = start[i] * count + p * width[i] - low[i]
         for k in range(loads.used[r]):
-            force[begin + place[i, loads.nodes[r, k]]] += loads.forces[r, k]
+            force[begin + rank[i, loads.nodes[r, k]]] += loads.forces[r, k]
     return _SliceForces(low, width, start, force, lever)
 
 
@@ -314,7 +314,7 @@ def _ends(tooth: IntArray) -> IntArray:
 def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> tuple[IntArray, IntArray]:
     """Return how many freedoms of each tooth are loaded and which, and the place of each by slice."""
     needed = np.zeros((ends.size - 1, order.size + 1), dtype=np.int64)
-    place = np.full((ends[-1], order.size), -1, dtype=np.int64)
+    rank = np.full((ends[-1], order.size), -1, dtype=np.int64)
     for a in range(ends.size - 1):
         seen = np.zeros(order.size, dtype=np.bool_)
         for r in range(on.size):
@@ -323,22 +323,22 @@ def _needed(order: IntArray, loads: FaceLoads, on: IntArray, ends: IntArray) -> 
                     seen[loads.nodes[r, k]] = True
         for node in order:
             if seen[node]:
-                place[ends[a] : ends[a + 1], node] = needed[a, 0]
+                rank[ends[a] : ends[a + 1], node] = needed[a, 0]
                 needed[a, 0] += 1
                 needed[a, needed[a, 0]] = node
-    return needed, place
+    return needed, rank
 
 
 @inner()
 def _ranges(
-    loads: FaceLoads, on: IntArray, place: IntArray, ends: IntArray
+    loads: FaceLoads, on: IntArray, rank: IntArray, ends: IntArray
 ) -> tuple[IntArray, IntArray, IntArray]:
     """Return the first place that each slice loads, how many from there on, and the sums of those before."""
-    low, high = np.full(ends[-1], place.shape[1]), np.zeros(ends[-1], dtype=np.int64)
+    low, high = np.full(ends[-1], rank.shape[1]), np.zeros(ends[-1], dtype=np.int64)
     for r in range(on.size):
         for k in range(loads.used[r]):
-            rank = place[on[r], loads.nodes[r, k]]
-            low[on[r]], high[on[r]] = min(low[on[r]], rank), max(high[on[r]], rank + 1)
+            index = rank[on[r], loads.nodes[r, k]]
+            low[on[r]], high[on[r]] = min(low[on[r]], index), max(high[on[r]], index + 1)
     low = np.minimum(low, high)
     start = np.zeros(ends[-1] + 1, dtype=np.int64)
     start[1:] = np.cumsum(high - low)

@@ -46,15 +46,15 @@ def least_gap(
     value = gap(x, of)
     first = np.searchsorted(of, np.arange(allowed.size + 1))
     promise = _promises(x, value, first)
-    place, minimum = x[first[:-1]].copy(), np.full(allowed.size, np.inf)
+    position, minimum = x[first[:-1]].copy(), np.full(allowed.size, np.inf)
     for _ in range(_VALLEYS):
         on, ways, values = _lowest_valleys(x, value, promise, first, minimum - allowed)
         if not on.size:
             break
         _follow(gap, on, ways, values, allowed[on])
         lower = values[1] < minimum[on]
-        place[on[lower]], minimum[on[lower]] = ways[1, lower], values[1, lower]
-    return place, minimum
+        position[on[lower]], minimum[on[lower]] = ways[1, lower], values[1, lower]
+    return position, minimum
 
 
 def _follow(
@@ -63,9 +63,9 @@ def _follow(
     """Follow gaps of contacts (n,) down between three points (3, n), the middle the lowest or an end."""
     on: IntArray = np.arange(allowed.size)
     for k in range(_STEPS):
-        place, gained = _refinements(ways, values, on, k % _HALVED == _HALVED - 1)
-        height = gap(place, contact[on])
-        on = _narrow(ways, values, (on, place, height, gained), allowed, k < _MIN_STEPS)
+        position, gained = _refinements(ways, values, on, k % _HALVED == _HALVED - 1)
+        height = gap(position, contact[on])
+        on = _narrow(ways, values, (on, position, height, gained), allowed, k < _MIN_STEPS)
         if not on.size:
             break
 
@@ -139,13 +139,13 @@ def _refinements(
     for m in range(on.size):
         i = on[m]
         low, middle, high = ways[0, i], ways[1, i], ways[2, i]
-        place, gains[m] = _parabola(ways, values, i)
+        position, gains[m] = _parabola(ways, values, i)
         longer = high if high - middle > middle - low else low
         if halving or middle in (low, high):
             places[m] = 0.5 * (middle + longer)
         else:
-            towards = longer - middle if place == middle else place - middle
-            way = max(abs(place - middle), _NEAREST * (high - low))
+            towards = longer - middle if position == middle else position - middle
+            way = max(abs(position - middle), _NEAREST * (high - low))
             places[m] = min(max(middle + math.copysign(way, towards), low), high)
     return places, gains
 
@@ -165,16 +165,16 @@ def _narrow(
     on, places, heights, gains = new
     more, count = np.empty(on.size, dtype=np.int64), 0
     for m in range(on.size):
-        i, place, height = on[m], places[m], heights[m]
-        lower, outer = height < values[1, i], 2 if place > ways[1, i] else 0
+        i, position, height = on[m], places[m], heights[m]
+        lower, outer = height < values[1, i], 2 if position > ways[1, i] else 0
         if always or gains[m] > allowed[i] or values[1, i] - height > allowed[i]:
             more[count] = i
             count += 1
         if lower:  # the new point is the middle: the old one is its end on the other side
             ways[2 - outer, i], values[2 - outer, i] = ways[1, i], values[1, i]
-            ways[1, i], values[1, i] = place, height
+            ways[1, i], values[1, i] = position, height
         else:
-            ways[outer, i], values[outer, i] = place, height
+            ways[outer, i], values[outer, i] = position, height
     return more[:count]
 
 

@@ -19,19 +19,19 @@ class Break:
 
     gear: int
     """0 is the pinion, 1 the wheel."""
-    place: FloatArray
+    position: FloatArray
     """Flank coordinate on that gear, m; of no dimension, or one per touching point."""
     side: int
     """+1 where it runs towards the pinion's tip (the wheel's root), else -1."""
     jump: FloatArray | float
     bend: FloatArray | float
-    """`jump`, `bend`: 1 and 1/m; arrays where `place` is one."""
+    """`jump`, `bend`: 1 and 1/m; arrays where `position` is one."""
     ends_flank: bool = False
     """Whether the usable flank ends there: a rounded or chamfered tip."""
 
     def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
         """Return how far it is from touching points at these coordinates, m towards the pinion's tip."""
-        return self.place - s_1 if self.gear == 0 else s_2 - self.place
+        return self.position - s_1 if self.gear == 0 else s_2 - self.position
 
     def height(self, beyond: FloatArray) -> FloatArray:
         """Return what it removes in m at distances from it in m towards the pinion's tip."""

@@ -61,8 +61,8 @@ class NewtonSystem(NamedTuple):
     touching: FloatArray
     """N'DN of all curves with those up to w - 1 before them, N/m. Shape (n, w)."""
     matrix: FloatArray
-    moved: FloatArray
-    """`matrix`, `moved`: 1 + N'DN K, and K of the members, m/N. Shape (n, n) each."""
+    compliance: FloatArray
+    """`matrix`, `compliance`: 1 + N'DN K, and K of the members, m/N. Shape (n, n) each."""
     right: FloatArray
     """N'D m in N/m, and what the forces on the curves miss in N. Shape (2, n)."""
     shares: FloatArray
@@ -130,9 +130,9 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
     guessed = not state.force.any()
     if guessed:
         _guess(problem, total, gap, state.force)
-    press(problem, state.force, state.held)
+    press(problem, state.force, state.curve_load)
     move(problem, state)
-    law, force, motion = problem.law, state.force, motions(problem, state.moved)
+    law, force, motion = problem.law, state.force, motions(problem, state.displacement)
     needed, arm = 0.0, 0.0
     for q in range(gap.size):
         if force[q] > 0.0:
@@ -170,7 +170,7 @@ def _iterate(
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
     system = empty_system(problem)
-    change, motion = np.empty((2, state.held.size))
+    change, motion = np.empty((2, state.curve_load.size))
     tangent, last = math.nan, math.inf
     for iteration in range(1, MAX_ITERATIONS + 1):
         if not state.slope.any():  # a step too far has parted all flanks
@@ -184,7 +184,7 @@ def _iterate(
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
         step = -(excess + residual) * tangent
-        change[:] = state.pressed - state.held  # where nothing touches the forces go
+        change[:] = state.pressed - state.curve_load  # where nothing touches the forces go
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         yield_to(state.yielding, change, motion)
@@ -204,7 +204,7 @@ def _settle(
 ) -> bool:
     """Add what a last step changes of the forces; not if a law is bent by more than the tolerance over it."""
     m, arm = gap.size, problem.motion_arm
-    nearer, motion_before = motions(problem, motion), motions(problem, state.moved)
+    nearer, motion_before = motions(problem, motion), motions(problem, state.displacement)
     for q in range(m):
         nearer[q] = arm[q] * step - nearer[q]
         closer = arm[q] * elastic - gap[q] - motion_before[q]
@@ -220,7 +220,7 @@ def _settle(
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
     """Return the stiffness of the position in N/m, and what the curves miss of the load in N."""
     stiff, residual = stiffness(problem, state), 0.0
-    for r in range(state.held.size):
+    for r in range(state.curve_load.size):
         if system.shares[r] != 0.0:
             for s in range(size):
                 yielding = system.shares[r] * state.yielding[r, system.member[s]]
@@ -242,17 +242,17 @@ def _advance(
     state: State,
 ) -> float:
     """Take a step, or the part of it to where the energy is level; return the elastic deflection."""
-    pressed, before = state.held.copy(), elastic
+    pressed, before = state.curve_load.copy(), elastic
     fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
-    fall += dot(motion, state.held - state.pressed, motion.size)
+    fall += dot(motion, state.curve_load - state.pressed, motion.size)
     low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
     for _ in range(_CUTS):
         elastic = before + length * step
-        state.held[:] = pressed + length * change
+        state.curve_load[:] = pressed + length * change
         move(problem, state)
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
-        rise += dot(motion, state.held - state.pressed, motion.size)
+        rise += dot(motion, state.curve_load - state.pressed, motion.size)
         if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
             break
         if rise > 0.0:
@@ -266,7 +266,7 @@ def _advance(
 @inner(error_model="numpy")
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
-    pulled, pushed = np.zeros((2, state.held.size))
+    pulled, pushed = np.zeros((2, state.curve_load.size))
     fill_yielding(problem, state)
     _touching(problem, state, system, pulled)
     size, left, member = 0, system.left, system.member
@@ -276,13 +276,13 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
             member[size] = k
             size += 1
         else:
-            left[k] = state.held[k] - state.pressed[k]
+            left[k] = state.curve_load[k] - state.pressed[k]
     any_left, width = left.any(), system.touching.shape[1]
     for r in range(size):
         i = member[r]
         for s in range(size):
-            system.moved[r, s] = state.yielding[i, member[s]]
-        system.right[0, r], system.right[1, r] = pulled[i], state.pressed[i] - state.held[i]
+            system.compliance[r, s] = state.yielding[i, member[s]]
+        system.right[0, r], system.right[1, r] = pulled[i], state.pressed[i] - state.curve_load[i]
         pushed[r] = dot(state.yielding[i], left, left.size) if any_left else 0.0
     for r in range(size):
         row = system.matrix[r, :size]
@@ -292,7 +292,7 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
             distance = abs(member[r] - member[s])
             if distance < width:
                 part = system.touching[max(member[r], member[s]), distance]
-                subtract(row, system.moved[s, :size], -part)
+                subtract(row, system.compliance[s, :size], -part)
                 system.right[1, r] += part * pushed[s]
     return size
 
@@ -325,9 +325,9 @@ def _residuals(
     """Measure the four residuals of the forces found, and whether any strip outgrew the reference length."""
     residual[:] = 0.0
     any_beyond = False
-    state.held[:] = state.pressed
+    state.curve_load[:] = state.pressed
     move(problem, state)
-    law, force, motion = problem.law, state.force, motions(problem, state.moved)
+    law, force, motion = problem.law, state.force, motions(problem, state.displacement)
     for q in range(gap.size):
         value, beyond = 0.0, False
         if force[q] > 0.0:

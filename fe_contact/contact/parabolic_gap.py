@@ -12,7 +12,7 @@ from host.loops import inner, njit
 
 
 @njit(cache=True, error_model="numpy")
-def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
+def touching_offsets(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
     touching = np.empty(gap.slope.size)
     for i in range(touching.size):
@@ -22,12 +22,12 @@ def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
         # the slope is made of straight pieces: from break to break until it changes its sign
         while rising != 0.0 and position != end:
             stop = end
-            for k in range(gap.place.shape[1]):
-                at = gap.place[i, k]
+            for k in range(gap.offset.shape[1]):
+                at = gap.offset[i, k]
                 if (position - at) * rising > 0.0 and (at - stop) * rising > 0.0:
                     stop = at
             curvature = _curvature(gap, i, 0.5 * (position + stop))
-            slope = _slope_beside(gap, i, position, -rising)
+            slope = _one_sided_slope(gap, i, position, -rising)
             step = -slope / curvature if curvature > 0.0 else -rising * math.inf
             if slope * rising <= 0.0:
                 break
@@ -42,17 +42,17 @@ def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
 @inner(error_model="numpy")
 def _slope(gap: Gap, i: int, x: float) -> float:
     """Return the slope of the gap, the side to which it falls if there is one; zero at a break that holds."""
-    left, right = _slope_beside(gap, i, x, -1.0), _slope_beside(gap, i, x, 1.0)
+    left, right = _one_sided_slope(gap, i, x, -1.0), _one_sided_slope(gap, i, x, 1.0)
     if left > 0.0:
         return left
     return right if right < 0.0 else 0.0
 
 
 @inner(error_model="numpy")
-def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
+def _one_sided_slope(gap: Gap, i: int, x: float, side: float) -> float:
     slope: float = gap.slope[i] + gap.curvature[i] * x
-    for k in range(gap.place.shape[1]):
-        at = gap.place[i, k]
+    for k in range(gap.offset.shape[1]):
+        at = gap.offset[i, k]
         right = at >= 0.0
         beyond = (x - at) if right else (at - x)
         inside = beyond > 0.0 or (beyond == 0.0 and (side > 0.0) == right)
@@ -64,26 +64,26 @@ def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
 @inner(error_model="numpy")
 def _curvature(gap: Gap, i: int, x: float) -> float:
     curvature: float = gap.curvature[i]
-    for k in range(gap.place.shape[1]):
-        at = gap.place[i, k]
+    for k in range(gap.offset.shape[1]):
+        at = gap.offset[i, k]
         if (x > at) if at >= 0.0 else (x < at):
             curvature += gap.bend[i, k]
     return curvature
 
 
 @njit(cache=True, error_model="numpy")
-def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
+def shifted_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
-    n, breaks = gap.place.shape
+    n, breaks = gap.offset.shape
     minimum, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
-    position, bend = gap.place.copy(), gap.bend.copy()
+    position, bend = gap.offset.copy(), gap.bend.copy()
     for i in range(n):
         x = shift[i]
         minimum[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
         curvature[i] = gap.curvature[i]
         at_end = x == gap.low[i] or x == gap.high[i]
         for k in range(breaks):
-            at = gap.place[i, k]
+            at = gap.offset[i, k]
             right = at >= 0.0
             beyond = max((x - at) if right else (at - x), 0.0)
             minimum[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
@@ -92,5 +92,5 @@ def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
             if (position[i, k] >= 0.0) != right:
                 curvature[i] += gap.bend[i, k]
                 bend[i, k] = -gap.bend[i, k]
-        slope[i] = _slope_beside(gap, i, x, -1.0) if at_end else 0.0
+        slope[i] = _one_sided_slope(gap, i, x, -1.0) if at_end else 0.0
     return minimum, Gap(slope, curvature, gap.low - shift, gap.high - shift, position, gap.jump, bend)

@@ -56,10 +56,10 @@ def in_pitches(
         (common.roll_1, common.s_1, common.gap, candidates.face_position, candidates.pair, pitch),
         find,
     )
-    moved = replace(
+    in_base_pitches = replace(
         candidates,
         position=np.tile(candidates.position, times) + pitch,
         touch=touch,
         width=np.concatenate([candidates.width] * times),
     )
-    return problem.touching(moved)
+    return problem.touching(in_base_pitches)

@@ -36,13 +36,13 @@ class Touch:
     """`slope`, `curvature`, `low`, `high`: Gap about the touching points in the transverse section, towards
     tip 1; see `strip.Gap`.
     """
-    place: FloatArray
+    offset: FloatArray
     jump: FloatArray
     bend: FloatArray
-    """`place`, `jump`, `bend`: Its breaks. Shape (P, n, B) each."""
-    moved: FloatArray
+    """`offset`, `jump`, `bend`: Its breaks. Shape (P, n, B) each."""
+    shift: FloatArray
     """How far modifications move the touching point, or the middle of the strip, towards tip 1, m."""
-    missed: FloatArray
+    approach_error: FloatArray
     """Error of the approach on rough flanks; see `RoughStrip`."""
     lag: FloatArray
     """Lag of gear 2 that closes a depth removed there, over that depth."""

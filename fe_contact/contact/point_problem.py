@@ -104,9 +104,9 @@ class RowBodies(NamedTuple):
 
     there: BoolArray
     """Slices that any contact can press on. Shape (n,)."""
-    moved: FloatArray
+    compliance: FloatArray
     tilt: FloatArray
-    """`moved`, `tilt`: See `bodies` and `tilt` of `PointProblem`."""
+    """`compliance`, `tilt`: See `bodies` and `tilt` of `PointProblem`."""
     curve: FloatArray
     first: IntArray
     """`curve`, `first`: See `PointProblem`, of the points of one pair. Ndarray, shapes (points, w),
@@ -123,7 +123,7 @@ def row_bodies(every: PointProblems, row: int) -> RowBodies:
     motion = _turned(every.heights, _turned(every.heights, motion))
     if every.tilt.size:
         tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
-    curve, first = _beside(every.curves)
+    curve, first = _banded(every.curves)
     return RowBodies(there, motion, tilt, curve, first)
 
 
@@ -148,8 +148,8 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
     first = pairs[touching // points] * count + bodies.first[point]
     arms = every.motion_arm[p][touching], every.torque_arm[p][touching]
     edge = every.edge[p % every.edge.shape[0]][bodies.there]
-    held = bodies.moved, bodies.tilt, radius, edge
-    return PointProblem(*held, bodies.curve[point], first, every.gap[p][touching], *arms, law), touching
+    of_bodies = bodies.compliance, bodies.tilt, radius, edge
+    return PointProblem(*of_bodies, bodies.curve[point], first, every.gap[p][touching], *arms, law), touching
 
 
 @inner(error_model="numpy")
@@ -162,7 +162,7 @@ def _turned(heights: FloatArray, motion: FloatArray) -> FloatArray:
 
 
 @inner(error_model="numpy")
-def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
+def _banded(curves: FloatArray) -> tuple[FloatArray, IntArray]:
     """Return the curves (points, w) that are not zero at each point, and which is the first of them."""
     points, count = curves.shape
     first, width = np.zeros(points, dtype=np.int64), 1
@@ -179,9 +179,9 @@ def _beside(curves: FloatArray) -> tuple[FloatArray, IntArray]:
 class State(NamedTuple):
     """The state of an iteration."""
 
-    held: FloatArray
+    curve_load: FloatArray
     """Forces on the curves h, N. Shape (n,)."""
-    moved: FloatArray
+    displacement: FloatArray
     """What they move, u(h), m. Shape (n,)."""
     yielding: FloatArray
     """Its derivative, m/N. Shape (n, n)."""
@@ -199,14 +199,14 @@ def pressed_state(problem: PointProblem, force: FloatArray) -> State:
     yielding = np.zeros((n, n)) if problem.tilt.size else problem.bodies  # it stays where no flank rolls
     state = State(np.zeros(n), np.zeros(n), yielding, force, np.zeros(m), np.zeros(n))
     press(problem, force, state.pressed)
-    state.held[:] = state.pressed
+    state.curve_load[:] = state.pressed
     return state
 
 
 @inner(error_model="numpy")
 def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
     """Fill in forces and slopes of the contacts, and the forces on the curves, under the motions."""
-    law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.moved)
+    law, arm, motion = problem.law, problem.motion_arm, motions(problem, state.displacement)
     for q in range(gap.size):
         state.force[q], state.slope[q] = force_at(law, q, arm[q] * elastic - gap[q] - motion[q])
     press(problem, state.force, state.pressed)

@@ -173,7 +173,7 @@ class Candidates:
             touch.curvature[places] * normal,
             touch.low[places],
             touch.high[places],
-            touch.place[places],
+            touch.offset[places],
             touch.jump[places] * normal,
             touch.bend[places] * normal,
         )
@@ -242,7 +242,7 @@ class Candidates:
     def following(self, touch: Touch) -> Candidates:
         """Return the same candidates with touching points that say how far the middles of strips moved."""
         there = self.touching(touch)
-        return self.touching(replace(touch, moved=touch.moved + there.strips.middle - self.strips.middle))
+        return self.touching(replace(touch, shift=touch.shift + there.strips.middle - self.strips.middle))
 
 
 @dataclass(frozen=True)
@@ -294,8 +294,8 @@ class ContactProblem:
         near = near - (k_1 * lateral_1 - k_2 * lateral_2) * slices.turned_normals
         near = slices.mean(near) / slices.width
         compliance, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
-        if self.tilt.size and self.candidates.touch.moved.any():
-            way = np.clip(self.candidates.touch.moved, -slices.law_length, slices.law_length)
+        if self.tilt.size and self.candidates.touch.shift.any():
+            way = np.clip(self.candidates.touch.shift, -slices.law_length, slices.law_length)
             _displace(compliance, self.tilt, self.candidates.on_mean(way))
         compliance[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         touch = self.candidates.touch
@@ -389,7 +389,7 @@ class ContactProblem:
         )
         return edge_table(strips, slices.present)
 
-    def moved(self, force: FloatArray) -> FloatArray:
+    def displacement(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
 
         Without the local approach of a candidate that carries.

@@ -54,7 +54,7 @@ class DeviatingTeeth(NamedTuple):
             sets.append((term.gear, lists, np.searchsorted(numbers, teeth)))
         return sets
 
-    def some(self, of: IntArray | slice) -> DeviatingTeeth:
+    def rows(self, of: IntArray | slice) -> DeviatingTeeth:
         """Return those of some of the candidates."""
         return self._replace(meeting=self.meeting[of])
 

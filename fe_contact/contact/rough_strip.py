@@ -58,29 +58,29 @@ class RoughStrip(NamedTuple):
     gap: Gap
     center: FloatArray
     """Where the load lies from the touching point, m. Shape (n,)."""
-    missed: FloatArray
+    approach_error: FloatArray
     """Largest error of its approach over the geometric mean of relative radius and 2 p/(pi E*), under the
     loads that are solved: waves miss more under a larger load, but no more than they are high. Shape (n,).
     """
 
 
-def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread: FloatArray) -> RoughStrip:
+def rough_strip(gap_of: GapOf, position: FloatArray, curvature: FloatArray, spread: FloatArray) -> RoughStrip:
     """Return the even gaps about touching points.
 
     Parameters
     ----------
-    place : ndarray, shape (n,)
+    position : ndarray, shape (n,)
         Where the true gap is least, m.
     curvature : ndarray, shape (n,)
         Of plain flanks, 1/m.
     spread : ndarray, shape (n,)
         Bound of highest less lowest deviation from these, m.
     """
-    count = place.size
+    count = position.size
     crest, center, error = np.empty((3, count))
     ends, bends = np.empty((2, count, BREAKS // 2))
     for part in np.array_split(np.arange(count), count // _AT_ONCE + 1):
-        excess, center[part] = _excess(gap_of, part, place[part], curvature[part], spread[part])
+        excess, center[part] = _excess(gap_of, part, position[part], curvature[part], spread[part])
         crest[part], ends[part], bends[part], error[part] = _even_gaps(excess, HALF_STRIPS, LOADS)
     ends, bends = ends / curvature[:, None], bends * curvature[:, None]
     places, no_end = np.concatenate([ends, -ends], axis=1), np.full(count, np.inf)
@@ -89,7 +89,7 @@ def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread:
         curvature=crest * curvature,
         low=-no_end,
         high=no_end,
-        place=places,
+        offset=places,
         jump=np.zeros(places.shape),
         bend=np.concatenate([bends, bends], axis=1),
     )
@@ -97,7 +97,7 @@ def rough_strip(gap_of: GapOf, place: FloatArray, curvature: FloatArray, spread:
 
 
 def _excess(
-    gap_of: GapOf, part: IntArray, place: FloatArray, curvature: FloatArray, spread: FloatArray
+    gap_of: GapOf, part: IntArray, position: FloatArray, curvature: FloatArray, spread: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return how much more than plain ones flanks give way (n, K) under the loads, and centroids (n,).
 
@@ -105,11 +105,11 @@ def _excess(
     """
     cells, raised = (np.arange(_CELLS) + 0.5) / _CELLS - 0.5, float(np.max(spread * curvature))
     excess, center = np.zeros((part.size, LOADS.size)), np.zeros(part.size)
-    level = gap_of(place, part)[:, None]
+    level = gap_of(position, part)[:, None]
     for k, half in enumerate(HALF_STRIPS):
         reach = min(math.sqrt(_MIN_WINDOW**2 + 2.0 * raised / half**2), _LARGEST_WINDOW)
         ways = 2.0 * reach * cells
-        there = place[:, None] + half / curvature[:, None] * ways
+        there = position[:, None] + half / curvature[:, None] * ways
         gap = gap_of(there.ravel(), np.repeat(part, _CELLS)).reshape(there.shape) - level
         approach, middle = half_planes(gap * curvature[:, None] / half**2, 2.0 * reach)
         excess[:, k] = half**2 * (approach - half_planes(0.5 * ways[None] ** 2, 2.0 * reach)[0])
@@ -151,7 +151,7 @@ def _kernel(count: int, cell: float) -> FloatArray:
 
 
 @inner(error_model="numpy")
-def _moved(kernel: FloatArray, force: FloatArray) -> FloatArray:
+def _displacements(kernel: FloatArray, force: FloatArray) -> FloatArray:
     """Return the displacements under forces on even cells."""
     count = force.size
     motion = np.zeros(count)
@@ -184,7 +184,7 @@ def _pressed(kernel: FloatArray, gap: FloatArray, start: FloatArray) -> tuple[fl
     count, load = gap.size, start.sum()
     force, way, along, level = start.copy(), np.zeros(count), 0.0, 0.0
     for _ in range(_STEPS):
-        off = _moved(kernel, force) + gap
+        off = _displacements(kernel, force) + gap
         level = _mean_where(off, force)
         steep = 0.0
         for i in range(count):
@@ -194,7 +194,7 @@ def _pressed(kernel: FloatArray, gap: FloatArray, start: FloatArray) -> tuple[fl
         turn, along = steep / along if along > 0.0 else 0.0, steep
         for i in range(count):
             way[i] = off[i] + turn * way[i] if force[i] > 0.0 else 0.0
-        bent = _moved(kernel, way)
+        bent = _displacements(kernel, way)
         mean, up, down = _mean_where(bent, force), 0.0, 0.0
         for i in range(count):
             up += off[i] * way[i]

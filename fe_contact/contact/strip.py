@@ -36,7 +36,7 @@ from host.loops import inner, njit
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
 _STEPS = 100
-_NEWTON_STEPS, _HELD_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
+_NEWTON_STEPS, _EDGE_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
 """Of strip and middle at once, and their last step over the strip, which leaves its square."""
 _TILTED = 0.1
 """Way of the middle by which its response to tilt is found, over half the strip."""
@@ -46,7 +46,7 @@ _BLUNTEST = 0.05
 """Least cosine at a break in derivatives: they are infinite where a break is at the end of the strip."""
 
 _SLOPE, CURVATURE, _LOW, _HIGH, _BREAKS = range(5)
-_PLACE, _JUMP, _BEND, _WIDTH = range(4)
+_OFFSET, _JUMP, _BEND, _WIDTH = range(4)
 """Columns of a table of gaps, and of each of its breaks. A loop passes on one array faster than seven."""
 
 
@@ -61,19 +61,19 @@ class Gap(NamedTuple):
     low: FloatArray
     high: FloatArray
     """`low`, `high`: Where the bodies end, m; infinite = nowhere near. Shape (n,) each."""
-    place: FloatArray
+    offset: FloatArray
     jump: FloatArray
     bend: FloatArray
-    """`place`, `jump`, `bend`: x_k in m, a_k and b_k in 1/m; a break at infinity is none. Shape (n, B) each.
+    """`offset`, `jump`, `bend`: x_k in m, a_k and b_k in 1/m; a break at infinity is none. Shape (n, B) each.
     """
 
 
 def with_breaks(gap: Gap, count: int) -> Gap:
     """Return gaps (...,) with at least so many breaks; those that come to them are at infinity."""
-    more = max(count - gap.place.shape[-1], 0)
-    width = [(0, 0)] * (gap.place.ndim - 1) + [(0, more)]
-    place = np.pad(gap.place, width, constant_values=np.inf)
-    return gap._replace(place=place, jump=np.pad(gap.jump, width), bend=np.pad(gap.bend, width))
+    more = max(count - gap.offset.shape[-1], 0)
+    width = [(0, 0)] * (gap.offset.ndim - 1) + [(0, more)]
+    offset = np.pad(gap.offset, width, constant_values=np.inf)
+    return gap._replace(offset=offset, jump=np.pad(gap.jump, width), bend=np.pad(gap.bend, width))
 
 
 @njit(cache=True, error_model="numpy")
@@ -86,24 +86,24 @@ def rounded(gap: Gap, minimum: FloatArray) -> Gap:
             flattest += min(bend[i, k], 0.0)
         if flattest >= minimum[i]:
             continue
-        order = np.argsort(np.abs(gap.place[i]))
+        order = np.argsort(np.abs(gap.offset[i]))
         left, right = curvature[i], curvature[i]
         for k in order:  # away from the touching point to either side
-            here = right if gap.place[i, k] >= 0.0 else left
-            bend[i, k] = max(bend[i, k], minimum[i] - here)
-            if gap.place[i, k] >= 0.0:
+            side_curvature = right if gap.offset[i, k] >= 0.0 else left
+            bend[i, k] = max(bend[i, k], minimum[i] - side_curvature)
+            if gap.offset[i, k] >= 0.0:
                 right += bend[i, k]
             else:
                 left += bend[i, k]
-    return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
+    return Gap(gap.slope, curvature, gap.low, gap.high, gap.offset, gap.jump, bend)
 
 
 def gap_table(gap: Gap) -> FloatArray:
     """Return gaps (..., n) row by row, (..., n, 4 + 3 B): slope, curvature, ends, then each break."""
-    table = np.empty((*gap.slope.shape, _BREAKS + _WIDTH * gap.place.shape[-1]))
+    table = np.empty((*gap.slope.shape, _BREAKS + _WIDTH * gap.offset.shape[-1]))
     for column, values in enumerate((gap.slope, gap.curvature, gap.low, gap.high)):
         table[..., column] = values
-    for column, values in enumerate((gap.place, gap.jump, gap.bend)):
+    for column, values in enumerate((gap.offset, gap.jump, gap.bend)):
         table[..., _BREAKS + column :: _WIDTH] = values
     return table
 
@@ -202,8 +202,8 @@ def _tilting(gap: FloatArray, i: int, center: float, half: float) -> float:
     """
     by_slope, by_first = float(gap[i, CURVATURE]), 0.0
     for k in range(_BREAKS, gap.shape[1], _WIDTH):
-        side = 1.0 if gap[i, k + _PLACE] >= 0.0 else -1.0
-        sine = side * (gap[i, k + _PLACE] - center) / half
+        side = 1.0 if gap[i, k + _OFFSET] >= 0.0 else -1.0
+        sine = side * (gap[i, k + _OFFSET] - center) / half
         if sine < 1.0 + 4.0 * _TOLERANCE:  # the end may be held at a break, to either side of it by rounding
             sine = min(max(sine, -1.0), 1.0)
             cosine = max(math.sqrt(1.0 - sine * sine), 1e-12)
@@ -318,17 +318,17 @@ def strip_at(
         if not half > 0.0:
             break
         if center <= gap[i, _LOW] + half:
-            return _held_strip(gap, i, value, length, half, 1.0)
+            return _strip_at_edge(gap, i, value, length, half, 1.0)
         if center >= gap[i, _HIGH] - half:
-            return _held_strip(gap, i, value, length, half, -1.0)
+            return _strip_at_edge(gap, i, value, length, half, -1.0)
         slope, first, mean, bend, tilt, bulge = _means(gap, i, center, half)
         law, off, across = 1.0, half * first - value, half * tilt
         if length > 0.0:
             law = math.log(length / half) - 0.25
             off, across = mean + half * first * law - value, slope + half * tilt * law
         along = law * (first + half * bulge)
-        whole = bend * along - tilt * across
-        aside, wider = (tilt * off - along * slope) / whole, (across * slope - bend * off) / whole
+        determinant = bend * along - tilt * across
+        aside, wider = (tilt * off - along * slope) / determinant, (across * slope - bend * off) / determinant
         center += aside
         half += wider
         if abs(aside) + abs(wider) <= _NEWTON_TOLERANCE * half:
@@ -338,7 +338,7 @@ def strip_at(
 
 
 @inner(error_model="numpy")
-def _held_strip(
+def _strip_at_edge(
     gap: FloatArray, i: int, value: float, length: float, half: float, side: float
 ) -> tuple[float, float, float, float]:
     """Return what `strip_at` does of a strip that begins at the lower edge (`side` 1) or ends at the upper.
@@ -346,7 +346,7 @@ def _held_strip(
     The mean of g' then pushes it against the edge; the pressure there is singular.
     """
     widest = widest_strip(gap, i)
-    for _ in range(_HELD_STEPS):
+    for _ in range(_EDGE_STEPS):
         if not half < widest:
             break
         center = gap[i, _LOW] + half if side > 0.0 else gap[i, _HIGH] - half
@@ -414,8 +414,8 @@ def _means(
     mean = s * center + 0.5 * q * (center * center + 0.5 * half * half)
     bend, tilt, bulge = q, 0.0, 0.5 * q
     for k in range(_BREAKS, gap.shape[1], _WIDTH):
-        side = 1.0 if gap[i, k + _PLACE] >= 0.0 else -1.0
-        beyond = side * (gap[i, k + _PLACE] - center)  # from the middle to the break
+        side = 1.0 if gap[i, k + _OFFSET] >= 0.0 else -1.0
+        beyond = side * (gap[i, k + _OFFSET] - center)  # from the middle to the break
         if beyond >= half:
             continue
         a, b = gap[i, k + _JUMP], gap[i, k + _BEND]

@@ -109,7 +109,7 @@ class ClosingLag:
         """Take those of candidates at positions and numbers (k,)."""
         touch, arm = candidates.touch, candidates.motion_arm[at]
         lag = arm * np.where(touch.low[at] < 0.0, touch.gap[at] * touch.lag[at], 0.0)
-        near_break = (np.abs(touch.place[at]) < _AT_TOUCH * STEP * touch.radius[at][:, None]).any(axis=1)
+        near_break = (np.abs(touch.offset[at]) < _AT_TOUCH * STEP * touch.radius[at][:, None]).any(axis=1)
         free = touch.slope[at] == 0.0
         way = np.where(free & ~near_break, -1.0 / touch.curvature[at], 0.0)
         at_break = near_break & ~free
@@ -128,9 +128,9 @@ class ClosingLag:
         """Return how much steeper the flank of a gear is by a gap than by another near it (k,)."""
         places, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
         steeper = flank_slope(self.strips.pair, gear, difference, places, self._step)
-        return np.asarray(steeper + self.turns[gear] * self._moved(gap, over))
+        return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
-    def _moved(self, gap: GapTerm, over: GapTerm) -> FloatArray:
+    def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
         """Return how far the touching points move (k,), m: those at breaks with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
@@ -188,7 +188,7 @@ class FollowingPatches:
     """How patches follow the slope of small gaps, and what motions of the bodies that adds."""
 
     problem: ContactProblem
-    held: FloatArray
+    slice_force: FloatArray
     """Forces on the slices, N. Shape (P, L, n)."""
     at_rest: Strips
     """Strips under a small load of all candidates, by which patches follow; k = P m."""
@@ -204,7 +204,7 @@ class FollowingPatches:
         """Take those of a solved problem."""
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         touch, rest = c.touch, c.strips
-        free = (rest.slope == 0.0) & (np.abs(touch.moved) < c.slices.law_length) & np.isfinite(c.gap)
+        free = (rest.slope == 0.0) & (np.abs(touch.shift) < c.slices.law_length) & np.isfinite(c.gap)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(free & loaded)
         places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
@@ -217,13 +217,13 @@ class FollowingPatches:
         c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
         shift.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(shift)[:, None]
-        rolled = by_slice * self._tilts + self._times(by_slice * self.held, back=True)
+        rolled = by_slice * self._tilts + self._times(by_slice * self.slice_force, back=True)
         return c.at_points(rolled)
 
     @cached_property
     def _tilts(self) -> FloatArray:
         """Under the forces, (P, L, n)."""
-        return self._times(self.held)
+        return self._times(self.slice_force)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
         """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
@@ -232,7 +232,7 @@ class FollowingPatches:
         """
         c = self.problem.candidates
         pressed = c.on_slices(weight)
-        by_slice = pressed * self._tilts + self.held * self._times(pressed)
+        by_slice = pressed * self._tilts + self.slice_force * self._times(pressed)
         by_point = _at_points(c, np.einsum("apl,pln->apn", rows, by_slice))
         return np.asarray(by_point.reshape(len(rows), -1)[:, self.index] * self.way)
 
@@ -246,9 +246,9 @@ class TurnedForces:
     """How slopes of small gaps change the motions of the bodies by the forces that they turn."""
 
     problem: ContactProblem
-    held: FloatArray
-    moved: FloatArray
-    """`held`, `moved`: Forces on the slices in N, and what they move in m. Shape (P, L, n) each."""
+    slice_force: FloatArray
+    displacement: FloatArray
+    """`slice_force`, `displacement`: Forces on the slices, N, and what they move, m. Shape (P, L, n)."""
     closing: ClosingLag
     """Of the k candidates whose slices carry."""
     index: IntArray
@@ -273,7 +273,8 @@ class TurnedForces:
         for gear, slope in enumerate(slopes):
             slope.flat[self.index] = self.closing.slope(gear, gap, over)
         turned = self.problem.turned_by(*(c.on_mean(slope) for slope in slopes))[:, None]
-        return c.at_points(turned * self.moved + _times(self.problem.bodies, turned * self.held))
+        motion = turned * self.displacement + _times(self.problem.bodies, turned * self.slice_force)
+        return c.at_points(motion)
 
     def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
         """Return what the slope of a flank of a gear adds (Q, k) to sums `rows` (Q, P, L), m.
@@ -281,7 +282,7 @@ class TurnedForces:
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """
         pressed = self.problem.candidates.on_slices(weight)
-        by_slice = pressed * self.moved + self.held * _times(self.problem.bodies, pressed)
+        by_slice = pressed * self.displacement + self.slice_force * _times(self.problem.bodies, pressed)
         slopes = np.zeros((2, len(weight), by_slice.shape[2]))
         slopes[gear] = 1.0
         mean = np.einsum("apl,pln->apn", rows, by_slice) * self.problem.turned_by(*slopes)

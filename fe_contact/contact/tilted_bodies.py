@@ -17,20 +17,21 @@ def move(problem: PointProblem, state: State) -> None:
     flanks that tilt press in another place y, no further away than the reference length. Near an edge the
     place is that of the strip, and what the corner yields comes to it (`fe_contact.contact.edge_strip`).
     """
-    n = state.held.size
+    n = state.curve_load.size
     for j in range(n):
-        state.moved[j] = dot(problem.bodies[j], state.held, n)
+        state.displacement[j] = dot(problem.bodies[j], state.curve_load, n)
     for j in range(n):
         if problem.edge[j, SIDE] != 0.0:
-            motion = edge_motion(problem.edge, j, state.held[j], dot(problem.tilt[j], state.held, n))
-            state.moved[j] += motion.by_force + motion.corner
+            tilt = dot(problem.tilt[j], state.curve_load, n)
+            motion = edge_motion(problem.edge, j, state.curve_load[j], tilt)
+            state.displacement[j] += motion.by_force + motion.corner
             for k in range(n):
-                state.moved[k] += problem.tilt[j, k] * motion.by_tilt
+                state.displacement[k] += problem.tilt[j, k] * motion.by_tilt
         elif problem.radius[j] > 0.0:
-            tilt, way, _ = rolled(problem, j, state.held)
-            state.moved[j] += way * (tilt + 0.5 * way / problem.radius[j])
+            tilt, way, _ = rolled(problem, j, state.curve_load)
+            state.displacement[j] += way * (tilt + 0.5 * way / problem.radius[j])
             for k in range(n):
-                state.moved[k] += problem.tilt[j, k] * way * state.held[j]
+                state.displacement[k] += problem.tilt[j, k] * way * state.curve_load[j]
 
 
 @inner(error_model="numpy")
@@ -46,17 +47,17 @@ def fill_yielding(problem: PointProblem, state: State) -> None:
     """Fill in the derivative of the motions: symmetric, and that of the bodies where no flank rolls."""
     if not problem.tilt.size:
         return
-    n, out = state.held.size, state.yielding
+    n, out = state.curve_load.size, state.yielding
     out[:] = problem.bodies
     for j in range(n):
         row, mixed, square = problem.tilt[j], 0.0, 0.0
         if problem.edge[j, SIDE] != 0.0:
-            motion = edge_motion(problem.edge, j, state.held[j], dot(row, state.held, n))
+            motion = edge_motion(problem.edge, j, state.curve_load[j], dot(row, state.curve_load, n))
             out[j, j] += motion.force_force + motion.softness
             mixed, square = motion.force_tilt, motion.tilt_tilt
         elif problem.radius[j] > 0.0:
-            _, mixed, rate = rolled(problem, j, state.held)
-            square = rate * state.held[j]
+            _, mixed, rate = rolled(problem, j, state.curve_load)
+            square = rate * state.curve_load[j]
         if mixed != 0.0:
             for k in range(n):
                 out[j, k] += mixed * row[k]

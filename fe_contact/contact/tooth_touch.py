@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.contact.flank_slope import rolls_at
 from fe_contact.contact.model import ContactModel, MeetingTeeth
-from fe_contact.contact.parabolic_gap import moved_gap, touching_places
+from fe_contact.contact.parabolic_gap import shifted_gap, touching_offsets
 from fe_contact.contact.plain_touch import Touch, conjugate_touch
 from fe_contact.contact.rough_flanks import DeviatingTeeth, curvature_bound
 from fe_contact.contact.strip import Gap, rounded, with_breaks
@@ -21,7 +21,7 @@ from host.loops import njit
 _AT_ONCE = 16_384
 """Candidates whose gaps are found together: what they take stays in the cache of the processor."""
 _SLOPES = ("lag", "slope_1", "slope_2", "turn_1", "turn_2")
-_MOVING = ("s_1", "s_2", "gap", "missed", *_SLOPES, *Gap._fields)
+_MOVING = ("s_1", "s_2", "gap", "approach_error", *_SLOPES, *Gap._fields)
 """What the gaps of teeth change of touching points."""
 
 
@@ -44,7 +44,7 @@ class _Part(NamedTuple):
         """The teeth that meet there."""
         return DeviatingTeeth(self.model.tooth_gaps, self.meeting)
 
-    def some(self, of: IntArray) -> _Part:
+    def rows(self, of: IntArray) -> _Part:
         """Return some of the candidates."""
         return self._replace(common=self.common.rows(of), face=self.face[of], meeting=self.meeting[of])
 
@@ -65,7 +65,7 @@ def tooth_touch(
 
     Notes
     -----
-    Load patches stay where the common flanks touch: `moved` is theirs. What differs from tooth to tooth
+    Load patches stay where the common flanks touch: `shift` is theirs. What differs from tooth to tooth
     counts as a lag: a pitch error of gear 2 turns its flank, and as much of a lag closes it on any slope.
     """
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
@@ -75,7 +75,7 @@ def tooth_touch(
     results = []
     for at in parts:
         common = Touch(*(getattr(touch, name)[at] for name in touch.__dataclass_fields__))
-        results.append(_beside(_Part(pair, model, common, face[at[1]], meeting[at])))
+        results.append(_touching(_Part(pair, model, common, face[at[1]], meeting[at])))
     breaks = max((arrays[-1].shape[-1] for arrays in results), default=0)
     changed = _with_breaks(tuple(getattr(touch, name).copy() for name in _MOVING), breaks)
     for at, arrays in zip(parts, results, strict=True):
@@ -90,7 +90,7 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
     return *moving[:first], *with_breaks(Gap(*moving[first:]), count)
 
 
-def _beside(part: _Part) -> tuple[FloatArray, ...]:
+def _touching(part: _Part) -> tuple[FloatArray, ...]:
     """Return what `_MOVING` names.
 
     Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
@@ -99,7 +99,7 @@ def _beside(part: _Part) -> tuple[FloatArray, ...]:
     stepped, poor = _stepped(part)
     rough = np.flatnonzero(poor | _sharp(part))
     if rough.size:
-        searched = _searched(part.some(rough))
+        searched = _searched(part.rows(rough))
         stepped = _with_breaks(stepped, searched[-1].shape[-1])
         for values, replaced in zip(stepped, searched, strict=True):
             values[rough] = replaced
@@ -121,7 +121,7 @@ def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
     teeth = part.gap(way)
     remainder = teeth - level - way * (steepness + 0.5 * bend * way)
     poor = (np.abs(way) > half) | (np.abs(remainder) > ALLOWED / common.curvature)
-    touching = common.s_1 + way, common.s_2 - way, common.gap + minimum + teeth, common.missed
+    touching = common.s_1 + way, common.s_2 - way, common.gap + minimum + teeth, common.approach_error
     slopes = (getattr(common, name) for name in _SLOPES)
     return (*touching, *slopes, *gap), poor
 
@@ -135,35 +135,35 @@ def _free_steps(
     Returns the gaps about there, the ways in m, what the gaps without the teeth are there in m, and which of
     them need more than such a step: they are left as they were.
     """
-    n, breaks = gap.place.shape
+    n, breaks = gap.offset.shape
     slope, curvature, low, high = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    place = gap.place.copy()
+    offset = gap.offset.copy()
     ways, minimum, far = np.zeros(n), np.zeros(n), np.zeros(n, dtype=np.bool_)
     for i in range(n):
         slope[i], curvature[i] = gap.slope[i], gap.curvature[i] + bend[i]
         low[i], high[i] = gap.low[i], gap.high[i]
-        whole = slope[i] + steepness[i]
+        steep = slope[i] + steepness[i]
         hollow = 0.0
         for k in range(breaks):
             hollow += min(gap.bend[i, k], 0.0)
         far[i] = curvature[i] + hollow < FLATTEST * gap.curvature[i]
         if slope[i] != 0.0:  # at a tip edge that stays in contact, or at a break
-            at_end = (low[i] == 0.0 and whole > 0.0) or (high[i] == 0.0 and whole < 0.0)
-            slope[i] = whole
+            at_end = (low[i] == 0.0 and steep > 0.0) or (high[i] == 0.0 and steep < 0.0)
+            slope[i] = steep
             far[i] = far[i] or not at_end
             continue
         way = -steepness[i] / curvature[i]
         far[i] = far[i] or way <= low[i] or way >= high[i]
         for k in range(breaks):
-            at = place[i, k]
+            at = offset[i, k]
             far[i] = far[i] or (way >= at if at >= 0.0 else way <= at)
         if far[i]:
             continue
         ways[i], minimum[i] = way, 0.5 * gap.curvature[i] * way * way
         low[i], high[i] = low[i] - way, high[i] - way
         for k in range(breaks):
-            place[i, k] -= way
-    return Gap(slope, curvature, low, high, place, gap.jump.copy(), gap.bend.copy()), ways, minimum, far
+            offset[i, k] -= way
+    return Gap(slope, curvature, low, high, offset, gap.jump.copy(), gap.bend.copy()), ways, minimum, far
 
 
 def _step_on(
@@ -176,10 +176,10 @@ def _step_on(
     """Step over breaks and to edges, in the place of what `_free_steps` returned of those candidates."""
     plain = Gap(*(values[far] for values in common.about))
     slope, curvature = plain.slope + teeth[0][far], plain.curvature + teeth[1][far]
-    whole = rounded(plain._replace(slope=slope, curvature=curvature), FLATTEST * plain.curvature)
-    way = touching_places(whole, plain.low, plain.high)
-    stepped[0][far], stepped[1][far] = way, moved_gap(plain, way)[0]
-    for values, replaced in zip(gap, moved_gap(whole, way)[1], strict=True):
+    total = rounded(plain._replace(slope=slope, curvature=curvature), FLATTEST * plain.curvature)
+    way = touching_offsets(total, plain.low, plain.high)
+    stepped[0][far], stepped[1][far] = way, shifted_gap(plain, way)[0]
+    for values, replaced in zip(gap, shifted_gap(total, way)[1], strict=True):
         values[far] = replaced
 
 

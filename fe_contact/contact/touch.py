@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.contact.flank_slope import flank_slope, rolls_at
 from fe_contact.contact.least_gap import Nodes, least_gap, samples
 from fe_contact.contact.model import GapTerm
-from fe_contact.contact.parabolic_gap import moved_gap, touching_places
+from fe_contact.contact.parabolic_gap import shifted_gap, touching_offsets
 from fe_contact.contact.plain_touch import FLAT, Touch, flank_coordinate
 from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth, curvature_bound
 from fe_contact.contact.rough_strip import BREAKS, rough_strip
@@ -35,7 +35,7 @@ ALLOWED = 1e-7
 ROUGH, WAVY = 0.25, 0.05
 """Curvature of deviations over that of plain flanks above which flanks may touch at another crest, and above
 which no parabola describes them under load."""
-_MISSED = 10.0
+_STEP_ERROR = 10.0
 """How far the true gap after a step may be from its parabola, over that: what is left is of higher order."""
 _ALIKE = 1e-4
 """Distance of samples over the step of differences below which they are one."""
@@ -83,7 +83,7 @@ def modified_touch(
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    modified = _moved(pair, touch, face, moving, teeth) if moving or teeth else touch
+    modified = _shifted(pair, touch, face, moving, teeth) if moving or teeth else touch
     if not steady:
         return modified
     roll_2 = pair.mating_roll_length(touch.roll_1)
@@ -91,7 +91,7 @@ def modified_touch(
     return replace(modified, gap=modified.gap + removed * modified.lag)
 
 
-def _moved(
+def _shifted(
     pair: ParallelAxes,
     touch: Touch,
     face: FloatArray,
@@ -100,7 +100,7 @@ def _moved(
 ) -> Touch:
     """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
-    plain = {name: each.reshape(touch.gap.size, *each.shape[2:]) for name, each in vars(touch).items()}
+    plain = {name: values.reshape(touch.gap.size, *values.shape[2:]) for name, values in vars(touch).items()}
     near = Touch(**{name: values[possible] for name, values in plain.items()})
     faces = np.broadcast_to(face, shape).ravel()[possible]
     if teeth is not None:
@@ -115,7 +115,7 @@ def _moved(
     touching = _touching(flanks)
     shift, about = touching.shift, touching.about
     places = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
-    places |= {"moved": shift + touching.off, "missed": touching.missed}
+    places |= {"shift": shift + touching.off, "approach_error": touching.approach_error}
     places |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
     for name, values in places.items():
@@ -132,7 +132,7 @@ class _Touching(NamedTuple):
     shift: FloatArray
     gap: FloatArray
     off: FloatArray
-    missed: FloatArray
+    approach_error: FloatArray
     about: Gap
 
 
@@ -144,7 +144,7 @@ def _touching(flanks: _Flanks) -> _Touching:
     """
     sharp, wavy = flanks.rougher(ROUGH), flanks.rougher(WAVY)
     shift, now, poor, about = _by_parabolas(
-        flanks if not sharp.any() else flanks.some(np.flatnonzero(~sharp))
+        flanks if not sharp.any() else flanks.rows(np.flatnonzero(~sharp))
     )
     none = np.zeros(shift.size)
     if not wavy.any() and not poor.any():
@@ -152,21 +152,21 @@ def _touching(flanks: _Flanks) -> _Touching:
     rough = sharp.copy()
     rough[~sharp] = poor
     about = with_breaks(about, BREAKS) if wavy.any() else about
-    whole: _Arrays = (shift, now, none, none.copy(), *about)
+    arrays: _Arrays = (shift, now, none, none.copy(), *about)
     if sharp.any():
-        every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in whole)
-        whole = _replaced(every, np.flatnonzero(~sharp), whole)
+        every = tuple(np.zeros((sharp.size, *values.shape[1:])) for values in arrays)
+        arrays = _replaced(every, np.flatnonzero(~sharp), arrays)
     at = np.flatnonzero(rough | wavy)
     for part in np.array_split(at, at.size // _AT_ONCE + 1):
-        near, again = flanks.some(part), np.flatnonzero(rough[part])
-        place, minimum = whole[0][part], whole[1][part]
-        if again.size:
-            place[again], minimum[again] = near.some(again).minimum(place[again])
-        off, error, local_gap = near.beside(place, wavy=wavy[part])
-        local_gap = with_breaks(local_gap, about.place.shape[1])
-        whole = _replaced(whole, part, (place, minimum, off, error, *local_gap))
-    shift, now, off, error, *beside_all = whole
-    return _Touching(shift, now, off, error, Gap(*beside_all))
+        near, searched = flanks.rows(part), np.flatnonzero(rough[part])
+        position, minimum = arrays[0][part], arrays[1][part]
+        if searched.size:
+            position[searched], minimum[searched] = near.rows(searched).minimum(position[searched])
+        off, error, local_gap = near.loaded_gap(position, wavy=wavy[part])
+        local_gap = with_breaks(local_gap, about.offset.shape[1])
+        arrays = _replaced(arrays, part, (position, minimum, off, error, *local_gap))
+    shift, now, off, error, *local_gaps = arrays
+    return _Touching(shift, now, off, error, Gap(*local_gaps))
 
 
 def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, Gap]:
@@ -178,28 +178,28 @@ def _by_parabolas(flanks: _Flanks) -> tuple[FloatArray, FloatArray, BoolArray, G
     for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
         if arrays:  # where there was no step, the next is none either
             on = np.flatnonzero(step)
-            flanks, of = flanks.some(on), of[on]
+            flanks, of = flanks.rows(on), of[on]
         x = shift[of]
         about = flanks.about(x)
-        step = touching_places(about, flanks.first - x, flanks.last - x)
+        step = touching_offsets(about, flanks.first - x, flanks.last - x)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
         ahead = flanks.gap(x + step)
         down = (ahead <= now[of]) | (np.abs(step) < 1e-3 * flanks.step)
         step = np.where(down, step, 0.0)
-        minimum, local_gap = moved_gap(about, step)
+        minimum, local_gap = shifted_gap(about, step)
         arrays = _replaced(arrays, of, tuple(local_gap))
-        poor[of] = ~down | (np.abs(now[of] + minimum - ahead) > _MISSED * flanks.allowed)
+        poor[of] = ~down | (np.abs(now[of] + minimum - ahead) > _STEP_ERROR * flanks.allowed)
         shift[of], now[of] = x + step, np.where(down, ahead, now[of])
     return shift, now, poor, Gap(*arrays)
 
 
-def _replaced(whole: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
+def _replaced(arrays: _Arrays, of: IntArray, part: _Arrays) -> _Arrays:
     """Return arrays with new values of some of their entries, or of all."""
-    if not whole or len(of) == len(whole[0]):
+    if not arrays or len(of) == len(arrays[0]):
         return part
-    for every, values in zip(whole, part, strict=True):
+    for every, values in zip(arrays, part, strict=True):
         every[of] = values
-    return whole
+    return arrays
 
 
 class _Flanks:
@@ -225,11 +225,11 @@ class _Flanks:
         self.last = np.minimum(touch.high, np.where(touch.s_2 < 0.0, np.inf, _REACH * touch.s_2))
         self.step = np.minimum(STEP / touch.curvature, 0.2 * (self.last - self.first))
         self.allowed = ALLOWED / touch.curvature
-        self._tilt = {side: self._beside(side) for side in self.cut_tips}
+        self._tilt = {side: self._excess_slope(side) for side in self.cut_tips}
 
-    def some(self, of: IntArray) -> _Flanks:
+    def rows(self, of: IntArray) -> _Flanks:
         """Return some of the touching points."""
-        teeth = None if self._teeth is None else self._teeth.some(of)
+        teeth = None if self._teeth is None else self._teeth.rows(of)
         return _Flanks(self._pair, self._touch.rows(of), self._face[of], self._gaps, teeth, self._surfaces)
 
     def gap(self, x: FloatArray) -> FloatArray:
@@ -240,7 +240,7 @@ class _Flanks:
     def gap_of(self, x: FloatArray, of: IntArray) -> FloatArray:
         """Return the gap in m at ways x (k,) of some of the touching points (k,)."""
         if self.cut_tips:
-            return self.some(of).gap(x)
+            return self.rows(of).gap(x)
         touch, gears = self._touch, (self._pair.pinion, self._pair.wheel)
         doubled = 2.0 * gears[0].base_radius, 2.0 * gears[1].base_radius
         flanks = touch.s_1, touch.s_2, touch.slope, touch.curvature
@@ -315,7 +315,7 @@ class _Flanks:
         alike = self._teeth is None
         bounded = alike and not self.cut_tips and all(term.only_removes for term in self._gaps)
         may = np.flatnonzero(minimum > 0.0) if bounded else np.arange(lowest.size)
-        part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.some(may)
+        part, near = np.linspace(0.0, 1.0, _SAMPLES)[:, None], self.rows(may)
         x = near.first + (near.last - near.first) * part
         if bounded:
             gap = near._plain(x)
@@ -360,13 +360,13 @@ class _Flanks:
         # flanks hollowed out more than they are round would touch at several places
         return rounded(Gap(slope, curvature, *ends, position, jump, bends), FLATTEST * touch.curvature)
 
-    def beside(self, x: FloatArray, wavy: BoolArray) -> tuple[FloatArray, FloatArray, Gap]:
+    def loaded_gap(self, x: FloatArray, wavy: BoolArray) -> tuple[FloatArray, FloatArray, Gap]:
         """Return how far the load lies from touching points at x (n,), m, what is missed, and the gap there.
 
         That of `wavy` flanks is the one that gives way as they do; not where an edge touches.
         """
         touch = self._touch
-        (off, error), (_, gap) = np.zeros((2, x.size)), moved_gap(self.about(x), np.zeros(x.size))
+        (off, error), (_, gap) = np.zeros((2, x.size)), shifted_gap(self.about(x), np.zeros(x.size))
         inside = np.flatnonzero(wavy & (gap.slope == 0.0) & (gap.low < 0.0) & (gap.high > 0.0))
         if not inside.size:
             return off, error, gap
@@ -387,8 +387,8 @@ class _Flanks:
         )
         gap = with_breaks(gap, BREAKS)
         felt = strip.gap._replace(low=gap.low[inside], high=gap.high[inside])
-        felt = with_breaks(felt, gap.place.shape[1])
-        off[inside], error[inside] = strip.center, strip.missed
+        felt = with_breaks(felt, gap.offset.shape[1])
+        off[inside], error[inside] = strip.center, strip.approach_error
         return off, error, Gap(*_replaced(tuple(gap), inside, tuple(felt)))
 
     def closed(self, x: FloatArray, now: FloatArray) -> dict[str, FloatArray]:
@@ -397,12 +397,12 @@ class _Flanks:
         `now` is the gap at x less that of plain flanks at 0, m. On the flank of gear 2 its slope turns the
         normal, at an edge the normal is that of the mate. Gaps of teeth count as lags.
         """
-        touch, (place_1, place_2), (end_1, end_2) = self._touch, self._places(x), self._ends
-        slope_1, turn_1 = self._slope_of(0, x, place_1 >= end_1)
-        slope_2, turn_2 = self._slope_of(1, x, place_2 >= end_2)
+        touch, (s_1, s_2), (end_1, end_2) = self._touch, self._places(x), self._ends
+        slope_1, turn_1 = self._slope_of(0, x, s_1 >= end_1)
+        slope_2, turn_2 = self._slope_of(1, x, s_2 >= end_2)
         turned = 1.0 / (1.0 - slope_2)
-        at_edge = (place_1 >= end_1) | (place_2 >= end_2)
-        rolls = rolls_at(self._pair, place_1, place_2)
+        at_edge = (s_1 >= end_1) | (s_2 >= end_2)
+        rolls = rolls_at(self._pair, s_1, s_2)
         depth = now + np.where(at_edge, self._designed(rolls) * (touch.lag - 1.0), 0.0)
         of_teeth = self._of_teeth(rolls)
         # by a relief, off the line of action
@@ -412,8 +412,8 @@ class _Flanks:
             "gap": plain + (depth - of_teeth) * turned + of_teeth,
             "lag": np.where(at_edge, touch.lag, 1.0) * turned,
             # off the line of action the lever arms of the edge have a part of it, at the edge all
-            "slope_1": np.where(place_1 >= end_1, 0.0, slope_1 - (1.0 - touch.lever_1)),
-            "slope_2": np.where(place_2 >= end_2, 0.0, slope_2 - (1.0 - touch.lever_2)),
+            "slope_1": np.where(s_1 >= end_1, 0.0, slope_1 - (1.0 - touch.lever_1)),
+            "slope_2": np.where(s_2 >= end_2, 0.0, slope_2 - (1.0 - touch.lever_2)),
             "turn_1": turn_1,
             "turn_2": turn_2,
         }
@@ -458,7 +458,7 @@ class _Flanks:
         """Return the part of it that differs from tooth to tooth, at roll lengths of both gears."""
         if self._teeth is None:
             return 0.0
-        return self._teeth.some(of).gap(self._pair, rolls, self._face[of])
+        return self._teeth.rows(of).gap(self._pair, rolls, self._face[of])
 
     def _designed(
         self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice = slice(None)
@@ -475,7 +475,7 @@ class _Flanks:
         """
         return self._beyond_parabola(side, x) - np.where(self._behind(side, x), self._tilt[side] * x, 0.0)
 
-    def _beside(self, side: Side) -> FloatArray:
+    def _excess_slope(self, side: Side) -> FloatArray:
         """Return the slope of exact gap less parabola at the touching point of plain flanks, behind it."""
         near = _NEAR * (self.step if side == "approach" else -self.step)
         return self._beyond_parabola(side, near) / near

@@ -178,7 +178,7 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     share = solved.figures.edge_load_share.copy()
     by = [on_edges(problem, each) / load for each in solved.force]
     clear = c.motion_arm[:, None] * (c.gap[:, None] - solution.deflection[..., None])
-    clear = np.where(edges(problem)[:, None], clear + problem.moved(solution.force), np.inf)
+    clear = np.where(edges(problem)[:, None], clear + problem.displacement(solution.force), np.inf)
     nearest = clear.argmin(axis=2)
     p, k = np.nonzero((share == 0.0) & np.isfinite(clear.min(axis=2)))
     m = nearest[p, k]
@@ -186,6 +186,6 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     share[p, k] = -clear[p, k, m] * per_gap
     points = solved.strips.at_edges(c, (p, k, m), _POINT)
     for a, step in enumerate(solved.steps):
-        moved = problem.moved(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
+        moved = problem.displacement(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
         by[a][p, k] = -(step.opened(points) + moved) * per_gap
     return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)

@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.contact.parabolic_gap import moved_gap, touching_places
+from fe_contact.contact.parabolic_gap import shifted_gap, touching_offsets
 from fe_contact.contact.strip import Gap, gap_table, half_strip, strip_load
 
 MODULUS = 115e9
@@ -42,7 +42,7 @@ def approach(about: Gap, load: float, patch: float = 1.0) -> float:
 def height(about: Gap, x):
     """Gap at x, by its definition."""
     value = about.slope[0] * x + 0.5 * about.curvature[0] * x**2
-    for place, jump, bend in zip(about.place[0], about.jump[0], about.bend[0], strict=True):
+    for place, jump, bend in zip(about.offset[0], about.jump[0], about.bend[0], strict=True):
         depth = np.maximum(x - place if place >= 0.0 else place - x, 0.0)
         value = value + jump * depth + 0.5 * bend * depth**2
     return np.where((x < about.low[0]) | (x > about.high[0]), np.inf, value)
@@ -168,7 +168,7 @@ def test_lengths_scale(name, scale):
     about = GAPS[name]
     larger = Gap(
         about.slope, about.curvature / scale, scale * about.low, scale * about.high,
-        scale * about.place, about.jump, about.bend / scale,
+        scale * about.offset, about.jump, about.bend / scale,
     )  # fmt: skip
     small, large = half_of(about, 0, 1e5, MODULUS), half_of(larger, 0, scale * 1e5, MODULUS)
     assert large == pytest.approx((scale * small[0], scale * small[1]), rel=1e-9)
@@ -183,12 +183,12 @@ def test_touching_points_are_where_the_gap_is_least():
         rng.normal(0.0, 2e-4, (n, 3)), rng.choice([0.0, 5e-3, 0.03], (n, 3)),
         rng.choice([0.0, -5.0, 20.0], (n, 3)),
     )  # fmt: skip
-    place = touching_places(about, about.low, about.high)
-    minimum, there = moved_gap(about, place)
+    place = touching_offsets(about, about.low, about.high)
+    minimum, there = shifted_gap(about, place)
     for i in range(n):
         one = Gap(*(part[i : i + 1] for part in about))
         moved = Gap(*(part[i : i + 1] for part in there))
-        x = np.union1d(np.linspace(one.low[0], one.high[0], 20001), one.place[0])
+        x = np.union1d(np.linspace(one.low[0], one.high[0], 20001), one.offset[0])
         values = height(one, x)
         assert minimum[i] == pytest.approx(values.min(), abs=1e-9)
         assert minimum[i] <= values.min() + 1e-15

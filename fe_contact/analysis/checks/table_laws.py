@@ -52,7 +52,7 @@ _NO_LOAD_NEIGHBORS = Law("continuity without load", "step to the next position",
 
 def flattest_touch(touch: Touch) -> float:
     """Return the least curvature of modified flanks over plain ones; of crests that of their strip."""
-    return FLATTEST if touch.place.shape[-1] >= BREAKS else FLATTEST_TOUCH
+    return FLATTEST if touch.offset.shape[-1] >= BREAKS else FLATTEST_TOUCH
 
 
 def check_laws(

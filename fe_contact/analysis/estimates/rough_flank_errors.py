@@ -22,14 +22,15 @@ def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> Fl
     """
     shape, force = solution.deflection.shape, np.moveaxis(solution.force, 1, 2)
     touch = problem.candidates.touch
-    if touch.place.shape[-1] < BREAKS:
+    if touch.offset.shape[-1] < BREAKS:
         return np.zeros(shape)
     rows = slice(len(force))
     crests = touch.curvature[rows] * touch.radius[rows]
     edge = (touch.low[rows] >= 0.0) | (touch.high[rows] <= 0.0)
     ragged = np.abs(np.log(np.where(edge & (crests > 0.0), crests, 1.0)))
     scaled = 2.0 / (np.pi * problem.modulus) * force / problem.candidates.width[rows][..., None]
-    of_gap = BETWEEN_LOADS * touch.missed[rows][..., None] * np.sqrt(scaled * touch.radius[rows][..., None])
+    error, radius = touch.approach_error[rows][..., None], touch.radius[rows][..., None]
+    of_gap = BETWEEN_LOADS * error * np.sqrt(scaled * radius)
     approach = np.maximum(np.minimum(of_gap, scaled), 0.5 * AT_AN_EDGE * ragged[..., None] * scaled)
     weight = force / np.maximum(force.sum(axis=1), 1e-300)[:, None]
     error = (weight * approach).sum(axis=1)

@@ -75,7 +75,7 @@ def _kink_length(flanks: LoadDistribution, problem: ContactProblem) -> float:
     line_load = float(flanks.force[position, pair, stretch] / problem.candidates.width[contact])
     half = 2.0 * line_load / (math.pi * pressure)
     about = problem.candidates.gap_at(contact)
-    kinked = bool(np.any((about.jump > 0.0) & (np.abs(about.place) < half)))
+    kinked = bool(np.any((about.jump > 0.0) & (np.abs(about.offset) < half)))
     return 2.0 * half if kinked else 0.0
 
 

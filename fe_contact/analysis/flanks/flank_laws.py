@@ -127,7 +127,7 @@ class _Flanks:
         about = candidates.gap_at(loaded)
         load = flanks.force.reshape(rows, -1)[loaded] / candidates.width[loaded]
         plain, longest = candidates.radius[loaded], self._longest(loaded, load)
-        near = np.abs(about.place) < 2.0 * longest[:, None]
+        near = np.abs(about.offset) < 2.0 * longest[:, None]
         bends, kinks = (
             np.where(near, np.abs(values), 0.0).sum(axis=-1) for values in (about.bend, about.jump)
         )

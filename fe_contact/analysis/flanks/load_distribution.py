@@ -283,7 +283,7 @@ def load_distribution(
 def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArray) -> FloatArray:
     """Gap (P, n) left along the normal: bending apart, less the approach of the rigid flanks."""
     candidates = problem.candidates
-    bent = problem.moved(force[:, None])[:, 0]
+    bent = problem.displacement(force[:, None])[:, 0]
     approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
     return np.where(force > 0.0, 0.0, bent - approach)
 

@@ -160,7 +160,7 @@ def _joined_candidates(parts: list[Candidates]) -> Candidates:
 
 def _joined_touch(parts: list[Touch]) -> Touch:
     """Put touching points together; only blocks where flanks are rough have the breaks of their strips."""
-    breaks = max(part.place.shape[-1] for part in parts)
+    breaks = max(part.offset.shape[-1] for part in parts)
     return _joined_arrays([part.with_breaks(breaks) for part in parts], 1)
 
 

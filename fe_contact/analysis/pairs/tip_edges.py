@@ -34,7 +34,7 @@ def edge_depth(point: OperatingPoint, problem: ContactProblem, solution: Contact
     touch = edges.candidates.touch
     off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
     force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
-    motion = edges.moved(force)
+    motion = edges.displacement(force)
     closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
     gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
     return np.asarray(np.max(closing - motion - gap[:, None, :], axis=(0, 2), initial=0.0))

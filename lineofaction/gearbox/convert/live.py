@@ -264,7 +264,7 @@ def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Jso
         return (_flanks_json(loaded(k)) for k in range(table.force.size))
 
     def passages() -> Iterator[Json]:
-        separation = solved.problem.moved(solved.solution.force)
+        separation = solved.problem.displacement(solved.solution.force)
         for k in range(table.force.size):
             yield _passage_json(loaded(k), separation[:, k].reshape(loaded(k).force.shape))
 

@@ -61,7 +61,7 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     row = position % len(problem.compliance)
     return Problem(
         compliance=blend @ state.yielding @ blend.T,
-        gap=c.gap[position, real] * motion + blend @ (state.moved - state.yielding @ state.held),
+        gap=c.gap[position, real] * motion + blend @ (state.displacement - state.yielding @ state.curve_load),
         motion_arm=motion,
         torque_arm=c.torque_share[position, real],
         gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),

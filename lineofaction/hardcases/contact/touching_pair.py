@@ -78,7 +78,7 @@ def _reach(case: Posed, relief: float) -> float:
     if force[weaker] > 0.0:
         return -float(force[weaker] / force.sum())
     c = problem.candidates
-    gap = c.gap[0] * c.motion_arm[0] + problem.moved(solution.force)[0, 0]
+    gap = c.gap[0] * c.motion_arm[0] + problem.displacement(solution.force)[0, 0]
     slack = gap - c.motion_arm[0] * solution.deflection[0, 0]
     return 1e6 * float(np.min(slack[force == 0.0]))
 

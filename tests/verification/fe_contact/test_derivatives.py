@@ -297,7 +297,8 @@ def test_to_take_material_away_never_brings_the_gears_closer_on_the_mean(gear, c
     bodies = condensed("helical")
     found = curve_derivatives(bodies, helical(), TORQUES, ["torque"])
     closing = replace(found._strips.closing, lag=0.0)
-    turned = replace(found._strips.turned, held=0.0 * found._strips.turned.held, moved=0.0)
+    turned = found._strips.turned
+    turned = replace(turned, slice_force=0.0 * turned.slice_force, displacement=0.0)
     strips = replace(found._strips, following=None, closing=closing, turned=turned)
     staying = replace(found, _strips=strips).on_flank(gear, 9, 7)
     following = found.on_flank(gear, 9, 7)

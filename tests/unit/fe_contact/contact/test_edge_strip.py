@@ -9,7 +9,7 @@ from fe_contact.contact.edge_strip import (
     EdgeStrips,
     edge_motion,
     edge_motions,
-    edge_place,
+    edge_position,
     edge_table,
     no_edges,
 )
@@ -41,7 +41,7 @@ def centroid(offset: float, force: float) -> float:
 def test_the_centroid_is_that_of_the_pressure(offset, force):
     """On the edge; where the strip does not reach it, that of Hertz: where flanks touch."""
     expected = centroid(offset, force) if np.sqrt(SOFTNESS * force * RADIUS) > offset else offset
-    assert edge_place(offset, RADIUS, SOFTNESS, force)[0] == pytest.approx(expected, rel=1e-6)
+    assert edge_position(offset, RADIUS, SOFTNESS, force)[0] == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.law
@@ -54,7 +54,7 @@ def test_motions_are_derivatives_of_one_energy(offset, force, side):
     step, turn = 1e-4 * force, 1e-4 * tilt
 
     def energy(force: float, tilt: float) -> float:
-        place = edge_place(offset - 0.5 * RADIUS * side * tilt, RADIUS, SOFTNESS, force)[0]
+        place = edge_position(offset - 0.5 * RADIUS * side * tilt, RADIUS, SOFTNESS, force)[0]
         return force * side * tilt * (place - PATCH)
 
     at = edge_motion(edge, 0, force, tilt)

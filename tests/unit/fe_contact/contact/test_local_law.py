@@ -156,7 +156,7 @@ def test_a_parabola_needs_no_search():
     assert free_strip(gap_table(gap), 0) == math.inf
     assert free_strip(gap_table(gap._replace(slope=np.array([0.01]))), 0) == 0.0
     assert free_strip(gap_table(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4]))), 0) == 1e-4
-    broken = gap._replace(place=np.array([[-5e-5, 3e-4]]), jump=np.ones((1, 2)), bend=np.ones((1, 2)))
+    broken = gap._replace(offset=np.array([[-5e-5, 3e-4]]), jump=np.ones((1, 2)), bend=np.ones((1, 2)))
     assert free_strip(gap_table(broken), 0) == 5e-5
 
 

@@ -90,7 +90,7 @@ def misses(seed: int, amplitude: float, length: float) -> list[tuple[float, floa
         hertz = scaled * (0.5 - math.log(half) + math.log(2.0))
         truth = pressed(gap, window, load) - plain + hertz
         crest = hertz + 0.5 * scaled * math.log(float(strip.gap.curvature[0]) * RADIUS)
-        stated = BETWEEN_LOADS * float(strip.missed[0]) * math.sqrt(scaled * RADIUS)
+        stated = BETWEEN_LOADS * float(strip.approach_error[0]) * math.sqrt(scaled * RADIUS)
         rows.append((approach_of(strip, load) - truth, min(stated, scaled), crest - truth))
     return rows
 

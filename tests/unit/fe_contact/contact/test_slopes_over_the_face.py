@@ -112,9 +112,9 @@ def test_compliance_changes_as_patches_of_slices_are_displaced_to_second_order(p
 
 def test_patches_of_a_slice_follow_the_mean_way_of_its_points_no_further_than_the_law_reaches(problem):
     c = problem.candidates
-    touch = replace(c.touch, moved=np.random.default_rng(4).uniform(-1.0, 1.0, c.gap.shape) * 2e-3)
+    touch = replace(c.touch, shift=np.random.default_rng(4).uniform(-1.0, 1.0, c.gap.shape) * 2e-3)
     found = problem.touching(c.touching(touch)).bodies - problem.bodies
-    way = np.clip(touch.moved, -c.slices.law_length, c.slices.law_length)
+    way = np.clip(touch.shift, -c.slices.law_length, c.slices.law_length)
     there = np.isfinite(c.gap).reshape(*c.slices.present.shape, -1)
     way = np.where(there, way.reshape(there.shape), 0.0).sum(axis=2) / np.maximum(there.sum(axis=2), 1)
     displaced = way[:, :, None] * problem.tilt

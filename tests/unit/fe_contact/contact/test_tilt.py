@@ -20,7 +20,7 @@ from fe_contact.contact import (
     contact_problem,
     solve_contact,
 )
-from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_place
+from fe_contact.contact.edge_strip import SIDE, edge_motion, edge_position
 from fe_contact.contact.newton import solve_point
 from fe_contact.contact.point_problem import PointProblem, State, point_problems, problem_at
 from fe_contact.contact.tilted_bodies import fill_yielding, move
@@ -61,7 +61,7 @@ def displaced(problem: ContactProblem, bodies, ways: np.ndarray) -> np.ndarray:
 
 def test_what_pressure_and_deflection_ask_of_the_bodies_is_computed_once(problem):
     kept = problem.bodies.copy()
-    problem.moved(np.ones((POSITION.size, 1, problem.candidates.pair.size)))
+    problem.displacement(np.ones((POSITION.size, 1, problem.candidates.pair.size)))
     assert problem.bodies is problem.bodies
     assert np.array_equal(problem.bodies, kept)
 
@@ -118,7 +118,7 @@ def test_compliance_changes_at_edges_as_patches_grow_from_them_less_the_logarith
 def test_the_compliance_of_modified_flanks_is_that_of_patches_displaced_to_them(problem, bodies):
     slices = problem.candidates.slices
     ways = np.where((slices.patch_1.edge_share + slices.patch_2.edge_share) == 0.0, 3e-5, 0.0)
-    touch = replace(problem.candidates.touch, moved=ways)
+    touch = replace(problem.candidates.touch, shift=ways)
     found = problem.touching(problem.candidates.touching(touch)).bodies - problem.bodies
     exact = displaced(problem, bodies, ways) - problem.compliance
     assert np.abs(found - exact).max() < 0.05 * np.abs(exact).max()
@@ -142,7 +142,7 @@ def energy(problem: PointProblem, held: np.ndarray) -> float:
     at_edges = 0.0
     for j in np.flatnonzero(problem.edge[:, SIDE]):
         side, offset, radius, softness, patch, *_ = problem.edge[j]
-        place = edge_place(offset - 0.5 * radius * side * tilt[j], radius, softness, held[j])[0]
+        place = edge_position(offset - 0.5 * radius * side * tilt[j], radius, softness, held[j])[0]
         forces = held[j] * (np.arange(2000) + 0.5) / 2000.0
         corner = np.mean([edge_motion(problem.edge, j, force, 0.0).corner for force in forces])
         at_edges += held[j] * (side * tilt[j] * (place - patch) + corner)
@@ -169,8 +169,8 @@ def test_motions_are_the_gradient_of_one_energy_and_yield_as_its_second_derivati
     assert far.tolist() == [k == 2 for k in range(n)]
     for j, one in enumerate(np.eye(n)):
         ends = [energy(point, forces + way * one) for way in (1.0, -1.0)]
-        assert here.moved[j] == pytest.approx(0.5 * (ends[0] - ends[1]), rel=1e-4)
-        moved = [state_of(point, forces + way * one).moved for way in (1e-2, -1e-2)]
+        assert here.displacement[j] == pytest.approx(0.5 * (ends[0] - ends[1]), rel=1e-4)
+        moved = [state_of(point, forces + way * one).displacement for way in (1e-2, -1e-2)]
         assert here.yielding[j] == pytest.approx((moved[0] - moved[1]) / 2e-2, rel=1e-5, abs=1e-14)
     assert here.yielding == pytest.approx(here.yielding.T, rel=1e-12)
     assert not np.allclose(here.yielding, point.bodies, rtol=1e-2, atol=0.0)
@@ -196,14 +196,14 @@ def test_the_tangent_is_the_change_of_the_deflection_with_the_load(problem):
 
 def test_without_tilt_nothing_rolls(problem):
     straight = replace(problem, tilt=0.0 * problem.tilt)
-    modified = replace(problem.candidates.touch, moved=np.full(problem.candidates.touch.gap.shape, 5e-5))
+    modified = replace(problem.candidates.touch, shift=np.full(problem.candidates.touch.gap.shape, 5e-5))
     elsewhere = straight.touching(problem.candidates.touching(modified))
     found, expected = solve_contact(elsewhere, LOADS), solve_contact(straight, LOADS)
     assert np.array_equal(found.deflection, expected.deflection)
     tilts = solve_contact(problem, LOADS)
     assert (tilts.deflection < expected.deflection).all()
     assert np.abs(tilts.deflection / expected.deflection - 1.0).max() < 2e-3
-    moved = problem.moved(tilts.force)
+    moved = problem.displacement(tilts.force)
     closer = problem.candidates.motion_arm[:, None] * (
         tilts.deflection[..., None] - problem.candidates.gap[:, None]
     )

@@ -151,7 +151,7 @@ def test_a_triangular_relief_against_a_direct_search_at_any_place_of_the_face(sh
         gap = x**2 / (2.0 * radius) + modification.material_removed(pinion, here, face)
         assert modified.gap[0, 0] == pytest.approx(gap.min(), abs=1e-10)
         away = flank_coordinate(pinion, begin) - modified.s_1[0, 0]
-        assert modified.place[0, 0] == pytest.approx([away], abs=1e-12)
+        assert modified.offset[0, 0] == pytest.approx([away], abs=1e-12)
         assert modified.jump[0, 0] == pytest.approx(start.jump, rel=1e-12)
 
 
