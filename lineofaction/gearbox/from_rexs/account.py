@@ -44,19 +44,19 @@ class Account:
     """
 
     def __init__(self, model: Model) -> None:
-        self._places = {id(part): place for place, part in model.all_components()}
+        self._places = {id(part): location for location, part in model.all_components()}
         self._parts = {id(part): part for _, part in model.all_components()}
         self._said: dict[int, dict[str, tuple[Fate, str]]] = {number: {} for number in self._parts}
 
-    def place(self, component: Component) -> str:
+    def location(self, component: Component) -> str:
         """Return where a component stands: its id, and its load case."""
         return self._places[id(component)]
 
-    def say(self, component: Component, item: str, fate: Fate, words: str) -> None:
+    def say(self, component: Component, item: str, fate: Fate, text: str) -> None:
         """State what becomes of an attribute that a component has or lacks; `item` "" is the component."""
-        self._said[id(component)][item] = (fate, words)
+        self._said[id(component)][item] = (fate, text)
 
-    def is_stated(self, component: Component) -> bool:
+    def has_entry(self, component: Component) -> bool:
         """Return whether something was said of the component itself."""
         return "" in self._said[id(component)]
 
@@ -70,20 +70,20 @@ class Account:
 
     def _lines(self, part: Component) -> Iterator[Line]:
         said = dict(self._said[id(part)])
-        whole = said.pop("", None)
+        component_entry = said.pop("", None)
         for attribute in part.attributes:
-            fate, words = said.setdefault(attribute.id, ("ignored", UNUSED))
+            fate, text = said.setdefault(attribute.id, ("ignored", UNUSED))
             if attribute.origin == ASSUMED and fate in ("taken", "ignored"):
-                said[attribute.id] = _assumed(attribute, fate, words)
+                said[attribute.id] = _assumed(attribute, fate, text)
         used = any(fate in ("taken", "derived", "assumed") for fate, _ in said.values())
-        whole = whole or (("taken", "") if used else ("ignored", UNUSED))
-        place, name = self.place(part), part.name or ""
-        for item, (fate, words) in {"": whole, **said}.items():
-            yield Line(place, part.id, part.type, name, item, fate, words, part.line)
+        component_entry = component_entry or (("taken", "") if used else ("ignored", UNUSED))
+        location, name = self.location(part), part.name or ""
+        for item, (fate, text) in {"": component_entry, **said}.items():
+            yield Line(location, part.id, part.type, name, item, fate, text, part.line)
 
 
-def _assumed(attribute: Attribute, fate: Fate, words: str) -> tuple[Fate, str]:
+def _assumed(attribute: Attribute, fate: Fate, text: str) -> tuple[Fate, str]:
     """Return what became of an assumed value: one that nothing reads is refused."""
     if fate == "ignored":
-        return "refused", f"assumed to be {attribute_text(attribute)}, and {words}"
-    return "assumed", f"{attribute_text(attribute)} instead of {dict(attribute.extra)[FORMER]}: {words}"
+        return "refused", f"assumed to be {attribute_text(attribute)}, and {text}"
+    return "assumed", f"{attribute_text(attribute)} instead of {dict(attribute.extra)[FORMER]}: {text}"

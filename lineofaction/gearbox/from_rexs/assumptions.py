@@ -18,7 +18,7 @@ _FORM = re.compile(r"(\d{1,18})\.([A-Za-z]\w*)=(.+)")
 
 _EXAMPLE = "COMPONENT.ATTRIBUTE=VALUE, as in 14.helix_angle_reference_diameter=-12"
 
-_PLACE = re.compile(r"component (\d+), (\w+)$")
+_ATTRIBUTE_FIELD = re.compile(r"component (\d+), (\w+)$")
 """The end of a field that names an attribute of a component."""
 
 _SEVERAL = re.compile(r"[,\s]+")
@@ -66,17 +66,18 @@ def attribute_text(attribute: Attribute) -> str:
 
 def mend(error: BadInput) -> str:
     """Return the assumptions that replace the values at fault, empty where none is that of a component."""
-    places = [_PLACE.search(fault.field) for fault in error.faults]
-    known = [place for place in places if place is not None and listed_unit(place[2]) is not None]
-    options = ", ".join(f"--assume {place[1]}.{place[2]}=VALUE" for place in known)
+    places = [_ATTRIBUTE_FIELD.search(fault.field) for fault in error.faults]
+    known = [match for match in places if match is not None and listed_unit(match[2]) is not None]
+    options = ", ".join(f"--assume {match[1]}.{match[2]}=VALUE" for match in known)
     return f" Or open it with {options}." if options else ""
 
 
 def _with(model: Model, assumption: Assumption) -> Model:
-    def changed(place: str, part: Component) -> Component:
+    def changed(location: str, part: Component) -> Component:
         former = part.attribute(assumption.attribute)
-        is_own, in_case = place == f"component {part.id}", "load case" in place and former is not None
-        if part.id != assumption.component or not (is_own or in_case):
+        is_component = location == f"component {part.id}"
+        in_case = "load case" in location and former is not None
+        if part.id != assumption.component or not (is_component or in_case):
             return part
         others = tuple(entry for entry in part.attributes if entry.id != assumption.attribute)
         return replace(part, attributes=(*others, _attribute(assumption, former)))
@@ -86,11 +87,11 @@ def _with(model: Model, assumption: Assumption) -> Model:
 
 def _attribute(assumption: Assumption, former: Attribute | None) -> Attribute:
     """Return the attribute, of the file's kind and unit where it has them."""
-    name, place = assumption.attribute, f"assume, {assumption.component}.{assumption.attribute}"
+    name, field = assumption.attribute, f"assume, {assumption.component}.{assumption.attribute}"
     several = "," in assumption.value
     texts = _SEVERAL.split(assumption.value.strip("[] ")) if several else [assumption.value]
     kind = kind_of(name, texts) if former is None else entry_kind(former.kind)
-    values = tuple(scalar_of(kind, text, place) for text in texts)
+    values = tuple(scalar_of(kind, text, field) for text in texts)
     before = "no value" if former is None or former.value is None else attribute_text(former)
     return Attribute(
         name,

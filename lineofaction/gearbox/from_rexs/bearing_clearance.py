@@ -23,10 +23,10 @@ def radial_clearance(part: Part) -> float:
     its limits; 0 where the file gives none.
     """
     for stage, meaning in _STAGES:
-        value = _stated(part, f"{stage}radial_bearing_clearance", meaning)
+        value = _clearance(part, f"{stage}radial_bearing_clearance", meaning)
         if value is not None:
             return value
-    limits = [_stated(part, f"{end}_radial_bearing_clearance", "limit") for end in ("minimum", "maximum")]
+    limits = [_clearance(part, f"{end}_radial_bearing_clearance", "limit") for end in ("minimum", "maximum")]
     if limits[0] is not None and limits[1] is not None:
         mean = 0.5 * (limits[0] + limits[1])
         part.say(_OPERATING, "derived", f"{1e6 * mean:g} µm: mean of the limits before mounting")
@@ -43,7 +43,7 @@ def axial_clearance(part: Part, contact_angle: float) -> float:
     follows.
     """
     way = _way_to_contact(part, contact_angle)
-    distance = _stated(part, "preload_distance", "approach of the rings beyond contact, µm")
+    distance = _clearance(part, "preload_distance", "approach of the rings beyond contact, µm")
     if distance and not part.number("preload_force", "preload force, N"):
         return way - distance
     if distance:
@@ -54,10 +54,10 @@ def axial_clearance(part: Part, contact_angle: float) -> float:
 def _way_to_contact(part: Part, contact_angle: float) -> float:
     for stage, meaning in _STAGES:
         item = f"{stage}axial_bearing_clearance"
-        along = _stated(part, item, meaning)
+        along = _clearance(part, item, meaning)
         if along is not None:
             return along
-        across = _stated(part, f"{stage}radial_bearing_clearance", meaning)
+        across = _clearance(part, f"{stage}radial_bearing_clearance", meaning)
         if across is not None:
             way = 0.5 * across / math.tan(contact_angle)
             part.say(item, "derived", f"{1e6 * way:.3g} µm: half of the radial clearance over tan(alpha)")
@@ -66,5 +66,5 @@ def _way_to_contact(part: Part, contact_angle: float) -> float:
     return 0.0
 
 
-def _stated(part: Part, item: str, words: str) -> float | None:
-    return part.bounded(item, f"clearance {words}", CLEARANCE)
+def _clearance(part: Part, item: str, meaning: str) -> float | None:
+    return part.bounded(item, f"clearance {meaning}", CLEARANCE)

@@ -86,8 +86,8 @@ def further_fields(part: Part) -> Table:
     for item in STIFFNESSES:
         if part.number(item, "stiffness of the bearing") is not None:
             part.say(item, "ignored", "the stiffness follows from the geometry")
-    words = "dynamic load rating, kN: the rating life"
-    rating = part.bounded("radial_dynamic_load_rating", words, DYNAMIC_CAPACITY)
+    meaning = "dynamic load rating, kN: the rating life"
+    rating = part.bounded("radial_dynamic_load_rating", meaning, DYNAMIC_CAPACITY)
     return {"dynamic_capacity_n": rounded(rating)} if rating else {}
 
 

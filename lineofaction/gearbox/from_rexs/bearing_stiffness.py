@@ -73,7 +73,7 @@ class BearingStiffness:
         radial = _radial(part, tangent)
         tilt = None if tangent is None else 0.5 * (tangent[3, 3] + tangent[4, 4])
         axial = _axial(part, tangent, radial)
-        return cls(radial, axial, _own_stiffness(part, "bending_stiffness", tilt) or 0.0)
+        return cls(radial, axial, _resolved_stiffness(part, "bending_stiffness", tilt) or 0.0)
 
 
 def _radial(part: Part, tangent: FloatArray | None) -> float:
@@ -82,7 +82,7 @@ def _radial(part: Part, tangent: FloatArray | None) -> float:
         part.say("radial_force_absorption", "taken", "no radial stiffness")
         return 0.0
     derived = None if tangent is None else 0.5 * (tangent[0, 0] + tangent[1, 1])
-    value = _own_stiffness(part, item, derived)
+    value = _resolved_stiffness(part, item, derived)
     if value:
         return value
     kind = "roller" if "roller" in str(part.value("bearing_type")) else "ball"
@@ -97,7 +97,7 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
     if absorption == "no_direction":
         part.say(item, "derived", "0 N/m: a floating bearing (axial_force_absorption)")
         return 0.0
-    value = _own_stiffness(part, item, None if tangent is None else tangent[2, 2])
+    value = _resolved_stiffness(part, item, None if tangent is None else tangent[2, 2])
     if absorption in _FIXED[1:]:
         part.say("axial_force_absorption", "derived", f"{absorption} alone; the linear spring acts both ways")
     if value or absorption not in _FIXED:
@@ -106,7 +106,7 @@ def _axial(part: Part, tangent: FloatArray | None, radial: float) -> float:
     return AXIAL_SHARE * radial
 
 
-def stated_stiffness(part: Part, item: str) -> float | None:
+def finite_stiffness(part: Part, item: str) -> float | None:
     """Return a stated stiffness of a bearing, None where there is none, or none that is finite."""
     value = part.number(item, "stiffness of the bearing")
     return value if value is not None and 0.0 < value < _rigid(item)[0] else None
@@ -118,10 +118,10 @@ def _rigid(item: str) -> tuple[float, float, str]:
     return (RIGID_TILT_FROM, RIGID_TILT, "N m/rad") if tilt else (RIGID_FROM, RIGID, "N/m")
 
 
-def _own_stiffness(part: Part, item: str, derived: float | None) -> float | None:
+def _resolved_stiffness(part: Part, item: str, derived: float | None) -> float | None:
     """Return a stiffness: a finite stated one, else the derived one, else a rigid one, else None."""
     value, (rigid_from, rigid, unit) = part.number(item, "stiffness of the bearing"), _rigid(item)
-    if stated_stiffness(part, item) is not None:
+    if finite_stiffness(part, item) is not None:
         return value
     if derived is not None:
         of = f"{derived:.3g} {unit}, tangent of the bearing's geometry at {RADIAL_LOAD:g} C0 radially"
@@ -164,8 +164,8 @@ def _axial_load(row: Row) -> float:
 def operating_point(part: Part) -> FloatArray | None:
     """Return the stated matrix (5, 5), None where the file has none or one that holds nothing."""
     names = [[f"operating_point_stiffness_{row}_{motion}" for motion in _MOTIONS] for row in _ROWS]
-    words = "stiffness at the operating point"
-    matrix = np.array([[part.number(name, words, 0.0) for name in row] for row in names])
+    meaning = "stiffness at the operating point"
+    matrix = np.array([[part.number(name, meaning, 0.0) for name in row] for row in names])
     if not np.any(matrix):
         return None
     matrix = 0.5 * (matrix + matrix.T)

@@ -8,7 +8,7 @@ from dynamics.bearings import BallBearing, CatalogLine, RollerBearing
 from dynamics.errors import InputError
 from lineofaction.gearbox.from_rexs.bearing_clearance import axial_clearance, radial_clearance
 from lineofaction.gearbox.from_rexs.gear_unit import Part
-from lineofaction.gearbox.rexs.vocabulary import words
+from lineofaction.gearbox.rexs.vocabulary import terms
 
 Row = BallBearing | RollerBearing
 
@@ -43,7 +43,7 @@ class BearingGeometry:
 def _bearing_type(part: Part) -> str:
     """Return the type of a rolling bearing; the account refuses one that REXS does not have."""
     kind = part.text("bearing_type", "type of the bearing") or ""
-    if kind and kind not in words("bearing_types"):
+    if kind and kind not in terms("bearing_types"):
         part.say("bearing_type", "refused", f"{kind} is no type of REXS: the bearing has no geometry")
     return kind
 
@@ -65,8 +65,8 @@ def _catalog_bearing(part: Part) -> BearingGeometry | str:
     except InputError as error:
         part.say(_RATING, "refused", f"no deep groove ball bearing has this line: {error}")
         return "no deep groove ball bearing has its catalog line"
-    words = f"{row.count} balls of {row.diameter * 1e3:.3g} mm, estimated; displacements within"
-    part.say("bearing_type", "derived", f"{words} {100.0 * BAND['displacement']:g} %")
+    text = f"{row.count} balls of {row.diameter * 1e3:.3g} mm, estimated; displacements within"
+    part.say("bearing_type", "derived", f"{text} {100.0 * BAND['displacement']:g} %")
     return BearingGeometry(row, rating, line)
 
 

@@ -61,8 +61,8 @@ def _disc(layout: Layout, axis: PlacedShaft, rotor: int) -> dict[str, Any]:
     placed = [layout.shafts[planet.id] for planet in planets if planet.id in layout.shafts]
     x, y, z = (float(value) for value in axis.origin)
     radius = max((math.hypot(p.origin[0] - x, p.origin[1] - y) for p in placed), default=0.0) or DISC
-    words = f"no part has a size: a steel disc of {2e3 * radius:.6g} mm diameter, {DISC * 1e3:g} mm long"
-    layout.unit.part(rotor).say("inertia", "defaulted", words)
+    text = f"no part has a size: a steel disc of {2e3 * radius:.6g} mm diameter, {DISC * 1e3:g} mm long"
+    layout.unit.part(rotor).say("inertia", "defaulted", text)
     return rigid_section((x, y, z), DISC, hollow_cylinder(2.0 * radius, DISC))
 
 
@@ -76,13 +76,13 @@ def _pieces(layout: Layout, part: Part, axis: tuple[float, float]) -> Iterator[_
             yield _Piece(inertia, left + z, radius, left, left + section.length)
             left += section.length
         return
-    place = Placement.of(part)
+    placement = Placement.of(part)
     outer, bore, length = (part.number(item, "size of the side plate, mm") for item in _SIZES)
-    if place is None or not outer or not length or (bore or 0.0) >= outer:
+    if placement is None or not outer or not length or (bore or 0.0) >= outer:
         part.say("", "refused", "a side plate needs its place, diameters and length; its mass is left out")
         return
-    z = float(layout.axes.point(place.origin)[2])
-    begin, end = sorted((z, z + layout.axes.sense(place) * length))
+    z = float(layout.axes.point(placement.origin)[2])
+    begin, end = sorted((z, z + layout.axes.sense(placement) * length))
     part.say("", "derived", "inertia of the planet carrier")
     yield _Piece(hollow_cylinder(outer, length, bore or 0.0), 0.5 * (begin + end), 0.0, begin, end)
 

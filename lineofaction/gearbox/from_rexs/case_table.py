@@ -43,7 +43,7 @@ def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int
     """
     _refuse_strangers(pair)
     depths = [_depth(gear, pairs, shifts) for gear in pair.gears]
-    if pair.meshing.internal and not depths[1].tip_stated:
+    if pair.meshing.internal and not depths[1].has_tip_diameter:
         depths[1] = clearing_tip(pair, depths, shifts)
     first, second = (
         _gear(gear, depth, shifts[gear.part.id]) for gear, depth in zip(pair.gears, depths, strict=True)
@@ -67,8 +67,8 @@ def case_of(pair: ToothedPair, pairs: Sequence[ToothedPair], shifts: Mapping[int
         "load": {"torque_n_m": _torques(pair)},
     }
     if abs(pair.axial_offset) > 1e-9:
-        words = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
-        pair.stage.say("axial_offset", "ignored", words)
+        text = f"{pair.axial_offset / MM:.4g} mm between the mid-faces: the case puts them together"
+        pair.stage.say("axial_offset", "ignored", text)
     plain = check_plain_case(validated(Case, table))
     first.update(micro_geometry(plain.pinion, pinion.loaded))
     second.update(micro_geometry(plain.wheel, pair.wheel.loaded))
@@ -104,11 +104,11 @@ def _refuse_strangers(pair: ToothedPair) -> None:
 
 
 def _strangers(
-    pair: ToothedPair, facts: Sequence[str], bound: str, item: str = "", factor: int = 1
+    pair: ToothedPair, labels: Sequence[str], bound: str, item: str = "", factor: int = 1
 ) -> BadInput:
     """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
     parts = [gear.part for gear in pair.gears]
-    named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, facts, strict=True)]
+    named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, labels, strict=True)]
     values = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]
     mends = [
         f"--assume {part.id}.{item}={factor * mate:.9g}"
@@ -132,7 +132,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
     # d_f = d - 2 m_n (h_fP - x_E), of a ring gear d + 2 m_n (h_fP - x_E)
     height = gear.normal_module * (depth.dedendum_coefficient - shift) + depth.infeed(gear.pressure_angle)
     root = gear.reference_diameter - 2.0 * gear.sign * height
-    held_field, diameter = ("rim_diameter_mm", rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", bore)
+    seat_field, diameter = ("rim_diameter_mm", rim_diameter) if gear.sign < 0 else ("bore_diameter_mm", bore)
     return {
         "teeth": gear.teeth,
         "face_width_mm": rounded(gear.face_width / MM),
@@ -142,7 +142,7 @@ def _gear(gear: ToothingData, depth: ToothDepth, shift: float) -> Table:
         "root_radius_coefficient": rounded(depth.root_radius_coefficient),
         "thickness_allowance_um": rounded(depth.thickness_allowance / UM),
         "tooth_thinning": depth.tooth_thinning,
-        held_field: rounded(diameter(gear, root) / MM),
+        seat_field: rounded(diameter(gear, root) / MM),
         **depth.cutter,
         **blank_table(gear),
     }
@@ -177,6 +177,6 @@ def _torques(pair: ToothedPair) -> list[float]:
     arm = 0.5 * pinion.reference_diameter * width * pinion.normal_module
     torques = [float(f"{intensity * arm:.3g}") for intensity in LOAD_INTENSITIES]
     intensities = ", ".join(f"{1e-6 * intensity:g}" for intensity in LOAD_INTENSITIES)
-    words = f"{torques} N m on {pinion.part.name}: F_t / (b m_n) = {intensities} N/mm^2, for want of a torque"
-    pair.stage.say("torque", "defaulted", words)
+    text = f"{torques} N m on {pinion.part.name}: F_t / (b m_n) = {intensities} N/mm^2, for want of a torque"
+    pair.stage.say("torque", "defaulted", text)
     return torques

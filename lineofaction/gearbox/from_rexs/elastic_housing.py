@@ -44,8 +44,8 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
         turned = turn @ matrix @ turn.T
         rows = [index for index, name in enumerate(bearings) if name]
         group.say("", "taken", "elastic housing")
-        words = f"stiffness under {len(rows)} bearings; u, v, w turned to x, y, z, mm to m"
-        group.say(_MATRIX, "taken", words)
+        text = f"stiffness under {len(rows)} bearings; u, v, w turned to x, y, z, mm to m"
+        group.say(_MATRIX, "taken", text)
         yield {
             "name": names.of(group),
             "bushings": [name for name in bearings if name],
@@ -95,8 +95,8 @@ def _stiffness(group: Part, points: int) -> FloatArray | None:
     size = _PER_POINT * points
     sizes = [len(row) if isinstance(row, tuple) else 0 for row in (rows if isinstance(rows, tuple) else ())]
     if not isinstance(rows, tuple) or sizes != [size] * size:
-        words = f"{size} rows of {size} numbers are needed: six for each reduction point"
-        group.say(_MATRIX, "refused", words)
+        text = f"{size} rows of {size} numbers are needed: six for each reduction point"
+        group.say(_MATRIX, "refused", text)
         return None
     try:
         matrix = np.array(rows, dtype=float)

@@ -33,7 +33,7 @@ class Modification:
 
 
 @dataclass(frozen=True)
-class FlankPlace:
+class PlainFlank:
     """The flank of a gear without modifications, and places on it: roll lengths and face coordinates, m."""
 
     gear: Toothing
@@ -59,9 +59,9 @@ class FlankPlace:
         """Face width."""
         return self.gear.face_width
 
-    def roll_length(self, part: Part, diameter: str, words: str) -> float | None:
+    def roll_length(self, part: Part, diameter: str, meaning: str) -> float | None:
         """Return the roll length of a diameter outside the base circle, None where the file gives none."""
-        value = part.number(diameter, words)
+        value = part.number(diameter, meaning)
         if not value:
             return None
         radius, base = 0.5 * abs(value), self.gear.base_radius
@@ -69,11 +69,11 @@ class FlankPlace:
             raise part.refusal(diameter, value / MM, f"above the base diameter {2.0 * base / MM:.7g} mm")
         return math.sqrt(radius**2 - base**2)
 
-    def stated_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
+    def reference_roll(self, part: Part, diameter: str, length: str, end: float) -> float:
         """Return the roll length where an amount is stated, by a diameter or as such; else an end."""
-        words = "where the amount is stated"
-        roll = self.roll_length(part, diameter, words)
-        return (part.number(length, f"{words}: a roll length") if roll is None else roll) or end
+        meaning = "where the amount is stated"
+        roll = self.roll_length(part, diameter, meaning)
+        return (part.number(length, f"{meaning}: a roll length") if roll is None else roll) or end
 
     def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
         """Return the roll lengths over which an amount is stated, those of the whole flank by default."""

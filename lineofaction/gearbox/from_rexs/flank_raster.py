@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.geometry import FlankGrid
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
+from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import rounded
 from lineofaction.gearbox.units import MM, UM
 
@@ -34,10 +34,10 @@ class Raster:
     counts: tuple[int, int]
 
 
-def raster_of(place: FlankPlace, modifications: Sequence[Modification], count: int) -> Raster:
+def raster_of(flank: PlainFlank, modifications: Sequence[Modification], count: int) -> Raster:
     """Return the raster of a grid of `count` lines in the directions in which the sum varies."""
-    rolls, faces = _axes(place, modifications, count)
-    removed = _removed(place, modifications, rolls, faces)
+    rolls, faces = _axes(flank, modifications, count)
+    removed = _removed(flank, modifications, rolls, faces)
     with boundary_errors("flank_grid"):
         grid = FlankGrid(tuple(rolls), tuple(faces), tuple(map(tuple, removed.tolist())))
     table = {
@@ -45,21 +45,21 @@ def raster_of(place: FlankPlace, modifications: Sequence[Modification], count: i
         "face_position_mm": [rounded(value / MM) for value in faces],
         "removed_um": [[rounded(value / UM) for value in row] for row in removed],
     }
-    return Raster(table, _difference(place, modifications, grid), (len(rolls), len(faces)))
+    return Raster(table, _difference(flank, modifications, grid), (len(rolls), len(faces)))
 
 
 def _axes(
-    place: FlankPlace, modifications: Sequence[Modification], count: int
+    flank: PlainFlank, modifications: Sequence[Modification], count: int
 ) -> tuple[FloatArray, FloatArray]:
     """Return roll lengths and face positions of the grid, two where the sum does not vary."""
-    low, high = sorted((place.root, place.tip))
-    half = 0.5 * place.width
+    low, high = sorted((flank.root, flank.tip))
+    half = 0.5 * flank.width
     sample = _removed(
-        place, modifications, np.linspace(low, high, _SAMPLE), np.linspace(-half, half, _SAMPLE)
+        flank, modifications, np.linspace(low, high, _SAMPLE), np.linspace(-half, half, _SAMPLE)
     )
     counts = [count if np.ptp(sample, axis=axis).max() > 1e-3 * ALLOWED_DIFFERENCE else 2 for axis in (0, 1)]
     rolls = [kink for entry in modifications for kink in entry.rolls]
-    faces = [place.loaded.datum * (half - kink) for entry in modifications for kink in entry.faces]
+    faces = [flank.loaded.datum * (half - kink) for entry in modifications for kink in entry.faces]
     return (
         _through(np.linspace(low, high, counts[0]), rolls),
         _through(np.linspace(-half, half, counts[1]), faces),
@@ -76,10 +76,10 @@ def _through(axis: FloatArray, kinks: Sequence[float]) -> FloatArray:
     return shifted
 
 
-def _difference(place: FlankPlace, modifications: Sequence[Modification], grid: FlankGrid) -> float:
+def _difference(flank: PlainFlank, modifications: Sequence[Modification], grid: FlankGrid) -> float:
     """Return the largest difference between a grid and what it stands for, m."""
     axes = [_finer(np.array(axis)) for axis in (grid.roll_length, grid.face_position)]
-    expected = _removed(place, modifications, *axes)
+    expected = _removed(flank, modifications, *axes)
     rolls, faces = np.meshgrid(*axes, indexing="ij")
     return float(np.abs(grid.material_removed(rolls, faces) - expected).max())
 
@@ -91,9 +91,9 @@ def _finer(axis: FloatArray) -> FloatArray:
 
 
 def _removed(
-    place: FlankPlace, modifications: Sequence[Modification], rolls: FloatArray, faces: FloatArray
+    flank: PlainFlank, modifications: Sequence[Modification], rolls: FloatArray, faces: FloatArray
 ) -> FloatArray:
     """Return the sum of the modifications at roll lengths (m) and face positions (n) of the case, (m, n)."""
-    coordinates = 0.5 * place.width - place.loaded.datum * faces
+    coordinates = 0.5 * flank.width - flank.loaded.datum * faces
     roll, face = np.meshgrid(rolls, coordinates, indexing="ij")
     return np.asarray(sum(entry.removed(roll, face) for entry in modifications))

@@ -28,8 +28,8 @@ def rim_diameter(gear: ToothingData, root: float) -> float:
         if value is not None and value > root:
             return value
     rim = root + 2.0 * RIM * gear.normal_module
-    words = f"rim_diameter_mm {rim / MM:.7g} = d_f + 2 * {RIM} m_n: the file gives no rim"
-    gear.part.say("outer_diameter", "defaulted", words)
+    text = f"rim_diameter_mm {rim / MM:.7g} = d_f + 2 * {RIM} m_n: the file gives no rim"
+    gear.part.say("outer_diameter", "defaulted", text)
     return rim
 
 
@@ -42,31 +42,31 @@ def bore(gear: ToothingData, root: float) -> float:
             return value
     shaft = _shaft_diameter(gear.part)
     if shaft is not None and shaft <= largest:
-        words = f"bore_diameter_mm {shaft / MM:.7g}: the shaft's outer diameter there"
-        gear.part.say("inner_diameter", "derived", words)
+        text = f"bore_diameter_mm {shaft / MM:.7g}: the shaft's outer diameter there"
+        gear.part.say("inner_diameter", "derived", text)
         return shaft
     bore = _INTEGRAL * root
     why = "no bore and no shaft section" if shaft is None else "one piece with its shaft"
-    words = f"bore_diameter_mm {bore / MM:.7g} = d_f / 2, within which nothing deflects: {why}"
-    gear.part.say("inner_diameter", "defaulted", words)
+    text = f"bore_diameter_mm {bore / MM:.7g} = d_f / 2, within which nothing deflects: {why}"
+    gear.part.say("inner_diameter", "defaulted", text)
     return bore
 
 
 def _shaft_diameter(gear: Part) -> float | None:
     """Return the outer diameter of the shaft's section at the gear's middle, m."""
-    shaft, place = gear.shaft, u_on_shaft(gear)
-    if shaft is None or place is None:
+    shaft, u = gear.shaft, u_on_shaft(gear)
+    if shaft is None or u is None:
         return None
     start = 0.0
     for section in shaft.children("shaft_section"):
         length = section.number("length", "length of the section") or 0.0
         start = section.number("u_coordinate_on_shaft", "begin of the section", start)
-        if start <= place <= start + length:
+        if start <= u <= start + length:
             begin = section.number("outer_diameter_begin", "outer diameter of the section")
             end = section.number("outer_diameter_end", "outer diameter of the section")
             if begin is None or end is None:
                 return begin if end is None else end
-            return begin + (0.0 if length == 0.0 else (place - start) / length) * (end - begin)
+            return begin + (0.0 if length == 0.0 else (u - start) / length) * (end - begin)
         start += length
     return None
 

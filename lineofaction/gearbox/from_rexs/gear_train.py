@@ -29,7 +29,7 @@ class Train:
     """The first rows."""
     rows: FloatArray
     """Stages, then couplings. Shape (n, m)."""
-    held: tuple[int, ...]
+    grounded: tuple[int, ...]
     """Columns of rotors at rest."""
 
     @classmethod
@@ -55,7 +55,7 @@ class Train:
         for row, entry in zip(rows[len(stages) :], rotors.couplings, strict=True):
             row[ids.index(rotors.of[entry.inner.id])] += 1.0
             row[ids.index(rotors.of[entry.outer.id])] -= 1.0
-        return cls(ids, stages, rows, tuple(ids.index(rotor) for rotor in sorted(rotors.held)))
+        return cls(ids, stages, rows, tuple(ids.index(rotor) for rotor in sorted(rotors.grounded)))
 
     def speeds(self, known: Mapping[int, float]) -> FloatArray | None:
         """Return the speeds of all rotors, rad/s, None where the known ones do not fit or leave some open.
@@ -83,7 +83,7 @@ class Train:
 
     def _free(self, resting: set[int]) -> FloatArray:
         """Return an orthonormal base (rotors, freedoms) of the speeds that ratios and resting ones permit."""
-        columns = [*self.held, *map(self.rotors.index, resting)]
+        columns = [*self.grounded, *map(self.rotors.index, resting)]
         fixed = np.zeros((len(columns), len(self.rotors)))
         fixed[range(len(columns)), columns] = 1.0
         scale = np.linalg.norm(self.rows, axis=1, keepdims=True)
@@ -105,7 +105,7 @@ class Train:
             None where no torque balances the known ones, or some open torque is not determined by them.
             Stages whose shares statics leaves open (planets, power splits) share by least squares.
         """
-        outside = [*(self.rotors.index(rotor) for rotor in open_rotors), *self.held]
+        outside = [*(self.rotors.index(rotor) for rotor in open_rotors), *self.grounded]
         load = np.zeros(len(self.rotors))
         for rotor, torque in known.items():
             load[self.rotors.index(rotor)] += torque

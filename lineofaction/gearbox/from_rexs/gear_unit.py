@@ -47,9 +47,9 @@ class Part:
         return self.component.type
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """Where the component stands in the file."""
-        return self.unit.account.place(self.component)
+        return self.unit.account.location(self.component)
 
     @property
     def name(self) -> str:
@@ -57,54 +57,54 @@ class Part:
         return self.component.name or f"{self.type} {self.id}"
 
     @overload
-    def number(self, item: str, words: str) -> float | None: ...
+    def number(self, item: str, meaning: str) -> float | None: ...
 
     @overload
-    def number(self, item: str, words: str, default: float, why: str = "") -> float: ...
+    def number(self, item: str, meaning: str, default: float, why: str = "") -> float: ...
 
-    def number(self, item: str, words: str, default: float | None = None, why: str = "") -> float | None:
+    def number(self, item: str, meaning: str, default: float | None = None, why: str = "") -> float | None:
         """Return a number; the default, which the account states with its reason, where the file has none."""
-        value = quantity(self.component, item, self.place)
+        value = quantity(self.component, item, self.location)
         if value is not None:
-            self.say(item, "taken", words)
+            self.say(item, "taken", meaning)
         elif why:
             self.say(item, "defaulted", why)
         return default if value is None else value
 
     def refusal(self, item: str, value: object, bound: str, remedy: str = "") -> BadInput:
         """Return the error of an attribute's value, in the unit of REXS."""
-        return BadInput.of(f"{self.place}, {item}", value, bound, remedy)
+        return BadInput.of(f"{self.location}, {item}", value, bound, remedy)
 
-    def required(self, item: str, words: str) -> float:
+    def required(self, item: str, meaning: str) -> float:
         """Return a number that the component must have."""
-        value = self.number(item, words)
+        value = self.number(item, meaning)
         if value is None:
             raise self.refusal(item, None, "given", f"{self.name} needs it.")
         return value
 
-    def positive(self, item: str, words: str) -> float:
+    def positive(self, item: str, meaning: str) -> float:
         """Return a number above zero that the component must have."""
-        value = self.required(item, words)
+        value = self.required(item, meaning)
         if not value > 0.0:
             raise self.refusal(item, value, "above 0")
         return value
 
-    def bounded(self, item: str, words: str, field: Declared) -> float | None:
+    def bounded(self, item: str, meaning: str, field: Declared) -> float | None:
         """Return a number; None, and refused, where it is out of the bounds of a field of the scene."""
-        value, attribute, limits = self.number(item, words), self.attribute(item), field.limits
+        value, attribute, limits = self.number(item, meaning), self.attribute(item), field.limits
         if value is None or attribute is None or not isinstance(limits, Bound) or limits.holds(value):
             return value
         self.say(item, "refused", f"{attribute.value} {attribute.unit} is not {limits} {field.unit}")
         return None
 
-    def numbers(self, item: str, words: str) -> tuple[float, ...] | None:
+    def numbers(self, item: str, meaning: str) -> tuple[float, ...] | None:
         """Return an array of numbers."""
-        values = quantities(self.component, item, self.place)
+        values = quantities(self.component, item, self.location)
         if values is not None:
-            self.say(item, "taken", words)
+            self.say(item, "taken", meaning)
         return values
 
-    def vector(self, item: str, words: str) -> tuple[float, ...] | None:
+    def vector(self, item: str, meaning: str) -> tuple[float, ...] | None:
         """Return an array of numbers, None also where the file gives no array.
 
         One writer's JSON has ``false`` in place of vectors: such a value is refused in the account.
@@ -113,14 +113,14 @@ class Part:
         if value is not None and not isinstance(value, tuple):
             self.say(item, "refused", f"{value} is no vector")
             return None
-        return self.numbers(item, words)
+        return self.numbers(item, meaning)
 
-    def text(self, item: str, words: str) -> str | None:
+    def text(self, item: str, meaning: str) -> str | None:
         """Return a word or a name."""
         value = self.value(item)
         if value is None:
             return None
-        self.say(item, "taken", words)
+        self.say(item, "taken", meaning)
         return str(value)
 
     def attribute(self, item: str) -> Attribute | None:
@@ -131,16 +131,16 @@ class Part:
         """Return the value of an attribute as it stands, without an entry in the account."""
         return None if (attribute := self.attribute(item)) is None else attribute.value
 
-    def say(self, item: str, fate: Fate, words: str) -> None:
+    def say(self, item: str, fate: Fate, text: str) -> None:
         """State what becomes of an attribute that the component has or lacks; "" is the component."""
-        self.unit.account.say(self.component, item, fate, words)
+        self.unit.account.say(self.component, item, fate, text)
 
-    def related(self, relation: str, own: str, other: str) -> tuple[Part, ...]:
-        """Return the components in role `other` of the relations in which this one has the role `own`.
+    def related(self, relation: str, role: str, other: str) -> tuple[Part, ...]:
+        """Return the components in role `other` of the relations in which this one has `role`.
 
         Relations with an order come in it, others in the order of the file.
         """
-        entries = [entry for entry in self.unit.relations(relation) if entry.of_role(own) == self.id]
+        entries = [entry for entry in self.unit.relations(relation) if entry.of_role(role) == self.id]
         entries.sort(key=lambda entry: entry.order or 0)
         return tuple(self.unit.part(ref.id) for entry in entries for ref in entry.refs if ref.role == other)
 
@@ -237,10 +237,10 @@ class GearUnit:
         """The planetary sets that have a carrier and planets; the account says what the others lack."""
         return tuple(_planetary_sets(self))
 
-    def say(self, item: str, fate: Fate, words: str) -> None:
+    def say(self, item: str, fate: Fate, text: str) -> None:
         """State something of the whole unit."""
         for part in self.of_type("gear_unit")[:1]:
-            part.say(item, fate, words)
+            part.say(item, fate, text)
 
 
 def rounded(value: float) -> float:
@@ -262,7 +262,7 @@ class Connection:
         return next((side for side in (self.inner, self.outer) if side.type in GROUND), None)
 
     @property
-    def held(self) -> Part:
+    def rotor_side(self) -> Part:
         """The side that turns; the inner one if both do."""
         return self.outer if self.inner.type in GROUND else self.inner
 
@@ -369,7 +369,7 @@ def _planetary_sets(unit: GearUnit) -> Iterator[PlanetarySet]:
             for relation in ("planet_shaft", "central_shaft", "planet_carrier_shaft", "planet_pin")
         )
         carriers = stage.children("planet_carrier")
-        plates = (part for each in carriers for part in each.children("shaft", "side_plate"))
+        plates = (part for carrier_part in carriers for part in carrier_part.children("shaft", "side_plate"))
         turning = {part.id: part for part in (*carrier, *pins, *plates)}
         planetary = PlanetarySet(stage, planets, central, tuple(turning.values()))
         if planetary.planets and planetary.carrier:

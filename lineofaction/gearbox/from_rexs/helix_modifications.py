@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
+from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.profile_modifications import (
     Growth,
@@ -14,25 +14,25 @@ from lineofaction.gearbox.from_rexs.relief_laws import shape_of, two_parabolas
 from lineofaction.gearbox.units import UM
 
 
-def helix_crowning(place: FlankPlace, part: Part) -> Modification:
+def helix_crowning(flank: PlainFlank, part: Part) -> Modification:
     """Return a helix crowning, a parabola on either side of its highest point."""
     items = ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face")
     amounts = both_amounts(part, items, "helix_crowning_um", "given", "as at the other face")
-    item, words = "coordinate_where_helix_crowning_is_specified", "where the amount is stated"
-    first = part.number(f"{item}_datum_face", words) or 0.0
-    ends = (first, part.number(f"{item}_non_datum_face", words, place.width))
+    item, meaning = "coordinate_where_helix_crowning_is_specified", "where the amount is stated"
+    first = part.number(f"{item}_datum_face", meaning) or 0.0
+    ends = (first, part.number(f"{item}_non_datum_face", meaning, flank.width))
     highest = part.number("helix_highest_point", "highest point", 0.5 * (ends[0] + ends[1]))
     if not ends[0] < highest < ends[1]:
         raise part.refusal("helix_highest_point", rounded(1e3 * highest), "between the stated amounts")
     part.text("shape_of_helix_crowning", "a parabola; an arc is one to (amount / length)^2")
-    whole = place.same(ends[0], 0.0) and place.same(ends[1], place.width)
+    is_full = flank.same(ends[0], 0.0) and flank.same(ends[1], flank.width)
     fields = {}
-    if whole and place.same(highest, 0.5 * place.width) and amounts[0] == amounts[1]:
+    if is_full and flank.same(highest, 0.5 * flank.width) and amounts[0] == amounts[1]:
         fields = {"helix_crowning_um": rounded(amounts[0] / UM)}
     else:
-        sides = zip((True, False), (0.0, place.width), ends, amounts, strict=True)
+        sides = zip((True, False), (0.0, flank.width), ends, amounts, strict=True)
         for datum, face, reference, amount in sides:
-            name = place.face_field("helix_crowning", datum=datum)
+            name = flank.face_field("helix_crowning", datum=datum)
             fields[f"{name}_um"] = rounded(amount * ((face - highest) / (reference - highest)) ** 2 / UM)
             fields[f"{name}_length_mm"] = rounded(1e3 * abs(face - highest))
     return Modification(
@@ -40,68 +40,68 @@ def helix_crowning(place: FlankPlace, part: Part) -> Modification:
     )
 
 
-def helix_slope(place: FlankPlace, part: Part) -> Modification:
+def helix_slope(flank: PlainFlank, part: Part) -> Modification:
     """Return a helix slope: > 0 removes towards the non-datum face, zero at mid-face."""
     amount = part.required("helix_slope", "helix_slope_um; > 0 removes at the non-datum face")
-    whole = amount * place.width / _slope_length(place, part)
+    total = amount * flank.width / _slope_length(flank, part)
     return Modification(
         part,
-        lambda _roll, face: whole * (face / place.width - 0.5),
-        {"helix_slope_um": rounded(-place.loaded.datum * whole / UM)},
+        lambda _roll, face: total * (face / flank.width - 0.5),
+        {"helix_slope_um": rounded(-flank.loaded.datum * total / UM)},
     )
 
 
-def _slope_length(place: FlankPlace, part: Part) -> float:
+def _slope_length(flank: PlainFlank, part: Part) -> float:
     """Return the length in m over which the amount of a helix slope is stated."""
     reference = part.text("helix_evaluation_reference", "length of the amount")
-    flank = place.loaded.flank
+    flank_part = flank.loaded.flank
     if reference == "facewidth":
-        return place.width
-    if reference == "facewidth_usable" and flank is not None:
-        owner, item, words = flank, "facewidth_usable", "length of the helix slope"
+        return flank.width
+    if reference == "facewidth_usable" and flank_part is not None:
+        owner, item, meaning = flank_part, "facewidth_usable", "length of the helix slope"
     else:
-        owner, item, words = part, "helix_evaluation", "length of the amount"
-    start = owner.number(f"{item}_start", words) or 0.0
-    end = owner.number(f"{item}_end", words, place.width)
+        owner, item, meaning = part, "helix_evaluation", "length of the amount"
+    start = owner.number(f"{item}_start", meaning) or 0.0
+    end = owner.number(f"{item}_end", meaning, flank.width)
     if not end > start:
         raise part.refusal("helix_evaluation_end", rounded(1e3 * end), "above helix_evaluation_start")
     return end - start
 
 
-def end_relief(place: FlankPlace, part: Part) -> Modification:
+def end_relief(flank: PlainFlank, part: Part) -> Modification:
     """Return an end relief at one face, datum or non-datum by its type, with the fields of one at both."""
     side = part.type.removeprefix("end_relief_")
     depth = part.required(f"end_relief_depth_{side}", "end relief")
     length = part.required(f"end_relief_length_{side}", "length of the end relief")
     shape = shape_of(part)
     is_datum = side == "datum_face"
-    end, inwards = (0.0, 1.0) if is_datum else (place.width, -1.0)
+    end, inwards = (0.0, 1.0) if is_datum else (flank.width, -1.0)
     start = end + inwards * length
     reference = part.number(f"end_relief_evaluation_reference_{side}", "where the amount is stated", end)
     growth = Growth(depth, shape, start, reference)
-    if not 0.0 < length <= place.width or not (start - growth.stated) * inwards > 0.0:
+    if not 0.0 < length <= flank.width or not (start - growth.reference) * inwards > 0.0:
         raise part.refusal(f"end_relief_length_{side}", rounded(1e3 * length), "above 0, within the face")
-    name = place.face_field("end_relief", datum=is_datum)
-    fields = growth.fields(place, name, end, 1e3 * length)
+    name = flank.face_field("end_relief", datum=is_datum)
+    fields = growth.fields(flank, name, end, 1e3 * length)
     return Modification(part, lambda _roll, face: growth.at(face), fields, faces=(start,))
 
 
-def profile_twist(place: FlankPlace, part: Part) -> Modification:
+def profile_twist(flank: PlainFlank, part: Part) -> Modification:
     """Return a twist: the profile slope at the non-datum face less that at the datum face."""
     amount = part.required("profile_twist", "flank_twist_um, a quarter of it")
     ends = ("diameter_where_profile_twist_amount_is_specified", "profile_twist_evaluation_end")
-    start, end = place.roll_range(part, "profile_twist_evaluation_start", ends)
-    words = "range of the amount"
-    first = part.number("position_of_profile_twist_datum_face", words) or 0.0
-    last = part.number("position_of_profile_twist_non_datum_face", words, place.width)
-    if not last > first or not (end - start) * place.towards_tip > 0.0:
+    start, end = flank.roll_range(part, "profile_twist_evaluation_start", ends)
+    meaning = "range of the amount"
+    first = part.number("position_of_profile_twist_datum_face", meaning) or 0.0
+    last = part.number("position_of_profile_twist_non_datum_face", meaning, flank.width)
+    if not last > first or not (end - start) * flank.towards_tip > 0.0:
         raise part.refusal("profile_twist", part.name, "stated over a range of profile and face")
-    whole = amount * (place.tip - place.root) / (end - start) * place.width / (last - first)
-    middle, half = 0.5 * (place.tip + place.root), 0.5 * (place.tip - place.root)
+    total = amount * (flank.tip - flank.root) / (end - start) * flank.width / (last - first)
+    middle, half = 0.5 * (flank.tip + flank.root), 0.5 * (flank.tip - flank.root)
     return Modification(
         part,
         lambda roll, face: (
-            0.25 * whole * np.asarray((roll - middle) / half * (2.0 * face / place.width - 1.0))
+            0.25 * total * np.asarray((roll - middle) / half * (2.0 * face / flank.width - 1.0))
         ),
-        {"flank_twist_um": rounded(-0.25 * place.loaded.datum * whole / UM)},
+        {"flank_twist_um": rounded(-0.25 * flank.loaded.datum * total / UM)},
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from bounds.types import FloatArray
 from lineofaction.gearbox.from_rexs.gear_unit import Connection, GearStage, GearUnit, Part, PlanetarySet
-from lineofaction.gearbox.from_rexs.placed_shafts import SAME_PLACE, PlacedShaft
+from lineofaction.gearbox.from_rexs.placed_shafts import SAME_POSITION, PlacedShaft
 from lineofaction.gearbox.from_rexs.placement import FIXED, Placement
 from lineofaction.gearbox.from_rexs.rotors import Rotors, rotors_of
 from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes
@@ -43,14 +43,14 @@ class Layout:
         axes = SceneAxes.of(None if root is None else Placement.of(root), lines)
         shafts = {}
         for part in unit.of_type("shaft"):
-            place = places.get(part.id)
-            if place is None:
+            placement = places.get(part.id)
+            if placement is None:
                 continue
-            if axes.sense(place) == 0:
-                words = "not parallel to the shafts of the first stage: left out of the scene"
-                part.say("", "refused", words)
+            if axes.sense(placement) == 0:
+                text = "not parallel to the shafts of the first stage: left out of the scene"
+                part.say("", "refused", text)
                 continue
-            shafts[part.id] = PlacedShaft.of(part, place, axes)
+            shafts[part.id] = PlacedShaft.of(part, placement, axes)
         rotors = rotors_of(unit, sets)
         turning = tuple(s for s in stages if len({rotors.of[shaft.id] for shaft in s.shafts}) == 2)
         return cls(unit, axes, shafts, rotors, turning)
@@ -59,9 +59,9 @@ class Layout:
         """Return +1 or -1 for u along z or against it; +1 of shafts that are not parallel."""
         return self.shafts[shaft].sense if shaft in self.shafts else 1
 
-    def turn(self, part: Part, held: Part) -> FloatArray:
+    def turn(self, part: Part, rotor_side: Part) -> FloatArray:
         """Return the matrix that takes u, v, w of a part on a shaft to x, y, z."""
-        return self.axes.turn(Placement.of(part) or self.shafts[held.id].place)
+        return self.axes.turn(Placement.of(part) or self.shafts[rotor_side.id].placement)
 
     def rotor(self, shaft: int) -> int:
         """Return the rotor of a shaft."""
@@ -82,21 +82,22 @@ class Layout:
 
     def u_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
         """Return u of a part on a shaft, m: by its place, else by its coordinate, else 0."""
-        place = Placement.of(part)
-        stated = part.number(item, "place along the shaft, mm")
-        if place is None:
-            if stated is None:
+        placement = Placement.of(part)
+        coordinate = part.number(item, "place along the shaft, mm")
+        if placement is None:
+            if coordinate is None:
                 part.say(item, "defaulted", "0 mm: the file gives no place")
-            return stated or 0.0
-        u = shaft.place.along(place.origin)
-        if stated is not None and not math.isclose(stated, u, abs_tol=1e2 * SAME_PLACE):
-            words = (
-                f"{stated * 1e3:.6g} mm; its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
+            return coordinate or 0.0
+        u = shaft.placement.along(placement.origin)
+        if coordinate is not None and not math.isclose(coordinate, u, abs_tol=1e2 * SAME_POSITION):
+            text = (
+                f"{coordinate * 1e3:.6g} mm; "
+                f"its place (support_vector) is at {u * 1e3:.6g} mm, which is taken"
             )
-            part.say(item, "ignored", words)
-        if (off_axis := shaft.off_axis(place.origin)) > 1e2 * SAME_PLACE:
-            words = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
-            part.say("support_vector", "refused", words)
+            part.say(item, "ignored", text)
+        if (off_axis := shaft.off_axis(placement.origin)) > 1e2 * SAME_POSITION:
+            text = f"{off_axis * 1e3:.4g} mm off the axis of its shaft; taken along the axis alone"
+            part.say("support_vector", "refused", text)
         return u
 
     def z_on(self, shaft: PlacedShaft, part: Part, item: str = "u_coordinate_on_shaft") -> float:
@@ -115,7 +116,7 @@ def _shaft_places(
     axis of the central shafts, its u = 0 at theirs.
     """
     shafts = unit.of_type("shaft")
-    places = {shaft.id: place for shaft in shafts if (place := Placement.of(shaft)) is not None}
+    places = {shaft.id: placement for shaft in shafts if (placement := Placement.of(shaft)) is not None}
     if not places and stages:
         first = stages[0].shafts[0]
         places[first.id] = FIXED
@@ -127,8 +128,8 @@ def _shaft_places(
             base = next((places[part.id] for part in planets.central if part.id in places), None)
             if shaft.type == "shaft" and base is not None and shaft.id not in {*places, *pins}:
                 places[shaft.id] = base
-                words = "on the axis of the central shafts, its begin at theirs"
-                shaft.say("support_vector", "defaulted", words)
+                text = "on the axis of the central shafts, its begin at theirs"
+                shaft.say("support_vector", "defaulted", text)
     _spread(unit, stages, places)
     for shaft in shafts:
         if shaft.id not in places:
@@ -162,7 +163,7 @@ def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
     across = way * center_distance * (math.sin(angle) * v + math.cos(angle) * w)
     ends = [_u(gear, "u_coordinate_on_shaft") for gear in stage.gears]
     offset = across + way * (ends[0] - ends[1]) * u
-    _place(new, base, offset, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
+    _add_shaft(new, base, offset, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
 
 
 def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
@@ -173,14 +174,14 @@ def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
     base, new = sides if known[0] else sides[::-1]
     inner, outer = (_u(coupling.part, f"u_coordinate_on_shaft_{side}_side") for side in ("inner", "outer"))
     offset = (1.0 if known[0] else -1.0) * (inner - outer) * places[base.id].u
-    _place(new, base, offset, f"coaxial: component {coupling.part.id}", places)
+    _add_shaft(new, base, offset, f"coaxial: component {coupling.part.id}", places)
 
 
 def _u(part: Part, item: str) -> float:
     return part.number(item, "place along the shaft, mm") or 0.0
 
 
-def _place(shaft: Part, base: Part, offset: FloatArray, words: str, places: dict[int, Placement]) -> None:
-    base_place = places[base.id]
-    places[shaft.id] = Placement(np.asarray(base_place.origin + offset), base_place.axes)
-    shaft.say("support_vector", "derived", words)
+def _add_shaft(shaft: Part, base: Part, offset: FloatArray, text: str, places: dict[int, Placement]) -> None:
+    base_placement = places[base.id]
+    places[shaft.id] = Placement(np.asarray(base_placement.origin + offset), base_placement.axes)
+    shaft.say("support_vector", "derived", text)

@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.power_flow import PowerFlow
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import RPM
 
-_HELD_TORQUE = 1e-9
+_REACTION_TORQUE = 1e-9
 """Of the largest torque; less is rounding."""
 
 
@@ -55,20 +55,20 @@ class SceneMotion:
             part = layout.unit.part(load)
             shaft = part if part.type == "shaft" else part.shaft
             if shaft is None or layout.rotor(shaft.id) not in by_rotor or shaft.id not in layout.shafts:
-                words = "acts on a shaft that the scene has not; its torque enters by the ratios"
-                part.say("", "refused", words)
+                text = "acts on a shaft that the scene has not; its torque enters by the ratios"
+                part.say("", "refused", text)
                 continue
             placed = layout.shafts[shaft.id]
             z = layout.z_on(placed, part)
             if part is not shaft:
                 part.say("", "taken", f"torque on shaft {by_rotor[layout.rotor(shaft.id)].name}")
             if self._flow.point.torques.get(load) is None:
-                words = f"{placed.sense * torque:.6g} N m in {self._flow.point.name}: statics of the train"
+                text = f"{placed.sense * torque:.6g} N m in {self._flow.point.name}: statics of the train"
                 if part is shaft:
-                    words = f"the file has none at this end of the train; the scene has {words}"
-                    part.say("external_load", "refused", words)
+                    text = f"the file has none at this end of the train; the scene has {text}"
+                    part.say("external_load", "refused", text)
                 else:
-                    part.say("torque_around_u_axis", "derived", words)
+                    part.say("torque_around_u_axis", "derived", text)
             yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
 
     def _of_stages(self, cut: Sequence[GearStage]) -> Iterator[AppliedTorque]:
@@ -80,9 +80,9 @@ class SceneMotion:
                 if layout.rotor(shaft.id) in self._shafts.by_rotor and shaft.id in layout.shafts:
                     placed = layout.shafts[shaft.id]
                     torque = self._flow.on_gear(stage, number)
-                    words = f"cut off: its torque of {placed.sense * torque:.6g} N m by the ratio is a load; "
-                    words += "its forces across and along the axis are left out"
-                    gear.say(f"stage {stage.stage.id}" if gear.id in meshed else "", "refused", words)
+                    text = f"cut off: its torque of {placed.sense * torque:.6g} N m by the ratio is a load; "
+                    text += "its forces across and along the axis are left out"
+                    gear.say(f"stage {stage.stage.id}" if gear.id in meshed else "", "refused", text)
                     yield AppliedTorque(gear, layout.rotor(shaft.id), layout.z_on(placed, gear), torque)
 
     def _drivers(self) -> Iterator[AppliedTorque]:
@@ -119,13 +119,13 @@ class SceneMotion:
                 self._shafts.by_rotor[driver.rotor].seat(names.of(driver.part), driver.z)
                 | {"speed_rpm": [rounded(speed)]}
             )
-        for rotor in sorted(self._layout.rotors.held & set(self._shafts.by_rotor)):
+        for rotor in sorted(self._layout.rotors.grounded & set(self._shafts.by_rotor)):
             name = names.of(self._layout.unit.part(rotor), " held")
             drives.append({"name": name, "shaft": self._shafts.by_rotor[rotor].name, "speed_rpm": [0.0]})
         largest = max((abs(torque.torque) for torque in self.torques), default=0.0)
         for torque in self.torques:
             speed = self._flow.speed(torque.rotor)
-            if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _HELD_TORQUE * largest:
+            if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _REACTION_TORQUE * largest:
                 continue
             value = rounded(-torque.torque * math.copysign(1.0, speed))
             loads.append(

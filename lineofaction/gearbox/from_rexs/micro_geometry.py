@@ -8,7 +8,7 @@ from typing import Any
 
 from bounds import engineering
 from fe_contact.geometry import Toothing
-from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
+from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.flank_raster import ALLOWED_DIFFERENCE, COUNTS, raster_of
 from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.loaded_flank import LoadedFlank
@@ -27,9 +27,9 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
     """
     if loaded.flank is None:
         return {}
-    place = FlankPlace(gear, loaded)
-    entries = _at_both_ends(place, list(_modifications(place, loaded.flank)))
-    fields: Table = _tip_edge(place, loaded.flank)
+    helicoid = PlainFlank(gear, loaded)
+    entries = _at_both_ends(helicoid, list(_modifications(helicoid, loaded.flank)))
+    fields: Table = _tip_edge(helicoid, loaded.flank)
     rest: list[Modification] = []
     for entry in entries:
         if entry.fields and not set(entry.fields) & set(fields):
@@ -38,17 +38,17 @@ def micro_geometry(gear: Toothing, loaded: LoadedFlank) -> Table:
             rest.append(entry)
     if rest:
         for count in COUNTS:
-            raster = raster_of(place, rest, count)
+            raster = raster_of(helicoid, rest, count)
             if raster.difference <= ALLOWED_DIFFERENCE:
                 break
         fields["flank_grid"] = raster.table
         lines = f"{raster.counts[0]} roll lengths by {raster.counts[1]} face positions"
-        words = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
-        loaded.flank.say("flank_grid", "derived", f"{words} {engineering(raster.difference / UM, 2)} µm")
+        text = f"{', '.join(entry.part.name for entry in rest)} on {lines}; differs by at most"
+        loaded.flank.say("flank_grid", "derived", f"{text} {engineering(raster.difference / UM, 2)} µm")
     return fields
 
 
-def _modifications(place: FlankPlace, flank: Part) -> Iterator[Modification]:
+def _modifications(helicoid: PlainFlank, flank: Part) -> Iterator[Modification]:
     """Yield the modifications of a flank; state which are left aside, or read otherwise than written."""
     for part in (*flank.referenced, *flank.children()):
         if part.type in UNREAD:
@@ -58,18 +58,18 @@ def _modifications(place: FlankPlace, flank: Part) -> Iterator[Modification]:
         item = "position_of_profile_modification"
         if part.attribute(item) is not None:
             part.say(item, "ignored", "the profile is the same all over the face")
-        item, words = "is_additive_modification", "modifications add up"
-        if part.text(item, words) == "False":
-            part.say(item, "ignored", words)
-        yield READERS[part.type](place, part)
+        item, meaning = "is_additive_modification", "modifications add up"
+        if part.text(item, meaning) == "False":
+            part.say(item, "ignored", meaning)
+        yield READERS[part.type](helicoid, part)
 
 
-def _at_both_ends(place: FlankPlace, modifications: Sequence[Modification]) -> list[Modification]:
+def _at_both_ends(helicoid: PlainFlank, modifications: Sequence[Modification]) -> list[Modification]:
     """Return the modifications with end reliefs that are alike at both faces as one."""
     ends = [entry for entry in modifications if entry.part.type.startswith("end_relief_")]
     plain = [{_both(name): value for name, value in entry.fields.items()} for entry in ends]
     alike = len(ends) == 2 and ends[0].part.type != ends[1].part.type and plain[0] == plain[1]
-    if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > 0.5e3 * place.width:
+    if not alike or not plain[0] or plain[0]["end_relief_length_mm"] > 0.5e3 * helicoid.width:
         return list(modifications)
     first, second = ends
     both = replace(
@@ -85,13 +85,13 @@ def _both(name: str) -> str:
     return name.replace("_non_datum_face", "").replace("_datum_face", "")
 
 
-def _tip_edge(place: FlankPlace, flank: Part) -> Table:
+def _tip_edge(helicoid: PlainFlank, flank: Part) -> Table:
     """Return the tip chamfer: of the flank, else of the gear's tip form diameter."""
     height = flank.number("tooth_tip_chamfer", "tip_chamfer_mm")
-    gear = place.loaded.gear
+    gear = helicoid.loaded.gear
     form = None if height else gear.number("tip_form_diameter", "tip_chamfer_mm")
     if form:
-        height = place.towards_tip * (place.gear.tip_radius - 0.5 * abs(form))
+        height = helicoid.towards_tip * (helicoid.gear.tip_radius - 0.5 * abs(form))
         gear.say("tip_form_diameter", "derived", f"tip_chamfer_mm {height / MM:.6g} = (d_a - d_Fa) / 2")
     if not height or height <= 1e-9:
         return {}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from lineofaction.gearbox.from_rexs.account import Fate
-from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
+from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.helix_modifications import (
     end_relief,
@@ -20,7 +20,7 @@ from lineofaction.gearbox.from_rexs.profile_modifications import (
 )
 from lineofaction.gearbox.from_rexs.topography import topographical_modification
 
-READERS: dict[str, Callable[[FlankPlace, Part], Modification]] = {
+READERS: dict[str, Callable[[PlainFlank, Part], Modification]] = {
     "tip_relief": profile_relief,
     "root_relief": profile_relief,
     "profile_crowning": profile_crowning,

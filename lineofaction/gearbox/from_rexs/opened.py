@@ -34,7 +34,7 @@ from lineofaction.gearbox.from_rexs.unit_files import (
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import Change, upgrade
-from lineofaction.gearbox.rexs.vocabulary import words
+from lineofaction.gearbox.rexs.vocabulary import terms
 from lineofaction.gearbox.schemas import validated
 from lineofaction.gearbox.schemas.files import side_files
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -134,9 +134,9 @@ class OpenedUnit:
             unit.say("scene", "refused", "no load case fits the train")
         elif not cases:
             unit.say("scene", "refused", "no stage has a case")
-        descriptive = words("descriptive_components")
+        descriptive = terms("descriptive_components")
         for component in () if table is None else model.components:
-            if component.type not in descriptive and not unit.account.is_stated(component):
+            if component.type not in descriptive and not unit.account.has_entry(component):
                 unit.part(component.id).say("", "refused", REASONS.get(component.type, NO_REASON))
         scene = None if table is None else _scene(layout, table)
         loads = _load_cases(flows, table)
@@ -177,8 +177,8 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
         if same:
             torques[stage.stage.id] = tuple(sorted(same, key=abs))
         if len(same) < len({float(f"{value:.{_DIGITS}g}") for value in values}):
-            words = "load cases on the other flanks are not in the case: they are load cases of the scene"
-            stage.stage.say("torques", "derived", words)
+            text = "load cases on the other flanks are not in the case: they are load cases of the scene"
+            stage.stage.say("torques", "derived", text)
     return torques
 
 
@@ -198,7 +198,7 @@ def _load_cases(flows: Sequence[PowerFlow], table: SceneTable | None) -> tuple[L
         return ()
     cases = []
     for flow in flows:
-        both = [(force.stated(flow.point), force.stated(flows[0].point)) for force in table.forces]
-        forces = tuple(own for own, of_scene in both if own != of_scene)
+        both = [(force.entry(flow.point), force.entry(flows[0].point)) for force in table.forces]
+        forces = tuple(case_force for case_force, of_scene in both if case_force != of_scene)
         cases.append(LoadCase.of(flow, table.leader, forces))
     return tuple(sorted(cases, key=lambda case: case.number))

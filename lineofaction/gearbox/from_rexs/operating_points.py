@@ -49,23 +49,23 @@ class OperatingPoint:
     @staticmethod
     def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
         """Return the load cases of the first spectrum, or what components themselves state as one case."""
-        own = unit.of_type("shaft", "external_load", "gear_unit")
+        unit_parts = unit.of_type("shaft", "external_load", "gear_unit")
         cases = unit.load_cases()
         for number, spectrum in enumerate(unit.model.spectra[1:], 2):
             for part in (part for case in spectrum.cases for part in case.components):
                 unit.account.say(part, "", "refused", f"load spectrum {number}; the first is taken")
         if not cases:
-            return (_point("nominal", (1, 1.0), own, ()),)
+            return (_point("nominal", (1, 1.0), unit_parts, ()),)
         shares = [_share(case) for case in cases]
-        whole = sum(share for share in shares if share is not None)
-        if whole > 0.0 and None not in shares:
-            parts = [(share or 0.0) / whole for share in shares]
+        total = sum(share for share in shares if share is not None)
+        if total > 0.0 and None not in shares:
+            parts = [(share or 0.0) / total for share in shares]
         else:
             parts = [1.0 / len(cases)] * len(cases)
             for root in unit.of_type("gear_unit"):
                 root.say(_SHARES[0], "defaulted", "equal shares: not every load case states one")
         rows = enumerate(zip(cases, parts, strict=True), 1)
-        return tuple(_point(f"load case {n}", (n, share), own, case) for n, (case, share) in rows)
+        return tuple(_point(f"load case {n}", (n, share), unit_parts, case) for n, (case, share) in rows)
 
 
 def _share(case: tuple[Part, ...]) -> float | None:
@@ -78,7 +78,7 @@ def _share(case: tuple[Part, ...]) -> float | None:
 
 
 def _point(
-    name: str, place: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
+    name: str, number_and_share: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
 ) -> OperatingPoint:
     """Return an operating point: what a case sets counts before what the component itself states."""
     parts = [*unit_parts, *case]
@@ -94,23 +94,23 @@ def _point(
     for part in loads:
         _enter_torque(part, torques, powers)
         _enter_forces(part, forces)
-    return OperatingPoint(name, *place, speeds, torques, powers, forces)
+    return OperatingPoint(name, *number_and_share, speeds, torques, powers, forces)
 
 
 def _enter_forces(part: Part, forces: dict[int, tuple[float, ...]]) -> None:
     """Enter the force and moment that a load states, each component in place of one entered before."""
     wrench = list(forces.get(part.id, (0.0,) * len(FORCES)))
-    is_stated = False
-    for index, (item, words) in enumerate(FORCES.items()):
-        value = part.number(item, words) if words else None
+    has_value = False
+    for index, (item, meaning) in enumerate(FORCES.items()):
+        value = part.number(item, meaning) if meaning else None
         if value is None:
             continue
         if not abs(value) <= LARGEST:
             raise part.refusal(item, value, f"from {-LARGEST:g} to {LARGEST:g} N or N m")
         if value == 0.0 == wrench[index]:
             part.say(item, "ignored", "0")
-        wrench[index], is_stated = value, True
-    if is_stated:
+        wrench[index], has_value = value, True
+    if has_value:
         forces[part.id] = tuple(wrench)
 
 

@@ -14,7 +14,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes
 
-SAME_PLACE = 1e-6
+SAME_POSITION = 1e-6
 """m; file and sum of lengths agree to rounding."""
 
 _LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
@@ -25,7 +25,7 @@ class PlacedShaft:
     """A shaft along the z axis of the scene."""
 
     part: Part
-    place: Placement
+    placement: Placement
     """In the frame of the model; its origin is u = 0."""
     start: FloatArray
     """Of u = 0 in the scene, m. Shape (3,)."""
@@ -38,15 +38,15 @@ class PlacedShaft:
     """From the left end, the lower z; none where the file has none."""
 
     @classmethod
-    def of(cls, part: Part, place: Placement, axes: SceneAxes) -> PlacedShaft:
+    def of(cls, part: Part, placement: Placement, axes: SceneAxes) -> PlacedShaft:
         """Return a shaft with its sections."""
         rows = tuple(_rows(part))
-        sense = axes.sense(place)
+        sense = axes.sense(placement)
         begin = rows[0][0] if rows else 0.0
         sections = tuple(section if sense > 0 else _turned(section) for _, section in rows)
         end = begin + sum(section.length for section in sections)
         along_z = sections if sense > 0 else sections[::-1]
-        return cls(part, place, axes.point(place.origin), sense, begin, end, along_z)
+        return cls(part, placement, axes.point(placement.origin), sense, begin, end, along_z)
 
     @property
     def length(self) -> float:
@@ -65,13 +65,13 @@ class PlacedShaft:
 
     def off_axis(self, point: FloatArray) -> float:
         """Return the distance of a point of the model from the axis, m."""
-        return float(np.linalg.norm(np.cross(self.place.axes[0], point - self.place.origin)))
+        return float(np.linalg.norm(np.cross(self.placement.axes[0], point - self.placement.origin)))
 
     def outer_diameter(self, u: float) -> float:
         """Return the outer diameter at a u, m; 0 without sections."""
         position, left = self.position(u), 0.0
         for section in self.sections:
-            if left - SAME_PLACE <= position <= left + section.length + SAME_PLACE:
+            if left - SAME_POSITION <= position <= left + section.length + SAME_POSITION:
                 share = min(1.0, max(0.0, (position - left) / section.length))
                 first, last = section.outer_diameters
                 return first + share * (last - first)
@@ -96,7 +96,7 @@ def _rows(shaft: Part) -> Iterator[tuple[float, BeamSection]]:
         derived = f"{at * 1e3:.6g} mm, the sum of the lengths before it"
         if start is None:
             part.say(item, "derived", derived)
-        elif abs(start - at) > SAME_PLACE:
+        elif abs(start - at) > SAME_POSITION:
             part.say(item, "refused", f"{start * 1e3:.6g} mm leaves a gap or overlaps; taken: {derived}")
         yield at, section
 

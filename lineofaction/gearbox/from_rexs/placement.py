@@ -74,10 +74,10 @@ def u_on_shaft(part: Part) -> float | None:
 
     One writer gives the begin of a gear as its coordinate: its place, that of its middle, counts.
     """
-    shaft, place = part.shaft, Placement.of(part)
+    shaft, placement = part.shaft, Placement.of(part)
     base = None if shaft is None else Placement.of(shaft)
     coordinate = part.number("u_coordinate_on_shaft", "place along the shaft")
-    return coordinate if place is None or base is None else base.along(place.origin)
+    return coordinate if placement is None or base is None else base.along(placement.origin)
 
 
 def _in_reference(part: Part, origin: FloatArray, inner: tuple[int, ...]) -> Placement:
@@ -113,8 +113,8 @@ def _unit(part: Part, item: str, usual: FloatArray) -> FloatArray:
     return np.asarray(vector / length)
 
 
-def _vector(part: Part, item: str, words: str) -> FloatArray | None:
-    numbers = part.vector(item, words)
+def _vector(part: Part, item: str, meaning: str) -> FloatArray | None:
+    numbers = part.vector(item, meaning)
     if numbers is None:
         return None
     if len(numbers) != 3 or not np.all(np.isfinite(numbers)):

@@ -78,12 +78,12 @@ class PowerFlow:
     def of(point: OperatingPoint, layout: Layout, train: Train) -> PowerFlow | str:
         """Return the flow of power at an operating point, or the reason why there is none."""
         problem = _Problem(point, layout, train)
-        if not problem.speeds_stated and not problem.owner:
+        if not problem.known_speeds and not problem.owner:
             return "neither a speed nor a torque is stated"
-        speeds = train.speeds(problem.speeds_stated or problem.default_speed)
+        speeds = train.speeds(problem.known_speeds or problem.default_speed)
         if speeds is None:
-            stated = f"the speeds stated (of shafts {', '.join(map(str, point.speeds)) or 'none'})"
-            return f"{stated} contradict the ratios of the stages, or leave some open"
+            speeds_text = f"the speeds stated (of shafts {', '.join(map(str, point.speeds)) or 'none'})"
+            return f"{speeds_text} contradict the ratios of the stages, or leave some open"
         known = problem.known(speeds)
         for loads, remark in problem.attempts(known):
             opened = [load for load in problem.owner if load not in loads]
@@ -106,11 +106,11 @@ class _Problem:
         self._point, self._layout, self._train = point, layout, train
         owners = {load: layout.unit.part(load).shaft for load in point.torques}
         self.owner = {load: owner.id for load, owner in owners.items() if owner is not None}
-        self.speeds_stated = {
+        self.known_speeds = {
             layout.rotor(shaft): speed * layout.sense(shaft) for shaft, speed in point.speeds.items()
         }
-        self.remarks = () if self.speeds_stated else (NO_SPEED,)
-        self.joined = train.joined_to(self.speeds_stated or (self.default_speed if self.owner else ()))
+        self.remarks = () if self.known_speeds else (NO_SPEED,)
+        self.joined = train.joined_to(self.known_speeds or (self.default_speed if self.owner else ()))
         self.owner = {load: shaft for load, shaft in self.owner.items() if layout.rotor(shaft) in self.joined}
 
     @property
@@ -173,7 +173,7 @@ class _Problem:
     def _ends(self, loaded: set[int]) -> list[int]:
         """Return the rotors of a single stage that no load acts on and nothing holds."""
         counts = np.count_nonzero(self._train.rows, axis=0)
-        bound = loaded | {self._train.rotors[column] for column in self._train.held}
+        bound = loaded | {self._train.rotors[column] for column in self._train.grounded}
         return [
             r for r, count in zip(self._train.rotors, counts, strict=True) if count == 1 and r not in bound
         ]

@@ -42,7 +42,8 @@ def refused_lines(lines: Iterable[Line]) -> list[Line]:
 def _statement(group: list[Line], reason: str) -> str:
     lines = {line: "" if line.line is None else f" (line {line.line})" for line in group}
     named = "; ".join(
-        f"{line_name(line)}{place}{f', {line.item}' if line.item else ''}" for line, place in lines.items()
+        f"{line_name(line)}{location}{f', {line.item}' if line.item else ''}"
+        for line, location in lines.items()
     )
     room = max(LONGEST - len(reason) - 2, LONGEST // 2)
     named = named if len(named) <= room else f"{named[: room - 4]} ..."

@@ -50,7 +50,7 @@ def blended_depth(fraction: FloatArray, start: float, end: float) -> FloatArray:
 
 
 def two_parabolas(
-    place: FloatArray, highest: float, ends: tuple[float, ...], amounts: tuple[float, ...]
+    coordinate: FloatArray, highest: float, ends: tuple[float, ...], amounts: tuple[float, ...]
 ) -> FloatArray:
     """Return the depths (m) of two half parabolas that touch at the highest point, at places (m).
 
@@ -58,7 +58,11 @@ def two_parabolas(
     """
     sides = [
         amount
-        * np.where((place - highest) * (end - highest) > 0.0, ((place - highest) / (end - highest)) ** 2, 0.0)
+        * np.where(
+            (coordinate - highest) * (end - highest) > 0.0,
+            ((coordinate - highest) / (end - highest)) ** 2,
+            0.0,
+        )
         for end, amount in zip(ends, amounts, strict=True)
     ]
     return np.asarray(sum(sides))

@@ -28,9 +28,9 @@ def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mappin
     if depth.tip_diameter > minimum:
         return depth
     tip = math.ceil(minimum / _STEP + 1e-3) * _STEP
-    words = f"{tip / MM:.7g} mm, above {minimum / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
-    words += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
-    ring.part.say("tip_diameter", "defaulted", f"{words} {depth.tip_diameter / MM:.7g} mm")
+    text = f"{tip / MM:.7g} mm, above {minimum / MM:.7g} mm = 2 sqrt(r_b2^2 + (l_F1 + a sin alpha_wt)^2),"
+    text += f" where the tip meets the form circle of {pair.pinion.part.name}; d - 2 m_n (x + h_aP) would be"
+    ring.part.say("tip_diameter", "defaulted", f"{text} {depth.tip_diameter / MM:.7g} mm")
     return replace(depth, tip_diameter=tip)
 
 
@@ -52,4 +52,4 @@ def _form_roll_length(pair: ToothedPair, depth: ToothDepth, shifts: Mapping[int,
             tooth_thinning=depth.tooth_thinning,
         ).form_roll_length
     except FeContactError as error:
-        raise BadInput.of(gear.part.place, gear.part.name, f"a gear that exists: {error}") from None
+        raise BadInput.of(gear.part.location, gear.part.name, f"a gear that exists: {error}") from None

@@ -17,7 +17,7 @@ class Rotors:
 
     of: Mapping[int, int]
     """The rotor of a shaft or side plate: the lowest id of the components that turn as one."""
-    held: frozenset[int]
+    grounded: frozenset[int]
     """Rotors that a coupling holds on the ground."""
     couplings: tuple[Connection, ...]
     """Couplings between two rotors."""
@@ -57,7 +57,7 @@ def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
                 changed = True
     grounded = [entry for entry in unit.couplings if entry.on_ground is not None]
     grounded_rotors = frozenset(
-        of[entry.held.id] for entry in grounded if entry.held.id in of and _rotation(entry)
+        of[entry.rotor_side.id] for entry in grounded if entry.rotor_side.id in of and _rotation(entry)
     )
     between = tuple(entry for entry in joined if of[entry.inner.id] != of[entry.outer.id])
     for entry in joined:
@@ -77,5 +77,5 @@ def _merge(of: dict[int, int], parts: list[int]) -> int:
 
 def _rotation(entry: Connection) -> float:
     """Return the torsional stiffness of a coupling, N m/rad; rigid where the file says none."""
-    item, words = "rotational_stiffness", "torsional stiffness, N mm/rad"
-    return entry.part.number(item, words, _RIGID_ROTATION, "rigid: the file gives none")
+    item, meaning = "rotational_stiffness", "torsional stiffness, N mm/rad"
+    return entry.part.number(item, meaning, _RIGID_ROTATION, "rigid: the file gives none")

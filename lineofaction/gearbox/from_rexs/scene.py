@@ -54,7 +54,7 @@ class SceneTable:
         bearings = SceneBearings(layout, shafts)
         gears, meshes = scene_gears(layout, shafts, by_stage)
         motion = SceneMotion(flow, shafts, cut)
-        forces = tuple(scene_forces(layout, [each.point for each in flows], shafts))
+        forces = tuple(scene_forces(layout, [entry.point for entry in flows], shafts))
         table: dict[str, Any] = {
             "run": {"duration_s": _duration(layout, motion.slowest_mesh())},
             "gravity_m_per_s2": _gravity(layout),
@@ -96,16 +96,16 @@ def _say_without_mesh(
     meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
     for number in _by_stage(cases).keys() - meshed:
-        words = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "
-        words += "places them or joins them to a speed, or they carry a planet unlike the first"
-        layout.unit.part(number).say("", "refused", words if number in on_shafts else NO_STAGE)
+        text = "it has a case and no mesh: its shafts are not parallel to those of the first stage, nothing "
+        text += "places them or joins them to a speed, or they carry a planet unlike the first"
+        layout.unit.part(number).say("", "refused", text if number in on_shafts else NO_STAGE)
 
 
 def _duration(layout: Layout, rate: float) -> float:
     duration = float(f"{PERIODS / rate:.2g}") if rate > 0.0 else 1.0
     for part in layout.unit.of_type("gear_unit"):
-        words = f"{duration:g} s, {PERIODS} periods of the slowest mesh: a REXS file states no run"
-        part.say("run.duration_s", "defaulted", words)
+        text = f"{duration:g} s, {PERIODS} periods of the slowest mesh: a REXS file states no run"
+        part.say("run.duration_s", "defaulted", text)
     return duration
 
 
@@ -125,8 +125,8 @@ def _gravity(layout: Layout) -> list[float]:
         if length == 0.0 or not math.isfinite(length):
             part.say("account_for_gravity", "refused", "the file gives gravity no direction")
             break
-        place = Placement.of(part) or FIXED
-        turned = layout.axes.turn(place) @ vector / length * (size or STANDARD_GRAVITY)
+        placement = Placement.of(part) or FIXED
+        turned = layout.axes.turn(placement) @ vector / length * (size or STANDARD_GRAVITY)
         return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]
 
@@ -142,7 +142,7 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
         central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
         middle = np.mean(places, axis=0) if central is None else central.origin[:2]
-        offsets = [place - middle for place in places]
+        offsets = [position - middle for position in places]
         angles = [math.degrees(math.atan2(y, x)) for x, y in offsets]
         turned = sorted((angle - angles[0]) % 360.0 for angle in angles)
         table: dict[str, Any] = {"planet": names[first.id], "number": len(places)}

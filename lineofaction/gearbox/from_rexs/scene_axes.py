@@ -37,12 +37,12 @@ class SceneAxes:
         """Return a point of the model in x, y, z, m."""
         return np.asarray(self.rows @ origin)
 
-    def sense(self, place: Placement) -> int:
+    def sense(self, placement: Placement) -> int:
         """Return +1 where u of a place is along z, -1 where it is against it, 0 where it is neither."""
-        along = float(self.rows[2] @ place.axes[0])
-        across = float(np.linalg.norm(np.cross(self.rows[2], place.axes[0])))
+        along = float(self.rows[2] @ placement.axes[0])
+        across = float(np.linalg.norm(np.cross(self.rows[2], placement.axes[0])))
         return 0 if across > PARALLEL else (1 if along > 0.0 else -1)
 
-    def turn(self, place: Placement) -> FloatArray:
+    def turn(self, placement: Placement) -> FloatArray:
         """Return the matrix that takes u, v, w of a place to x, y, z."""
-        return np.asarray(self.rows @ place.axes.T)
+        return np.asarray(self.rows @ placement.axes.T)

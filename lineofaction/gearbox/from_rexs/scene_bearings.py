@@ -10,8 +10,8 @@ from bounds.types import FloatArray
 from lineofaction.gearbox.from_rexs.bearing_location import STIFFNESSES, Table, further_fields, located_row
 from lineofaction.gearbox.from_rexs.bearing_stiffness import (
     BearingStiffness,
+    finite_stiffness,
     operating_point,
-    stated_stiffness,
 )
 from lineofaction.gearbox.from_rexs.bearings import BearingGeometry
 from lineofaction.gearbox.from_rexs.elastic_housing import elastic_housings, loosely_housed
@@ -43,7 +43,7 @@ class SceneBearings:
         for entry in layout.unit.bearings:
             self._enter(entry)
         for entry in layout.unit.couplings:
-            if entry.on_ground is not None and self._rotor(entry.held) is not None:
+            if entry.on_ground is not None and self._rotor(entry.rotor_side) is not None:
                 self._enter(entry)
         for entry in layout.rotors.couplings:
             self._enter_coupling(entry)
@@ -55,7 +55,7 @@ class SceneBearings:
         ends = [self._rotor(side) for side in (entry.inner, entry.outer)]
         planets = {planets.planets[0].id: planets for planets in self._layout.rotors.sets}
         planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
-        if entry.on_ground is not None and self._rotor(entry.held) is not None:
+        if entry.on_ground is not None and self._rotor(entry.rotor_side) is not None:
             self._enter_on_ground(entry)
         elif planet is not None and ends[0] is not None and ends[1] is not None:
             carrier = self._layout.rotor(planets[planet.id].carrier[0].id)
@@ -70,16 +70,16 @@ class SceneBearings:
         else:
             copies = {copy.id for planets in self._layout.rotors.sets for copy in planets.planets[1:]}
             is_copy = bool(copies & {entry.inner.id, entry.outer.id})
-            words = "that of an equal planet" if is_copy else "what it holds is not in the scene"
-            entry.part.say("", "derived" if is_copy else "refused", words)
+            text = "that of an equal planet" if is_copy else "what it holds is not in the scene"
+            entry.part.say("", "derived" if is_copy else "refused", text)
 
     def _enter_on_ground(self, entry: Connection) -> None:
         """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
         rolling = self._rolling_bearing(entry)
-        seat = self._seat(entry, entry.held)
+        seat = self._seat(entry, entry.rotor_side)
         if isinstance(rolling, str):
             _say_clearances(entry.part)
-            self.bushings.append(seat | self._bushing(entry, entry.held))
+            self.bushings.append(seat | self._bushing(entry, entry.rotor_side))
             entry.part.say("", "taken", f"bushing on shaft {seat['shaft']}: {rolling}")
         else:
             self.rolling_bearings.append(seat | rolling)
@@ -96,45 +96,47 @@ class SceneBearings:
         part = entry.part
         if part.id in self._loose:
             return "the matrix of the casing is singular, and only linear bearings sit in it"
-        if entry.held.id != entry.inner.id:
+        if entry.rotor_side.id != entry.inner.id:
             return "the shaft is on its outer side"
-        if operating_point(part) is not None or any(stated_stiffness(part, item) for item in STIFFNESSES):
+        if operating_point(part) is not None or any(finite_stiffness(part, item) for item in STIFFNESSES):
             return "its stiffness is stated"
         if part.value("radial_force_absorption") is False:
             return "it carries no radial force"
         geometry = BearingGeometry.of(part)
         if isinstance(geometry, str):
             return geometry
-        sense = 1 if float(self._layout.turn(part, entry.held)[2, 0]) > 0.0 else -1
+        sense = 1 if float(self._layout.turn(part, entry.rotor_side)[2, 0]) > 0.0 else -1
         located = located_row(part, geometry, sense)
         return located if isinstance(located, str) else located | further_fields(part)
 
-    def _seat(self, entry: Connection, held: Part) -> Table:
-        shaft = self._shafts.by_rotor[self._layout.rotor(held.id)]
-        side = "inner" if held.id == entry.inner.id else "outer"
-        return shaft.seat(self._names.of(entry.part), self._z(entry.part, held, side))
+    def _seat(self, entry: Connection, rotor_side: Part) -> Table:
+        shaft = self._shafts.by_rotor[self._layout.rotor(rotor_side.id)]
+        side = "inner" if rotor_side.id == entry.inner.id else "outer"
+        return shaft.seat(self._names.of(entry.part), self._z(entry.part, rotor_side, side))
 
-    def _bushing(self, entry: Connection, held: Part) -> Table:
+    def _bushing(self, entry: Connection, rotor_side: Part) -> Table:
         stiffness = BearingStiffness.of(entry.part)
         if stiffness.matrix is not None:
-            return {"stiffness_matrix": self._turned(entry.part, held, stiffness.matrix).tolist()}
+            return {"stiffness_matrix": self._turned(entry.part, rotor_side, stiffness.matrix).tolist()}
         linear = {"radial_stiffness_n_per_m": stiffness.radial, "axial_stiffness_n_per_m": stiffness.axial}
         tilt = np.diag([0.0, 0.0, 0.0, stiffness.tilt, stiffness.tilt])
         return linear | ({"stiffness_matrix": tilt.tolist()} if stiffness.tilt > 0.0 else {})
 
-    def _turned(self, part: Part, held: Part, matrix: FloatArray) -> FloatArray:
+    def _turned(self, part: Part, rotor_side: Part, matrix: FloatArray) -> FloatArray:
         """Return the stiffness (5, 5) in x, y, z, tilt_x, tilt_y of a matrix along u, v, w of a bearing."""
         full = np.zeros((6, 6))
         rows = np.array([0, 1, 2, 4, 5])
         full[np.ix_(rows, rows)] = matrix
-        both = np.kron(np.eye(2), self._layout.turn(part, held))
+        both = np.kron(np.eye(2), self._layout.turn(part, rotor_side))
         return np.asarray((both @ full @ both.T)[:5, :5])
 
-    def _z(self, part: Part, held: Part, side: str) -> float:
-        if held.id not in self._layout.shafts:
-            place = Placement.of(part)
-            return 0.0 if place is None else float(self._layout.axes.point(place.origin)[2])
-        return self._layout.z_on(self._layout.shafts[held.id], part, f"u_coordinate_on_shaft_{side}_side")
+    def _z(self, part: Part, rotor_side: Part, side: str) -> float:
+        if rotor_side.id not in self._layout.shafts:
+            placement = Placement.of(part)
+            return 0.0 if placement is None else float(self._layout.axes.point(placement.origin)[2])
+        return self._layout.z_on(
+            self._layout.shafts[rotor_side.id], part, f"u_coordinate_on_shaft_{side}_side"
+        )
 
     def _between(self, entry: Connection) -> Table:
         """Return a bearing between two shafts: a coupling that leaves their rotations free."""

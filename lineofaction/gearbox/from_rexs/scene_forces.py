@@ -13,7 +13,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import Part, rounded
 from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.operating_points import FORCES, OperatingPoint
 from lineofaction.gearbox.from_rexs.part_names import Names
-from lineofaction.gearbox.from_rexs.placed_shafts import SAME_PLACE, PlacedShaft
+from lineofaction.gearbox.from_rexs.placed_shafts import SAME_POSITION, PlacedShaft
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import MM
 
@@ -37,7 +37,7 @@ class SceneForce:
     lever: float
     """Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft."""
 
-    def stated(self, point: OperatingPoint) -> dict[str, Any]:
+    def entry(self, point: OperatingPoint) -> dict[str, Any]:
         """Return what an entry of a load case's forces says at an operating point.
 
         The moment about the axis is not in it: torques drive and load the train.
@@ -50,7 +50,7 @@ class SceneForce:
 
     def table(self, point: OperatingPoint) -> dict[str, Any]:
         """Return its table in a scene that runs at an operating point."""
-        return {**self.stated(point), "shaft": self.shaft, "position_mm": self.position_mm}
+        return {**self.entry(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 
 def scene_forces(
@@ -72,18 +72,18 @@ def scene_forces(
         shaft, z = shafts.by_rotor[layout.rotor(placed.part.id)], layout.z_on(placed, part)
         position = shaft.position_mm(z)
         lever = z - shaft.begin - position * MM
-        turn = layout.axes.turn(placed.place)
+        turn = layout.axes.turn(placed.placement)
         part.say("", "taken", f"acts on shaft {shaft.name}")
         if part.number("width_of_external_load", "width of a line load, mm"):
-            words = "a line load is not spread: its force acts at u_coordinate_on_shaft"
-            part.say("width_of_external_load", "ignored", words)
-        if abs(lever) <= SAME_PLACE:
+            text = "a line load is not spread: its force acts at u_coordinate_on_shaft"
+            part.say("width_of_external_load", "ignored", text)
+        if abs(lever) <= SAME_POSITION:
             lever = 0.0
         else:
-            words = (
+            text = (
                 f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
             )
-            part.say("u_coordinate_on_shaft", "derived", words)
+            part.say("u_coordinate_on_shaft", "derived", text)
         yield SceneForce(names.of(part), shaft.name, position, part.id, turn, lever)
 
 
@@ -98,7 +98,7 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
         return None, "acts on a planet, and a scene has one for all of its set"
     placed = layout.shafts[shaft.id]
     axis = MM * np.array(shafts.by_rotor[layout.rotor(shaft.id)].table["origin_mm"][:2])
-    if not np.hypot(*(np.array(placed.origin[:2]) - axis)) <= 1e2 * SAME_PLACE:
+    if not np.hypot(*(np.array(placed.origin[:2]) - axis)) <= 1e2 * SAME_POSITION:
         return None, "acts off the axis of the planet carrier that its shaft is part of"
     return placed, ""
 

@@ -36,7 +36,7 @@ def scene_gears(
             if gear.id not in gears:
                 gears[gear.id] = _gear(layout, shafts, gear, shaft, names)
                 parts[gear.id] = gear
-        _say_apart(layout, stage, case)
+        _say_distance(layout, stage, case)
         driver, driven = case.driving(stage)
         mesh: dict[str, Any] = {
             "name": mesh_names.of(stage.stage),
@@ -51,15 +51,15 @@ def scene_gears(
     return list(gears.values()), meshes
 
 
-def _say_apart(layout: Layout, stage: GearStage, case: StageCase) -> None:
+def _say_distance(layout: Layout, stage: GearStage, case: StageCase) -> None:
     """State a center distance that contradicts the places of the shafts: no verb takes such a scene."""
     first, second = (layout.shafts[shaft.id].origin for shaft in stage.shafts)
     distance = math.hypot(*(second - first)[:2])
     if not math.isclose(distance, case.center_distance, rel_tol=SAME):
-        words = f"{case.center_distance / MM:.7g} mm, and its shafts are {distance / MM:.7g} mm apart, "
+        text = f"{case.center_distance / MM:.7g} mm, and its shafts are {distance / MM:.7g} mm apart, "
         mend = f"--assume {stage.stage.id}.center_distance={distance / MM:.7g}"
-        words += f"where no verb takes them: open it with {mend}, or move a shaft"
-        stage.stage.say("center_distance", "refused", words)
+        text += f"where no verb takes them: open it with {mend}, or move a shaft"
+        stage.stage.say("center_distance", "refused", text)
 
 
 def _say_angles(gears: Mapping[int, Mapping[str, Any]], parts: Mapping[int, Part]) -> None:
@@ -68,10 +68,8 @@ def _say_angles(gears: Mapping[int, Mapping[str, Any]], parts: Mapping[int, Part
     for number, part in parts.items():
         gear = gears[number]
         if first.setdefault(gear["shaft"], gear["name"]) != gear["name"]:
-            words = (
-                f"0 against gear {first[gear['shaft']]}: no file says it; state tooth_angles_deg of shaft "
-            )
-            part.say("tooth_angle", "defaulted", f"{words}{gear['shaft']} in the scene")
+            text = f"0 against gear {first[gear['shaft']]}: no file says it; state tooth_angles_deg of shaft "
+            part.say("tooth_angle", "defaulted", f"{text}{gear['shaft']} in the scene")
 
 
 def _gear(layout: Layout, shafts: SceneShafts, gear: Part, shaft: Part, names: Names) -> dict[str, Any]:
@@ -94,8 +92,8 @@ def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict
     if gear.type == "ring_gear":
         return {"inertia": inertia_table(_ring(gear, pitch, module or 0.0, is_shaft_massless))}
     if shaft_diameter >= INTEGRAL * pitch:
-        words = f"0: the section of its shaft is {shaft_diameter / MM:.6g} mm, the gear's own body"
-        gear.say("inertia", "derived", words)
+        text = f"0: the section of its shaft is {shaft_diameter / MM:.6g} mm, the gear's own body"
+        gear.say("inertia", "derived", text)
         return {"inertia": inertia_table(Inertia())}
     gear.say("inertia", "derived", f"a steel cylinder of {pitch / MM:.6g} mm, bore that of its shaft")
     return {"bore_diameter_mm": shaft_diameter / MM}
@@ -130,8 +128,8 @@ def _disc(part: Part, on: SceneShaft, z: float, names: Names) -> dict[str, Any] 
     if not mass or mass < 0.0:
         part.say("", "refused", "no mass is stated")
         return None
-    words, why = "moment of inertia of a disc, kg m^2", "0 kg m^2: a point mass on the axis"
-    moments = [max(0.0, part.number(f"moment_of_inertia_{a}_axis", words, 0.0, why)) for a in "uvw"]
+    text, why = "moment of inertia of a disc, kg m^2", "0 kg m^2: a point mass on the axis"
+    moments = [max(0.0, part.number(f"moment_of_inertia_{a}_axis", text, 0.0, why)) for a in "uvw"]
     if moments[1] != moments[2]:
         part.say("moment_of_inertia_w_axis", "derived", "mean of v and w: a disc is a body of revolution")
     inertia = Inertia(mass, moments[0], 0.5 * (moments[1] + moments[2]))

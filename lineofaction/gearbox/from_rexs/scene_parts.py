@@ -82,12 +82,12 @@ def scene_parts(
     of_shafts = {}
     for rotor, shaft in shafts.by_rotor.items():
         if (placed := layout.shafts.get(rotor)) is not None:
-            turn, zero = layout.axes.turn(placed.place), float(placed.start[2]) - shaft.begin
+            turn, zero = layout.axes.turn(placed.placement), float(placed.start[2]) - shaft.begin
             of_shafts[shaft.name] = ShaftPart(rotor, turn, placed.sense, zero)
     of_bearings = {}
     for entry in (*layout.unit.bearings, *layout.unit.couplings):
-        if entry.part.id in seats and entry.held.id in layout.shafts:
-            turn, inside = layout.turn(entry.part, entry.held), entry.held.id == entry.inner.id
+        if entry.part.id in seats and entry.rotor_side.id in layout.shafts:
+            turn, inside = layout.turn(entry.part, entry.rotor_side), entry.rotor_side.id == entry.inner.id
             of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, turn, inside)
     return SceneParts(of_shafts, of_bearings, of_meshes)
 

@@ -104,8 +104,8 @@ def _shaft(layout: Layout, rotor: int, names: Names) -> SceneShaft:
         body = carrier_body(layout, rotor)
         members = layout.rotors.members(rotor)
         for member in members:
-            words = f"part of the rigid planet carrier of {len(members)} parts"
-            layout.unit.part(member).say("", "derived", words)
+            text = f"part of the rigid planet carrier of {len(members)} parts"
+            layout.unit.part(member).say("", "derived", text)
     else:
         placed = layout.shafts[rotor]
         part.say("", "taken", f"shaft of the scene, {'u along z' if placed.sense > 0 else 'u against z'}")

@@ -27,7 +27,7 @@ class ToothDepth:
     """Tip and root of a gear in fields of the case: diameters in m, coefficients in normal modules."""
 
     tip_diameter: float
-    tip_stated: bool
+    has_tip_diameter: bool
     """Whether the tip diameter is the file's."""
     dedendum_coefficient: float
     root_radius_coefficient: float
@@ -41,12 +41,12 @@ class ToothDepth:
     @classmethod
     def of(cls, gear: ToothingData, shift: float, tip_alteration: float) -> ToothDepth:
         """Return tip and root of a gear: x stated or derived, k <= 0 of a tip that the file leaves out."""
-        tool, tip = _tool(gear.loaded), _stated_tip(gear, shift)
+        tool, tip = _tool(gear.loaded), _tip_of_file(gear, shift)
         allowance = thickness_allowance(gear)
         root = _generated_root(gear, tool, shift, allowance)
         return cls(
             tip_diameter=_computed_tip(gear, shift, tip_alteration) if tip is None else tip,
-            tip_stated=tip is not None,
+            has_tip_diameter=tip is not None,
             dedendum_coefficient=root.dedendum_coefficient,
             root_radius_coefficient=_root_radius(gear, tool),
             thickness_allowance=allowance,
@@ -61,7 +61,7 @@ class ToothDepth:
         )
 
 
-def _stated_tip(gear: ToothingData, shift: float) -> float | None:
+def _tip_of_file(gear: ToothingData, shift: float) -> float | None:
     """Return the tip diameter of the file in m, None if it gives none that a tip can have."""
     value = gear.part.number("tip_diameter", "tip_diameter_mm")
     if value is None:
@@ -77,18 +77,18 @@ def _implied_addendum(gear: ToothingData, diameter: float, shift: float) -> floa
 
 def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
     """Return d + 2 m_n (x + h_aP + k) in m, of a ring gear d - 2 m_n (x + h_aP)."""
-    item, words = "addendum_coefficient_basic_profile", "h_aP of the tip diameter"
-    depths = (flank.number(item, words) for flank in gear.loaded.flanks)
+    item, text = "addendum_coefficient_basic_profile", "h_aP of the tip diameter"
+    depths = (flank.number(item, text) for flank in gear.loaded.flanks)
     addendum = next((value for value in depths if value is not None), _ADDENDUM)
     height = shift + addendum + alteration
     computed = gear.reference_diameter + 2.0 * gear.sign * gear.normal_module * height
     formula = "d + 2 m_n (x + h_aP + k)" if gear.sign > 0 else "d - 2 m_n (x + h_aP)"
-    words = f"{computed / MM:.7g} mm = {formula} with h_aP = {addendum:g}, k = {alteration:.4g}"
+    text = f"{computed / MM:.7g} mm = {formula} with h_aP = {addendum:g}, k = {alteration:.4g}"
     value = gear.part.number("tip_diameter", "tip_diameter_mm")
     if value:
         implied = _implied_addendum(gear, abs(value), shift)
-        words = f"{value / MM:.7g} mm is no tip diameter (h_aP would be {implied:.4g}); {words}"
-    gear.part.say("tip_diameter", "defaulted", words)
+        text = f"{value / MM:.7g} mm is no tip diameter (h_aP would be {implied:.4g}); {text}"
+    gear.part.say("tip_diameter", "defaulted", text)
     return computed
 
 
@@ -106,10 +106,10 @@ def _generated_root(gear: ToothingData, tool: Part | None, shift: float, allowan
     if value:
         root = _root_at(gear, tool, abs(value), shift, allowance)
         if _DEDENDUM_BOUND[0] <= root.dedendum_coefficient <= _DEDENDUM_BOUND[1]:
-            gear.part.say("root_diameter", "derived", _words_of_root(root, allowance))
+            gear.part.say("root_diameter", "derived", _text_of_root(root, allowance))
             return root
-        words = f"h_fP would be {root.dedendum_coefficient:.4g}, outside 0.1 to 4"
-        gear.part.say("root_diameter", "refused", words)
+        text = f"h_fP would be {root.dedendum_coefficient:.4g}, outside 0.1 to 4"
+        gear.part.say("root_diameter", "refused", text)
     depth_of_tool = _addendum_of_tool(gear, tool, "dedendum_coefficient: the tool's addendum")
     if depth_of_tool is not None:
         return _GeneratedRoot(depth_of_tool)
@@ -134,28 +134,28 @@ def _root_at(
     return _GeneratedRoot(nominal - infeed)
 
 
-def _words_of_root(root: _GeneratedRoot, allowance: float) -> str:
+def _text_of_root(root: _GeneratedRoot, allowance: float) -> str:
     """Return how h_fP follows from the root diameter."""
-    words = f"dedendum_coefficient {root.dedendum_coefficient:.6g} = (d - d_f) / (2 m_n) + "
+    text = f"dedendum_coefficient {root.dedendum_coefficient:.6g} = (d - d_f) / (2 m_n) + "
     if root.tooth_thinning == FLANK:
-        return f"{words}x: the tool reaches it before the flanks are ground, tooth_thinning {FLANK}"
+        return f"{text}x: the tool reaches it before the flanks are ground, tooth_thinning {FLANK}"
     if allowance:
-        return f"{words}x - A_s / (2 m_n tan alpha_n), of a ring gear (d_f - d)"
-    return f"{words}x, of a ring gear (d_f - d)"
+        return f"{text}x - A_s / (2 m_n tan alpha_n), of a ring gear (d_f - d)"
+    return f"{text}x, of a ring gear (d_f - d)"
 
 
-def _addendum_of_tool(gear: ToothingData, tool: Part | None, words: str) -> float | None:
+def _addendum_of_tool(gear: ToothingData, tool: Part | None, meaning: str) -> float | None:
     """Return the tool's addendum in normal modules, None where the file has none."""
     items = ("addendum_coefficient_reference_profile", "addendum_reference_profile")
-    return None if tool is None else _in_modules(gear, tool, items, (words, f"{words} / m_n"))
+    return None if tool is None else _in_modules(gear, tool, items, (meaning, f"{meaning} / m_n"))
 
 
 def _in_modules(
-    gear: ToothingData, tool: Part, items: tuple[str, str], words: tuple[str, str]
+    gear: ToothingData, tool: Part, items: tuple[str, str], meanings: tuple[str, str]
 ) -> float | None:
     """Return a size of a tool in normal modules: by its factor, else by its length."""
-    factor = tool.number(items[0], words[0])
-    length = tool.number(items[1], words[1]) if factor is None else None
+    factor = tool.number(items[0], meanings[0])
+    length = tool.number(items[1], meanings[1]) if factor is None else None
     return factor if length is None else length / gear.normal_module
 
 

@@ -30,7 +30,7 @@ def thickness_allowance(gear: ToothingData) -> float:
         for item in (_UPPER, _LOWER):
             part.say(item, "refused", "the mean deviation thickens the teeth: no allowance")
         return 0.0
-    words = f"thickness_allowance_um {allowance / UM:.6g} = -(A_u + A_l) / (2 cos alpha_n)"
+    text = f"thickness_allowance_um {allowance / UM:.6g} = -(A_u + A_l) / (2 cos alpha_n)"
     for item in (_UPPER, _LOWER):
-        part.say(item, "derived", words)
+        part.say(item, "derived", text)
     return allowance

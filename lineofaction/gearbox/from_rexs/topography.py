@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.from_rexs.flank_modification import FlankPlace, Modification
+from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 
 _AMOUNTS = "topographical_modification_amounts"
@@ -13,7 +13,7 @@ _AMOUNTS = "topographical_modification_amounts"
 _DIAMETERS, _LENGTHS = "diameters_of_topographical_modification", "length_of_topographical_modification"
 
 
-def topographical_modification(place: FlankPlace, part: Part) -> Modification:
+def topographical_modification(flank: PlainFlank, part: Part) -> Modification:
     """Return a topographical modification: an amount for each pair of a coordinate and a diameter.
 
     The three lists have an entry for each node. Between the nodes the amounts are linear, beyond them those
@@ -23,7 +23,7 @@ def topographical_modification(place: FlankPlace, part: Part) -> Modification:
 
     amounts = part.numbers(_AMOUNTS, "flank_grid")
     faces = part.numbers("coordinates_of_topographical_modification", "flank_grid, from the datum face")
-    rolls = _roll_lengths(place, part)
+    rolls = _roll_lengths(flank, part)
     if amounts is None or faces is None or rolls is None or not len(amounts) == len(faces) == len(rolls):
         counts = [None if entry is None else len(entry) for entry in (faces, rolls, amounts)]
         raise part.refusal(_AMOUNTS, counts, "as many coordinates, diameters and amounts")
@@ -41,12 +41,12 @@ def topographical_modification(place: FlankPlace, part: Part) -> Modification:
     return Modification(part, removed, rolls=tuple(axes[0]), faces=tuple(axes[1]))
 
 
-def _roll_lengths(place: FlankPlace, part: Part) -> tuple[float, ...] | None:
+def _roll_lengths(flank: PlainFlank, part: Part) -> tuple[float, ...] | None:
     """Return the roll lengths in m of the nodes, from their diameters or as such."""
     diameters = part.numbers(_DIAMETERS, "flank_grid, as roll lengths")
     if diameters is None:
         return part.numbers(_LENGTHS, "flank_grid")
-    base = place.gear.base_radius
+    base = flank.gear.base_radius
     if min(abs(value) for value in diameters) <= 2.0 * base:
         raise part.refusal(_DIAMETERS, 1e3 * min(diameters), f"above {2e3 * base:.7g} mm")
     return tuple(float(np.sqrt((0.5 * value) ** 2 - base**2)) for value in diameters)

@@ -40,16 +40,16 @@ def unit_json(unit: OpenedUnit) -> Json:
     return {
         "left_out": list(unit.left_out),
         "cases": cases,
-        "scene": None if unit.scene is None else _whole(unit.scene, cases),
+        "scene": None if unit.scene is None else _with_cases(unit.scene, cases),
         "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],
         "lines": [asdict(line) for line in unit.lines],
         "summary": list(unit.summary()),
     }
 
 
-def _whole(scene: SceneInput, cases: list[Json]) -> Json:
+def _with_cases(scene: SceneInput, cases: list[Json]) -> Json:
     by_file = {f"{case['name']}.toml": case["case"] for case in cases}
-    whole: Json = scene.model_dump(mode="json", exclude_unset=True)
-    for mesh in whole["meshes"]:
+    table: Json = scene.model_dump(mode="json", exclude_unset=True)
+    for mesh in table["meshes"]:
         mesh["case"] = by_file[mesh.pop("case_file")]
-    return whole
+    return table

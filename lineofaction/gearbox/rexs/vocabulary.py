@@ -24,7 +24,7 @@ def owners(name: str) -> dict[str, str]:
     return {entry: key for key, entries in table(name).items() for entry in entries}
 
 
-def words(name: Literal["descriptive_components", "bearing_types"]) -> frozenset[str]:
+def terms(name: Literal["descriptive_components", "bearing_types"]) -> frozenset[str]:
     """Return words that say what a component is."""
     return frozenset(table("vocabulary")[name])
 

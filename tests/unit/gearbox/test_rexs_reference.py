@@ -48,7 +48,7 @@ from lineofaction.gearbox.rexs.files import parsed, read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
 from lineofaction.gearbox.rexs.upgrade import upgrade
 from lineofaction.gearbox.rexs.values import KINDS, kind_of
-from lineofaction.gearbox.rexs.vocabulary import units, words
+from lineofaction.gearbox.rexs.vocabulary import terms, units
 from lineofaction.gearbox.schemas.case import PairInput
 from lineofaction.gearbox.to_rexs.bearing import bearing_results
 from lineofaction.gearbox.to_rexs.deflection import deflected
@@ -114,8 +114,8 @@ def test_the_words_are_those_of_the_schemas() -> None:
         for version in SCHEMAS
         for part in parsed_schema(version).iterfind("components/component")
     }
-    assert words("descriptive_components") < types
-    assert words("bearing_types") == set(attributes_of("2.0.0")["bearing_type"][2])
+    assert terms("descriptive_components") < types
+    assert terms("bearing_types") == set(attributes_of("2.0.0")["bearing_type"][2])
 
 
 def test_the_units_are_those_of_the_schemas() -> None:
