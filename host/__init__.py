@@ -3,7 +3,7 @@
 Costs of processes, locks on files, limits, priorities and groups of processes; children that answer one
 request; the directory of caches. What a system does not offer raises `Unavailable`, what is not installed
 `MissingExtra`. The only package that imports `resource` and `fcntl`. It depends on psutil on Windows, on
-nothing elsewhere; `host.loops`, which nothing here loads, is of numba.
+nothing elsewhere; `host.loops` and what it imports, which nothing here loads, is of numba.
 """
 
 from __future__ import annotations

@@ -14,11 +14,9 @@ from host.loops import njit
 # are read once; what is too large for that is a `Routine`.
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "_nrt": False, "forceinline": True}
 
-# Callable from Python. The first call compiles or reads the cache beside the source (in NUMBA_CACHE_DIR
-# where that cannot be written). Tuples of arrays go in `by_address`, arrays are C-contiguous float64 and
-# int64, so each function has one signature and one cache entry serves every process. numba renews an entry
-# when the function's own file changes, not when a function it calls does: after editing a kernel, clear the
-# cache.
+# Callable from Python. The first call compiles, or reads what was compiled of the same sources
+# (`host.loop_cache`). Tuples of arrays go in `by_address`, arrays are C-contiguous float64 and int64, so each
+# function has one signature and one cache entry serves every process.
 compiled = partial(njit, **_OPTIONS)(cache=True)
 
 # Part of the compiled functions that call them, compiled with those; from Python compiled once more.

@@ -1,4 +1,4 @@
-"""Compiled loops: what an upgrade took away is compiled anew, and one process compiles for all."""
+"""Compiled loops: one process compiles for all, and inner loops become part of their callers."""
 
 from __future__ import annotations
 
@@ -9,38 +9,13 @@ import sys
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
-from numba.core.caching import IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numpy.typing import NDArray
 
-from host import loops
-
-
-@pytest.mark.parametrize("renamed", ["module", "name"])
-@pytest.mark.parametrize("place", ["index", "data"])
-def test_an_entry_that_names_what_is_gone_is_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, renamed: str, place: str
-) -> None:
-    assert loops.njit is not None
-    module = ModuleType("loops_of_before")
-    exec("class Called:\n    pass\n", module.__dict__)
-    monkeypatch.setitem(sys.modules, "loops_of_before", module)
-    cache = IndexDataCacheFile(str(tmp_path), "loop", ("stamp", 1))
-    key, data = (module.Called, "code") if place == "index" else ("key", module.Called)
-    cache.save(key, data)
-    assert cache.load(key) == data
-    if renamed == "module":
-        monkeypatch.delitem(sys.modules, "loops_of_before")
-    else:
-        del module.Called
-    assert cache.load("key") is None
-    cache.save("key", "code of now")
-    assert cache.load("key") == "code of now"
-
+from host import loops, shared_loops
 
 LOOP = """
 import sys
@@ -129,6 +104,27 @@ def test_what_a_loop_takes_of_numba_becomes_part_of_it(monkeypatch: pytest.Monke
 
 
 def test_the_collector_goes_on_after_compiling() -> None:
-    with loops._nothing_collected(), loops._nothing_collected():
+    with shared_loops._nothing_collected(), shared_loops._nothing_collected():
         assert not gc.isenabled()
     assert gc.isenabled()
+
+
+def test_numba_as_it_is_gives_the_same() -> None:
+    code = """
+import numba
+from host import loops
+
+@loops.inner(error_model="numpy")
+def reciprocal(x):
+    return 1.0 / x
+
+@loops.njit(cache=True, error_model="numpy")
+def outer(x):
+    return reciprocal(x) + 1.0
+
+print(loops.PLAIN, outer(0.0), outer(4.0), type(outer).__module__, numba.config.CPU_NAME)
+"""
+    environment = {**os.environ, "LOA_PLAIN_LOOPS": "1", "PYTHONPATH": str(Path(loops.__file__).parents[1])}
+    command = [sys.executable, "-c", code]
+    answer = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+    assert answer == "True inf 1.25 numba.core.registry None\n"

@@ -1,0 +1,179 @@
+"""Keys of source files: hashes of a file and of all files of the project that it imports, directly or not.
+
+Compiled code holds what its loop calls, so it is current while none of these files has changed. To read the
+450 files of both libraries takes 0.1 s. Their keys are kept in a file beside the compiled code, with the
+state of each source file (time of change, size and inode): while all states are as they were, the keys are.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+from host.directories import whole_file
+
+PROJECT = Path(__file__).resolve().parents[1]
+"""The folder of the packages, in a clone as installed."""
+PACKAGES = frozenset({"host", "bounds", "model_studies", "fe_contact", "dynamics", "lineofaction", "service"})
+
+_IMPORT = re.compile(
+    r"""^[ \t]*(?:
+        from[ \t]+(?P<module>[\w.]+)[ \t]+import[ \t]*
+            (?P<names>\((?:[^)\#]|\#[^\n]*)*\)|(?:\\\n|[^\n\#])*)
+        |import[ \t]+(?P<modules>(?:\\\n|[^\n\#])+)
+    )""",
+    re.MULTILINE | re.VERBOSE,
+)
+"""Statements of import on lines of their own, and lines of texts that look like one, which adds a file."""
+
+State = tuple[int, int, int, int]
+
+
+class Sources:
+    """Files below a folder as they were when they were first looked at, and those of this project.
+
+    Among foreign packages of an installation, `packages` names those that count.
+    """
+
+    def __init__(self, root: Path = PROJECT, packages: frozenset[str] | None = None) -> None:
+        self._root = root
+        self._packages = packages
+        self._roots: dict[str, Path | None] = {}
+        self._states: dict[str, State | None] = {}
+        self._hashes: dict[str, str] = {}
+        self._imports: dict[str, frozenset[str]] = {}
+        self._keys: dict[str, str] = {}
+        self._files: dict[str, tuple[str, ...]] = {}
+
+    def key(self, file: Path, manifest: Path | None = None) -> str:
+        """Return the key of a file; keys of its package are read from `manifest`, or written there."""
+        name = file.relative_to(self._root).as_posix()
+        if name not in self._keys and not (manifest and self._read(manifest) and name in self._keys):
+            if manifest:
+                package = self._root / Path(name).parts[0]
+                self._hash_all(path.relative_to(self._root).as_posix() for path in package.rglob("*.py"))
+                self._write(manifest)
+            self._hash_all([name])
+        return self._keys[name]
+
+    def unchanged(self) -> bool:
+        """Whether all files that were looked at are as they were then."""
+        files = (entry for entry in self._states.items() if entry[0].endswith(".py"))
+        return all(_state(path) == state for path, state in files)
+
+    def files(self, name: str) -> frozenset[str]:
+        """Return a file and all that it imports, directly or not, as paths below their folder."""
+        files, waiting = {name}, [name]
+        while waiting:
+            imports = self._imported(waiting.pop()) - files
+            files |= imports
+            waiting.extend(imports)
+        return frozenset(files)
+
+    def _hash_all(self, names: Iterator[str] | list[str]) -> None:
+        for name in names:
+            if name not in self._keys:
+                parts = (f"{part}\0{self._hashes[part]}" for part in sorted(self.files(name)))
+                self._keys[name] = hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+    def _imported(self, name: str) -> frozenset[str]:
+        if name not in self._imports:
+            path = f"{self._root_of(name.partition('/')[0].removesuffix('.py'))}/{name}"
+            for watched in (path, path.rpartition("/")[0]):
+                self._states.setdefault(watched, _state(watched))
+            content = Path(path).read_bytes()
+            self._hashes[name] = hashlib.sha256(content).hexdigest()
+            modules = _imported_names(content.decode("utf-8", "replace"), name)
+            self._imports[name] = frozenset(file for module in modules for file in self._files_of(module))
+        return self._imports[name]
+
+    def _files_of(self, module: str) -> tuple[str, ...]:
+        """Return the files of a module, or of that which holds an imported name; none of foreign ones."""
+        if module not in self._files:
+            root, path = self._root_of(module.partition(".")[0]), module.replace(".", "/")
+            candidates = (f"{path}.py", f"{path}/__init__.py") if root else ()
+            files = tuple(file for file in candidates if root and (root / file).is_file())
+            holder = module.rpartition(".")[0]
+            self._files[module] = files or (self._files_of(holder) if holder else ())
+        return self._files[module]
+
+    def _root_of(self, package: str) -> Path | None:
+        """Return the folder of a package or of a module, None of foreign ones."""
+        if package not in self._roots:
+            below = (self._root / package).is_dir() or (self._root / f"{package}.py").is_file()
+            counts = below and (self._packages is None or package in self._packages)
+            self._roots[package] = self._root if counts else PROJECT if package in PACKAGES else None
+        return self._roots[package]
+
+    def _read(self, manifest: Path) -> bool:
+        """Take the keys of a manifest if all of its files are as they were."""
+        try:
+            content = json.loads(manifest.read_bytes())
+            states: dict[str, State | None] = {path: tuple(s) for path, s in content["states"].items()}
+            keys = dict(content["keys"])
+        except (OSError, ValueError, TypeError, KeyError, AttributeError):
+            return False
+        if any(_state(path) != state for path, state in states.items()):
+            return False
+        self._states = states | self._states
+        self._keys = keys | self._keys
+        return True
+
+    def _write(self, manifest: Path) -> None:
+        content = {"states": self._states, "keys": self._keys}
+        with suppress(OSError):
+            manifest.parent.mkdir(parents=True, exist_ok=True)
+            with whole_file(manifest) as draft:
+                draft.write_text(json.dumps(content), encoding="utf-8")
+
+
+def _imported_names(code: str, file: str) -> Iterator[str]:
+    """Yield the modules and names that a file imports, on demand too, with their packages."""
+    for statement in _IMPORT.finditer(code):
+        if modules := statement["modules"]:
+            yield from (part.split()[0] for part in modules.replace("\\\n", " ").split(",") if part.split())
+            continue
+        module = _absolute(statement["module"], file)
+        lines = (line.partition("#")[0] for line in statement["names"].split("\n"))
+        names = " ".join(lines).strip(" ()\\").replace("\\", " ").split(",")
+        yield module
+        yield from (f"{module}.{name.split()[0]}" for name in names if name.split())
+
+
+def _absolute(module: str, file: str) -> str:
+    """Return the full name of a module that a file may name from its own package, by leading dots."""
+    name = module.lstrip(".")
+    dots = len(module) - len(name)
+    if not dots:
+        return name
+    package = file.split("/")[:-dots]
+    return ".".join([*package, name] if name else package)
+
+
+def _state(path: str) -> State | None:
+    """Return what changes with a file, or with the list of files of a folder; None if there is none."""
+    try:
+        status = os.stat(path)  # noqa: PTH116 - called for each file of the project
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_ctime_ns, status.st_size, status.st_ino
+
+
+@cache
+def sources(root: Path, package: str) -> Sources:
+    """Return the files of a folder, and of a package in it, as this process found them."""
+    if root.name not in {"site-packages", "dist-packages"}:
+        return _of_folder(root)
+    return _of_installation(
+        root, PACKAGES if root == PROJECT and package in PACKAGES else frozenset({package})
+    )
+
+
+_of_folder = cache(Sources)
+_of_installation = cache(Sources)
