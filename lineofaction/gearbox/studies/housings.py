@@ -17,7 +17,7 @@ from dynamics.influence import decide_effects, response_influences, sized_ledger
 from dynamics.influence.neglected_check import response_cost
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
-from dynamics.noise import HousingRadiation, kept_radiation
+from dynamics.noise import HousingRadiation, cached_radiation
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.results import RunResult
 from dynamics.scene import Scene
@@ -50,7 +50,7 @@ def radiation_of(
     body: ReducedHousing, model: PanelModel, frequency: FloatArray, means: Means
 ) -> HousingRadiation:
     """Return the radiation of a housing by a model at frequencies, Hz, kept by its content."""
-    return kept_radiation(
+    return cached_radiation(
         body,
         model,
         frequency.ravel(),

@@ -186,8 +186,8 @@ def _scene_table(ablation: SceneAblation) -> Table:
         (
             entry.name,
             "on" if entry.on else "off",
-            entry.level.words,
-            entry.level_change.words,
+            entry.level.text,
+            entry.level_change.text,
             _signed(1e6 * _maximum(entry.mean_change)),
             estimated(entry, "mean"),
             _signed(1e6 * _maximum(entry.peak_to_peak_change)),
