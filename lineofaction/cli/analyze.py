@@ -32,7 +32,7 @@ from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
     assumption_lines,
     by_size,
-    influence_place,
+    influence_point,
     ledger_table,
     trifles_title,
 )
@@ -121,7 +121,7 @@ def _over_face(load: dict[str, Any]) -> str:
 def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
     """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
     columns, rows = ledger_table(ledger)
-    title = f"Effects: estimated change without each, {influence_place(ledger)}".removesuffix(", ")
+    title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
     out.print(table(columns, rows, title, words=(columns[0], columns[-1])))
     if trifles := by_size(ledger)[1]:

@@ -25,7 +25,7 @@ from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.housing_solid import PERPENDICULAR
-from lineofaction.gearbox.schemas.named_files import beside, read_text
+from lineofaction.gearbox.schemas.named_files import in_folder, read_text
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -125,7 +125,7 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     unused = (own for own in ("housing", *(f"housing {k}" for k in range(2, 102))) if own not in taken)
     housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
-    find = beside(output.parent)
+    find = in_folder(output.parent)
     content = written_out(table, lambda own, field: step if own == step.name else find(own, field), READERS)
     validated(SceneInput, content)
     text = _text(file, output, table, housing)

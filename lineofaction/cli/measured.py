@@ -78,7 +78,12 @@ def _show(found: MeasuredGear) -> None:
 
 
 def _figures(split: Split) -> tuple[str, ...]:
-    values = split.slope / UM, split.form / UM, (split.place[-1] - split.place[0]) / MM, split.cutoff / MM
+    values = (
+        split.slope / UM,
+        split.form / UM,
+        (split.coordinate[-1] - split.coordinate[0]) / MM,
+        split.cutoff / MM,
+    )
     return tuple(engineering(float(value), 3) for value in values)
 
 
@@ -89,7 +94,7 @@ def _as_json(found: MeasuredGear, written: list[Path]) -> Json:
             "trace": trace,
             "slope_um": split.slope / UM,
             "form_um": split.form / UM,
-            "length_mm": float(split.place[-1] - split.place[0]) / MM,
+            "length_mm": float(split.coordinate[-1] - split.coordinate[0]) / MM,
             "cutoff_mm": split.cutoff / MM,
         }
         for (tooth, trace), split in sorted(found.splits.items())

@@ -14,7 +14,7 @@ from bounds import engineering
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.answers import curve_json, teeth_words
+from lineofaction.gearbox.convert.answers import curve_json, teeth_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
 from lineofaction.gearbox.schemas import Case, read_model
@@ -166,9 +166,9 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
     for gear, own in curve.get("tooth_loads", {}).items():
         if worst := own["most_loaded"]:
             times = f"{own['over_mean']:.3f} times the mean tooth"
-            yield f"  {gear}: most on {teeth_words(worst)}, {own['force_n']:.0f} N, {times}"
+            yield f"  {gear}: most on {teeth_text(worst)}, {own['force_n']:.0f} N, {times}"
         if worst := own["most_pressed"]:
-            yield f"  {gear}: largest pressure on {teeth_words(worst)}, {own['pressure_mpa']:.0f} MPa"
+            yield f"  {gear}: largest pressure on {teeth_text(worst)}, {own['pressure_mpa']:.0f} MPa"
     yield ""
     yield f"next: loa {following}     all positions: --table, --csv"
 

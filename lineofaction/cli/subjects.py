@@ -29,7 +29,7 @@ from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
 from lineofaction.gearbox.studies.run_cost import run_cost
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.subjects import scene_of, with_own_cases
+from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from model_studies.progress import ANNOUNCED
 
 _READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
@@ -93,7 +93,7 @@ def study_cost(
     study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any
 ) -> StudyCost | None:
     """Return the predicted cost of a study, without the tables of a scene; None: not predicted."""
-    written = with_own_cases(subject, folder) if isinstance(subject, SceneInput) else subject
+    written = with_inline_cases(subject, folder) if isinstance(subject, SceneInput) else subject
     return study.run.predicted(written, inputs, cache_home() / "compliance")
 
 
@@ -106,7 +106,7 @@ def table_cost(case: Case) -> StudyCost:
 
 def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
     """Return the predicted cost of the tables of a scene that are not kept."""
-    written = (mesh.case for mesh in with_own_cases(scene, folder).meshes if isinstance(mesh.case, Case))
+    written = (mesh.case for mesh in with_inline_cases(scene, folder).meshes if isinstance(mesh.case, Case))
     cases = {case.model_dump_json(): case for case in written}
     return sum(
         (table_cost(case) for case in cases.values() if not KeptTables.file(case).is_file()), StudyCost(())
@@ -115,7 +115,7 @@ def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
 
 def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
     """Return the predicted cost of a run, without the tables of its scene; None: not predicted."""
-    return run_cost(with_own_cases(scene, folder))
+    return run_cost(with_inline_cases(scene, folder))
 
 
 def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:

@@ -44,7 +44,7 @@ def titled(page: Page, about: ReportInput | None) -> Page:
     requirements = [one for words in about.requirements if (one := Requirement.of(words)) is not None]
     verdicts = tuple(words for one in requirements for words in _verdicts(one, page.headlines))
     unmet = tuple(
-        f"Required, but no main result of this report: {one.words}"
+        f"Required, but no main result of this report: {one.text}"
         for one in requirements
         if not _meant(one, page.headlines)
     )

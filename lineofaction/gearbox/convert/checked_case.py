@@ -112,7 +112,7 @@ class CheckedCases:
     """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
 
     def __init__(self, maximum: int = 256) -> None:
-        self._maximum, self._kept = maximum, OrderedDict[str, CheckedCase]()
+        self._maximum, self._cases = maximum, OrderedDict[str, CheckedCase]()
 
     def of(self, case: Case) -> CheckedCase:
         """Return a validated case."""
@@ -124,11 +124,11 @@ class CheckedCases:
 
     def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
         name = json.dumps(inputs, sort_keys=True)
-        checked = self._kept.get(name)
+        checked = self._cases.get(name)
         if checked is None:
-            checked = self._kept[name] = CheckedCase(case())
-            while len(self._kept) > self._maximum:
-                self._kept.popitem(last=False)
+            checked = self._cases[name] = CheckedCase(case())
+            while len(self._cases) > self._maximum:
+                self._cases.popitem(last=False)
         return checked
 
 

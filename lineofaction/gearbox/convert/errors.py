@@ -16,7 +16,12 @@ from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from host import Unavailable, missing_extra
-from lineofaction.gearbox.convert.boundary_names import _IN_WORDS, boundary_name, case_field, scene_field
+from lineofaction.gearbox.convert.boundary_names import (
+    _SUFFIXES_IN_TEXT,
+    boundary_name,
+    case_field,
+    scene_field,
+)
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.faults import field_remedy
@@ -50,7 +55,8 @@ class _CaseReader(Reader):
         if unit == "m":
             return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
         return next(
-            (BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == unit), Unit(unit, 1.0, unit)
+            (BY_SUFFIX[name] for name in _SUFFIXES_IN_TEXT if BY_SUFFIX[name].si == unit),
+            Unit(unit, 1.0, unit),
         )
 
     def shown(self, value: Any) -> Any:

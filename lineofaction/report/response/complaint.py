@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.mechanism.passing import MESH, SAME, Passing
-from lineofaction.gearbox.convert.complaint import Complaint, beside, grouped, sentence, words
+from lineofaction.gearbox.convert.complaint import Complaint, grouped, harmonic_label, offset_text, sentence
 from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
@@ -71,7 +71,7 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
     ends = np.array(AROUND)
     rpm = ends * speed / RPM
     lines = tuple(
-        Line(words(alike), rpm, alike[0].order * rpm / 60.0, color, dash, width)
+        Line(harmonic_label(alike), rpm, alike[0].order * rpm / 60.0, color, dash, width)
         for alike, color, dash, width in _looks(complaint)
     )
     low, high = ends * frequency
@@ -82,7 +82,15 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
 def _by_order(complaint: Complaint) -> Panel:
     """Draw what passes as points at its order and its distance."""
     lines = tuple(
-        Line(words(alike), np.array([each.order]), np.array([100.0 * each.distance]), color, dash, 0.0, True)
+        Line(
+            harmonic_label(alike),
+            np.array([each.order]),
+            np.array([100.0 * each.distance]),
+            color,
+            dash,
+            0.0,
+            True,
+        )
         for alike, color, dash, _ in _looks(complaint)
         for each in alike[:1]
     )
@@ -101,7 +109,7 @@ def _passing_table(answer: AnsweredComplaint) -> Table:
     complaint = answer.complaint
     forces = dict(zip(complaint.within, answer.forces, strict=True))
     columns = {
-        "what": words,
+        "what": harmonic_label,
         "order": lambda alike: number(alike[0].order, 5),
         "frequency, Hz": lambda alike: number(complaint.hertz(alike[0].order) or np.nan, 5),
         "off, %": lambda alike: f"{100.0 * alike[0].distance:+.2f}",
@@ -134,13 +142,15 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     first, *others = grouped(complaint.within)
     several = any(alike[0].excitation.kind == MESH for alike in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
-    shown = [Headline("complaint", words(first), beside(complaint, first[0]) + ranked)]
+    shown = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
     if others:
-        names = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in others)
+        names = "; ".join(f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in others)
         shown.append(Headline("passes there too", names, _apart(first[0], [alike[0] for alike in others])))
     nearest = grouped(each for each in complaint.passing if each.excitation.kind == MESH)
     if first[0].excitation.kind != MESH and nearest:
-        shown.append(Headline("nearest mesh order", words(nearest[0]), beside(complaint, nearest[0][0])))
+        shown.append(
+            Headline("nearest mesh order", harmonic_label(nearest[0]), offset_text(complaint, nearest[0][0]))
+        )
     if answer.modes:
         mode = answer.modes[0]
         remark = f"{mode.kind}, {20.0 * np.log10(mode.amplification):+.1f} dB"

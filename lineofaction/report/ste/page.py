@@ -12,7 +12,7 @@ from bounds import leftover
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.answers import inserted_json, source_rows
-from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
+from lineofaction.gearbox.convert.effects import by_size, influence_point, influence_text, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
 from lineofaction.report.drawing.page import Headline, Part, Section
@@ -172,7 +172,7 @@ def contact_effects(ledger: Any) -> Section:
     """Tabulate which effects were simulated, why, and their influence; trifles and decisions are folded."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
     shown, trifles = by_size(entries)
-    where = influence_place(entries)
+    where = influence_point(entries)
     text = f"Effects in the contact: estimated change without each, {where}." if where else ""
     folded: tuple[Table, ...] = (
         (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
@@ -183,7 +183,7 @@ def contact_effects(ledger: Any) -> Section:
 
 
 def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
-    return entry["name"], "contact", entry["on"], influence_words(entry), entry["reason"]
+    return entry["name"], "contact", entry["on"], influence_text(entry), entry["reason"]
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:

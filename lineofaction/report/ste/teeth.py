@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase, ToothLoads
 from fe_contact.types import BoolArray
-from lineofaction.gearbox.convert.answers import GEARS, teeth_words
+from lineofaction.gearbox.convert.answers import GEARS, teeth_text
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -52,10 +52,10 @@ def tooth_headlines(database: SteDatabase, load: int) -> tuple[Headline, ...]:
     for own in teeth_at(database, load):
         at = f"tooth of the {GEARS[own.gear]} at {label}"
         if own.most_loaded:
-            headlines.append(Headline(f"most loaded {at}", teeth_words(own.most_loaded), _size(own)))
+            headlines.append(Headline(f"most loaded {at}", teeth_text(own.most_loaded), _size(own)))
         if own.most_pressed:
             remark = f"{_megapascal(own.pressure.max())}; {UNBOUNDED}"
-            headlines.append(Headline(f"most pressed {at}", teeth_words(own.most_pressed), remark))
+            headlines.append(Headline(f"most pressed {at}", teeth_text(own.most_pressed), remark))
     return tuple(headlines)
 
 
@@ -92,7 +92,7 @@ def _loads(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> F
 def _finding(own: ToothLoads) -> str:
     minimum = int(np.argmin(own.force))
     return (
-        f"The largest force on the {GEARS[own.gear]} is on {teeth_words(own.most_loaded)}, {_size(own)}; "
+        f"The largest force on the {GEARS[own.gear]} is on {teeth_text(own.most_loaded)}, {_size(own)}; "
         f"on tooth {minimum + 1} it is least, {number(own.force[minimum], 4)} N."
     )
 
@@ -169,7 +169,7 @@ def _pressures(database: SteDatabase, load: int, own: ToothLoads) -> Figure:
         caption="Map: the largest Hertz pressure anywhere on a tooth, away from edges, as its pair passes "
         "through mesh, the largest of all its mates; blank: nothing touches. Curves: the most pressed tooth "
         f"beside the mean of all teeth.{derived}",
-        alternative=f"The largest pressure on the {name} is on {teeth_words(own.most_pressed)}, "
+        alternative=f"The largest pressure on the {name} is on {teeth_text(own.most_pressed)}, "
         f"{_megapascal(peak)}; on tooth {least + 1} it is least, {_megapascal(own.pressure[least])}.",
         content=(_map(own), _way(own)),
         table=_pressure_table(own),

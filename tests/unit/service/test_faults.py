@@ -227,7 +227,7 @@ def test_a_line_that_is_no_toml_is_shown_with_what_is_expected(tmp_path: Path) -
 def test_a_value_that_was_set_is_in_no_line() -> None:
     with pytest.raises(BadInput) as error:
         read_model(Case, InputFile(SPUR, (Override("pair.pinion.teeth", 2.5),)))
-    assert [fault.place for fault in error.value.faults] == [""]
+    assert [fault.location for fault in error.value.faults] == [""]
 
 
 def test_json_over_http_stays_as_it_was(tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.housings import no_surface, other_housings, require_surface
-from lineofaction.gearbox.studies.listen import ONE_PLACE, REMEDY, Inputs, ListenFigures
+from lineofaction.gearbox.studies.listen import ONE_RECEIVER, REMEDY, Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
 
 PRINCIPAL = "principal"
@@ -112,7 +112,7 @@ class Receiver:
         if self.point or self.microphone_mm:
             return self
         if scene.complaint is None or scene.complaint.microphone_mm is None:
-            bound = f"{ONE_PLACE}; the scene has no complaint with a microphone"
+            bound = f"{ONE_RECEIVER}; the scene has no complaint with a microphone"
             raise BadInput.of("microphone_mm", None, bound, REMEDY)
         return replace(self, microphone_mm=tuple(scene.complaint.microphone_mm))
 

@@ -83,9 +83,9 @@ SWEEPABLE = {
     swept.name: swept
     for swept in (
         *CONDITIONS,
-        *(_Swept(f.name, f"pair.*.{f.field}", f"{f.words} of both gears", f) for f in _FIGURES),
+        *(_Swept(f.name, f"pair.*.{f.field}", f"{f.label} of both gears", f) for f in _FIGURES),
         *(
-            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.words} of the {gear}", f)
+            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.label} of the {gear}", f)
             for gear in GEARS
             for f in _FIGURES
         ),
@@ -126,7 +126,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
     if swept.what is not None:  # about the case's own values, or about a usual one where it has none
         variables = SweepAxis(swept.name, ()).variables
         own = max(abs(figure(pair, name)) for name in variables) or float(swept.what.what.example)
-        size, kind = swept.what.own(own), swept.what.what.kind
+        size, kind = swept.what.boundary_value(own), swept.what.what.kind
         if kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
         return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
