@@ -28,7 +28,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
 from dynamics.work_cost import Cost, measured
 from host import MissingExtra
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 
 LINES, BUDGET = 4, 60.0
 """Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
@@ -175,7 +175,7 @@ def _exact_line(
         )
 
     file = None if cache is None else cache / f"line-{content_key(housing, model, hertz, COARSE, AIR)}.nc"
-    return kept_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
+    return cached_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
 
 
 class _Knot(NamedTuple):

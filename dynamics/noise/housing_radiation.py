@@ -24,7 +24,7 @@ from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 from model_studies.progress import Progress, silent, unreported
 from model_studies.workers import InProcess, Workers, divided
 
@@ -378,7 +378,7 @@ def cached_radiation(
         return made.facts.cost.seconds > MIN_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
-    return kept_in(file, read, computed, write, ResultError, costly)
+    return cached_in(file, read, computed, write, ResultError, costly)
 
 
 def content_key(housing: ReducedHousing, *settings: object) -> str:

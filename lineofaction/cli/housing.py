@@ -15,7 +15,7 @@ from bounds import engineering
 from dynamics.errors import InputError, SolveError
 from dynamics.housings import step_solid
 from dynamics.solid_housing import MATERIALS
-from host.directories import whole_file
+from host.directories import atomic_file
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.placement import Placement
@@ -130,9 +130,9 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     validated(SceneInput, content)
     text = _text(file, output, table, housing)
     if not beside_it:  # first: a scene names no file that is missing
-        with whole_file(target) as draft:
+        with atomic_file(target) as draft:
             shutil.copyfile(step, draft)
-    with whole_file(output) as draft:
+    with atomic_file(output) as draft:
         draft.write_text(text, encoding="utf-8")
     return [output] if beside_it else [output, target]
 

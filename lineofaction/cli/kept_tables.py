@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 from model_studies.workers import InProcess, Workers
 from service.version import program_tag
 
@@ -51,7 +51,7 @@ class KeptTables:
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
-        return kept_in(
+        return cached_in(
             self.file(case),
             SteDatabase.from_netcdf,
             lambda: self.compute(case),

@@ -40,7 +40,7 @@ def _show_plan(plan: RunPlan) -> None:
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
     if bias := plan.chosen.error.bias:
-        out.print(bias.words, soft_wrap=True)
+        out.print(bias.text, soft_wrap=True)
     out.print()
     head = ["mesh", "CPU s", "GiB", "numerical", "plane", "method", "mean µm", "p-p µm"]
     rows = [

@@ -112,7 +112,7 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
         database = analyze(request, run=run, case=case_json(checked.case), on_draft=on_draft)
     made = database.metadata
     if (allowed := allowed_misalignment(checked.case)) is not None:
-        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})
+        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.text})
     warnings = phrased_for(checked.case, made.warnings)
     return replace(database, metadata=replace(made, warnings=warnings))
 

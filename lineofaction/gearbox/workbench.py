@@ -13,7 +13,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate as run_scene
 from fe_contact import analyze as analyze_pair
-from fe_contact.analysis.database.kept_tolerance import OnDraft
+from fe_contact.analysis.database.refined_table import OnDraft
 from fe_contact.geometry import ParallelAxes
 from fe_contact.keywords import TableKeywords
 from fe_contact.options import AnalysisOptions, Run, TableAxes

@@ -15,7 +15,7 @@ from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
-from host.directories import whole_file
+from host.directories import atomic_file
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
@@ -383,13 +383,13 @@ def write_whole(
     stills = {key: still(image) for key, image in drawn.items()}
     text = html(page, stills, still=printed or still_only)
     content = _printed(page, text, output) if printed else text.encode("utf-8")
-    with whole_file(output) as draft:
+    with atomic_file(output) as draft:
         draft.write_bytes(content)
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
         for figure in figures:
-            with whole_file(images / f"{figure.key}.png") as draft:
+            with atomic_file(images / f"{figure.key}.png") as draft:
                 draft.write_bytes(drawn[figure.key] if _in_one_column(figure) else png(figure))
             written.append(images / f"{figure.key}.png")
     return written

@@ -100,7 +100,7 @@ def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> d
     }
     rows = zip(*figures.values(), strict=True)
     steps = _within(pitches.single, gear.teeth, draw)
-    walk = pitches.kept(eccentricity, np.cumsum(steps - steps.mean()))
+    walk = pitches.bounded(eccentricity, np.cumsum(steps - steps.mean()))
     return {
         "run_out": {
             "eccentricity_um": round(eccentricity / UM, 3),

@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
-BESIDE_MESH = 6
+OFF_MESH = 6
 """Orders beside the mesh orders that are listed of a mesh."""
 
 
@@ -82,7 +82,7 @@ def _of_mesh(
         "load_moment": (response.load_moment, force * errors.load_arm),
         "friction_force": (response.friction_force, slides * errors.friction),
     }
-    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.beside_mesh}
+    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.off_mesh}
 
     def row(at: int, harmonic: int | None) -> Json:
         excites: Json = {"mesh": response.mesh[mesh], "torque": torque, "harmonic": harmonic}
@@ -99,8 +99,8 @@ def _of_mesh(
         for at in np.flatnonzero(whole & (np.rint(multiple) == harmonic))[:1].tolist():
             yield row(at, harmonic)
     size = np.where(whole, 0.0, np.abs(response.static_transmission_error[mesh]))
-    for at in np.argsort(-size, kind="stable")[:BESIDE_MESH].tolist():
-        if size[at] > np.nan_to_num(errors.beside_mesh):
+    for at in np.argsort(-size, kind="stable")[:OFF_MESH].tolist():
+        if size[at] > np.nan_to_num(errors.off_mesh):
             yield row(at, None)
 
 

@@ -18,7 +18,7 @@ from bounds import (
     Quantity,
     SiNote,
     Text,
-    Words,
+    Wording,
     above,
     at_least,
     at_most,
@@ -125,7 +125,7 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
         ("a finite number", "a finite number"),
     ],
 )
-def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Words, shown: str) -> None:
+def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Wording, shown: str) -> None:
     found = translated(InputError("center_distance", 0.08, bound))
     assert isinstance(found, BadInput)
     assert found.faults[0].bound == shown
