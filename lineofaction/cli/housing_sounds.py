@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.listen.run import (
     HeardRun,
     Receiver,
     SceneHousings,
-    heard_run,
+    received_run,
 )
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.run.view import RunView
@@ -85,7 +85,7 @@ def housing_sounds(
 
 def _heard(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
     try:
-        return heard_run(name, run, housings, receiver)
+        return received_run(name, run, housings, receiver)
     except BadInput as error:
         raise error.within(name) from None
 

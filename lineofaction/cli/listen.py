@@ -13,7 +13,7 @@ from lineofaction.cli.run_sounds import RunSound, bearing_sounds
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import SOUND, run_in
 from lineofaction.gearbox.studies.listen.run import (
-    recording_facts,
+    recording_metadata,
 )
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document import read_run
@@ -49,7 +49,7 @@ def run_listen(
         path.write_bytes(wav_file(sound.recording, scale))
     if as_json:
         listed = [
-            {"file": str(path), **recording_facts(sound.recording), **sound.facts}
+            {"file": str(path), **recording_metadata(sound.recording), **sound.facts}
             for path, sound in zip(paths, sounds, strict=True)
         ]
         print_json({"full_scale": scale, "remark": remark, "files": listed})

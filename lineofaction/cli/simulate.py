@@ -32,7 +32,7 @@ from lineofaction.gearbox.project import RUN
 from lineofaction.gearbox.result_figures import run_json
 from lineofaction.gearbox.result_files import stamp, stamp_scene
 from lineofaction.gearbox.stages import staged
-from lineofaction.gearbox.studies.excitations import facts_of_scene
+from lineofaction.gearbox.studies.excitations import scene_metadata
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import effect_text
@@ -61,7 +61,7 @@ def run_simulate(
         tabled = tabled_scene(scene, folder, service, report, workers)
         _run(tabled.scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
-    stamp_scene(output, facts_of_scene(tabled))
+    stamp_scene(output, scene_metadata(tabled))
     facts = {"file": str(output), **run_json(output)}
     if as_json:
         print_json(facts)

@@ -129,4 +129,4 @@ def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
     """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
     whole = sum(filter(None, costs), StudyCost(()))
     if None not in costs and whole.seconds > ANNOUNCED:
-        sys.stderr.write(in_lines(f"loa {verb}: {whole.words}", sys.stderr) + "\n")
+        sys.stderr.write(in_lines(f"loa {verb}: {whole.text}", sys.stderr) + "\n")

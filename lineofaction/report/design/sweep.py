@@ -31,7 +31,7 @@ BEYOND = "by more than the errors"
 
 def _maps(result: SweepResult) -> Figure:
     """Draw each quantity over both axes as colors; the least is marked."""
-    over = " and ".join(axis.words for axis in result.axes)
+    over = " and ".join(axis.description for axis in result.axes)
     return Figure(
         "sweep_map",
         f"Map over {over}",
@@ -46,10 +46,10 @@ def _curves(result: SweepResult) -> Figure:
     one = len(result.axes) == 1
     quantities = result.quantities if one else result.quantities[:1]
     x = Axis(result.axes[result.across].label)
-    words = QUANTITIES[result.quantities[0].name].words
+    words = QUANTITIES[result.quantities[0].name].description
     return Figure(
         "sweep_curves",
-        f"{words[0].upper()}{words[1:]} over {result.axes[result.across].words}",
+        f"{words[0].upper()}{words[1:]} over {result.axes[result.across].description}",
         "Bands are the errors.",
         "",
         tuple(
@@ -70,7 +70,7 @@ def _map(result: SweepResult, quantity: SweptQuantity) -> Panel:
     dots = x[at[:, 1]], y[at[:, 0]]
     marks = Line(_alike(result), *dots, palette.VERMILLION, width=0.0, markers=True)
     axes = Axis(result.axes[across].label), Axis(result.axes[1 - across].label)
-    return Panel(*axes, (marks,), title=shown.words, shade=shade)
+    return Panel(*axes, (marks,), title=shown.description, shade=shade)
 
 
 def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
@@ -79,7 +79,7 @@ def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
     value, error = (result.grid(values) / shown.one for values in (quantity.value, quantity.error))
     x = result.levels(result.across)
     if len(result.axes) == 1:
-        return (Line(shown.words, x, value, palette.BLUE, markers=True, band=error),)
+        return (Line(shown.description, x, value, palette.BLUE, markers=True, band=error),)
     other = result.axes[1 - result.across]
     levels = result.levels(1 - result.across)
     rows = np.unique(np.linspace(0, levels.size - 1, min(levels.size, MAX_CURVES)).round().astype(int))
@@ -119,7 +119,7 @@ def _table(result: SweepResult, quantity: SweptQuantity) -> Table:
     grid = result.grid(np.array(texts))
     head = (result.axes[1 - across].label, *(f"{level} {x.unit}" for level in levels))
     rows = tuple((f"{level:.6g}", *row) for level, row in zip(result.levels(1 - across), grid, strict=True))
-    return Table(f"{shown.label} over {x.words}", head, rows)
+    return Table(f"{shown.label} over {x.description}", head, rows)
 
 
 def _series(result: SweepResult) -> Table:
@@ -141,10 +141,10 @@ def _headlines(result: SweepResult) -> tuple[Headline, ...]:
     quantity = result.quantities[0]
     shown = QUANTITIES[quantity.name]
     worst = int(np.nanargmax(quantity.value))
-    largest = Headline(f"largest {shown.words}", *_figure(result, quantity, worst))
+    largest = Headline(f"largest {shown.description}", *_figure(result, quantity, worst))
     if len(result.axes) == 2 and TORQUE in result.sweep.axes:
         return (_best_level(result, quantity), largest)
-    best = Headline(f"least {shown.words}", *_figure(result, quantity, quantity.minimum))
+    best = Headline(f"least {shown.description}", *_figure(result, quantity, quantity.minimum))
     like = int(quantity.like_least.sum()) - 1
     others = f"as low within the errors: {like} others" if like else f"below all others {BEYOND}"
     return (replace(best, remark=f"{best.remark}; {others}"), largest)
@@ -153,7 +153,7 @@ def _headlines(result: SweepResult) -> tuple[Headline, ...]:
 def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
     shown = QUANTITIES[quantity.name]
     where = " and ".join(
-        f"{axis.words} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
+        f"{axis.description} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
         for k, axis in enumerate(result.axes)
     )
     error = engineering(float(quantity.error[point]) / shown.one, 2)
@@ -174,12 +174,12 @@ def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
     text = f"{number(value[best], 3)} {shown.unit}".strip()
     band = f"± {engineering(float(error[best]), 2)} {shown.unit}".strip()
-    where = f"at {axis.words} {levels[best]:.6g} {axis.unit}"
-    return Headline(f"least mean {shown.words} over the torques", text, f"{band} {where}; {also}")
+    where = f"at {axis.description} {levels[best]:.6g} {axis.unit}"
+    return Headline(f"least mean {shown.description} over the torques", text, f"{band} {where}; {also}")
 
 
 def _page(result: SweepResult) -> Page:
-    over = " and ".join(axis.words for axis in result.axes)
+    over = " and ".join(axis.description for axis in result.axes)
     failed = len(result.sweep.reason) - result.sweep.usable
     lead = f"{len(result.sweep.reason)} points over {over}"
     alarms = (f"{failed} points have no figures: the contact was not solved.",) if failed else ()

@@ -10,7 +10,7 @@ from bounds import leftover
 from dynamics.linearize import ModalAnalysis
 from dynamics.linearize.modal_analysis import LARGE
 from dynamics.linearize.mode_energy import freedom_parts
-from lineofaction.gearbox.studies.modes.run import moved_surface
+from lineofaction.gearbox.studies.modes.run import surface_shape
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -52,7 +52,7 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
     its_own = [move == "housing" for _, move in freedom_parts(modes.freedom)]
     share = modes.natural_kinetic_energy[:, its_own].sum(axis=1)
     lowest = np.flatnonzero((modes.natural_frequency > 0.0) & (share > LARGE))[:1]
-    shapes = [moved_surface(modes, modes.natural_shape[mode]) for mode in lowest]
+    shapes = [surface_shape(modes, modes.natural_shape[mode]) for mode in lowest]
     return tuple(
         shape_figure(
             "modal_housing",
