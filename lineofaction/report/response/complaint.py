@@ -55,7 +55,7 @@ def _figure(answer: AnsweredComplaint) -> Figure:
 def _listed(complaint: Complaint) -> list[tuple[Passing, ...]]:
     """Return what is shown: what is within the tolerance, then the nearest of the others."""
     within = complaint.within
-    others = grouped(each for each in complaint.passing if each not in within)
+    others = grouped(passing for passing in complaint.passing if passing not in within)
     return [*grouped(within), *others[:OTHERS]]
 
 
@@ -84,24 +84,24 @@ def _by_order(complaint: Complaint) -> Panel:
     lines = tuple(
         Line(
             harmonic_label(alike),
-            np.array([each.order]),
-            np.array([100.0 * each.distance]),
+            np.array([candidate.order]),
+            np.array([100.0 * candidate.distance]),
             color,
             dash,
             0.0,
             True,
         )
         for alike, color, dash, _ in _looks(complaint)
-        for each in alike[:1]
+        for candidate in alike[:1]
     )
     x, y = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
     return Panel(x, y, lines, (Reference("complaint", complaint.order),))
 
 
 def _modes_in(answer: AnsweredComplaint) -> tuple[Reference, ...]:
-    shown = zip(answer.modes, MODES_AT, strict=False)
+    modes = zip(answer.modes, MODES_AT, strict=False)
     return tuple(
-        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", at) for mode, at in shown
+        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", at) for mode, at in modes
     )
 
 
@@ -142,25 +142,27 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     first, *others = grouped(complaint.within)
     several = any(alike[0].excitation.kind == MESH for alike in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
-    shown = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
+    headlines = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
     if others:
         names = "; ".join(f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in others)
-        shown.append(Headline("passes there too", names, _apart(first[0], [alike[0] for alike in others])))
-    nearest = grouped(each for each in complaint.passing if each.excitation.kind == MESH)
+        headlines.append(
+            Headline("passes there too", names, _resolution(first[0], [alike[0] for alike in others]))
+        )
+    nearest = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
     if first[0].excitation.kind != MESH and nearest:
-        shown.append(
+        headlines.append(
             Headline("nearest mesh order", harmonic_label(nearest[0]), offset_text(complaint, nearest[0][0]))
         )
     if answer.modes:
         mode = answer.modes[0]
         remark = f"{mode.kind}, {20.0 * np.log10(mode.amplification):+.1f} dB"
-        shown.append(Headline("mode within reach", f"{number(mode.frequency)} Hz", remark))
-    return tuple(shown)
+        headlines.append(Headline("mode within reach", f"{number(mode.frequency)} Hz", remark))
+    return tuple(headlines)
 
 
-def _apart(first: Passing, others: Sequence[Passing]) -> str:
+def _resolution(first: Passing, others: Sequence[Passing]) -> str:
     """Say how well frequency and speed have to be known to tell what passes apart."""
-    gaps = [gap for each in others if (gap := abs(each.order / first.order - 1.0)) > SAME]
+    gaps = [gap for other in others if (gap := abs(other.order / first.order - 1.0)) > SAME]
     if not gaps:
         return "the same at every speed"
     return f"told apart by a frequency and speed known to {engineering(50.0 * min(gaps), 2)} %"
@@ -187,7 +189,7 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
             f"flanks part: a linear mesh would pull by {share} % of its mean force, so no force here holds; "
             "loa steady and loa simulate have it"
         )
-    if any(each.excitation.kind == MESH for each in complaint.within) and not np.any(
+    if any(candidate.excitation.kind == MESH for candidate in complaint.within) and not np.any(
         np.isfinite([force.force for force in answer.forces])
     ):
         yield "forces are not known: no speed, or nothing excites the linear response"
