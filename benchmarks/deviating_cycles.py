@@ -29,7 +29,7 @@ from fe_contact.geometry.flank_tolerances import (
     profile_slope_tolerance,
     single_pitch_tolerance,
 )
-from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, MEAN, PEAK_TO_PEAK, quantity_changes
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, PEAK_TO_PEAK, quantity_changes
 from fe_contact.types import FloatArray
 from host.directories import cache_home
 
@@ -37,7 +37,7 @@ SUBJECT = "hunting cycles by derivatives against exact ones"
 CLASSES = (4, 5, 6, 7, 8)
 OPTIONS = AnalysisOptions(level="draft")
 HUNTING = "23/67, 22 deg"
-ASSESSED = [MEAN, PEAK_TO_PEAK, BESIDE_MESH, *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
+ASSESSED = [MEAN, PEAK_TO_PEAK, OFF_MESH, *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
 """Mean, peak-to-peak, the order beside the mesh that differs most, five mesh harmonics."""
 T = TypeVar("T")
 

@@ -18,7 +18,7 @@ from fe_contact import SteDatabase, analyze
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.model_error import in_small_displacements
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, PLANE, all_sources
-from fe_contact.ste.curve_quantities import BESIDE_MESH
+from fe_contact.ste.curve_quantities import OFF_MESH
 from fe_contact.types import FloatArray
 from lineofaction.report.drawing import figure as drawn
 from lineofaction.report.drawing import palette
@@ -79,7 +79,7 @@ def stated(table: SteDatabase, pair: ParallelAxes) -> FloatArray:
     curves = [table.curve(force=force) for force in table.force]
     found = [[curve.mean, curve.peak_to_peak, *curve.harmonics] for curve in curves]
     own = np.array([[quantity.value for quantity in row] for row in found]).T
-    own = np.insert(own, BESIDE_MESH, 0.0, axis=0)
+    own = np.insert(own, OFF_MESH, 0.0, axis=0)
     sources = table.curve_error[: len(AT_NODES), :, :, 0, 0].copy()
     sources[AT_NODES.index(METHOD)] = in_small_displacements(pair, table.force, own, over_face=False)
     sources[AT_NODES.index(PLANE)] = 0.0

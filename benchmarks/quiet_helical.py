@@ -140,7 +140,7 @@ def _row(one: AssessedInfluence) -> str:
         text = " / ".join(signed(1e6 * getattr(each, name)) for each in (one.estimated, one.computed))
         cells.append(text if right else f"**{text}**")
     name = f"*{one.pair.name}*" if one.pair.unseen else one.pair.name
-    ripple = f"{1e6 * one.computed.whole_peak_to_peak:.2f}"
+    ripple = f"{1e6 * one.computed.full_peak_to_peak:.2f}"
     return f"| {name} | {ripple} | {one.effect} | {cells[0]} | {cells[1]} |"
 
 

@@ -38,7 +38,7 @@ from bounds.declared import (
 )
 from bounds.order_names import order_name
 from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
-from bounds.text import FieldName, Quantity, Reader, SiNote, Text, Words
+from bounds.text import FieldName, Quantity, Reader, SiNote, Text, Wording
 from bounds.unit import Unit, engineering, leftover
 
 __all__ = [
@@ -63,7 +63,7 @@ __all__ = [
     "SiNote",
     "Text",
     "Unit",
-    "Words",
+    "Wording",
     "above",
     "at_least",
     "at_most",

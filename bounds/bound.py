@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from annotated_types import Interval
 
-from bounds.text import NOTHING, Reader, Text, Words
+from bounds.text import NOTHING, Reader, Text, Wording
 
 LIMIT_SLACK = 1e-12
 """Relative rounding of a computed limit, which its printed form does not show."""
@@ -55,7 +55,7 @@ class Bound:
 
     def worded(self, reader: Reader) -> str:
         """Return the bound, to be read after "must be"."""
-        unit = reader.own_unit(self.unit)
+        unit = reader.field_unit(self.unit)
         if self.low is not None and self.low == self.high:
             return f"{unit.exact(self.low)}{self.note.worded(reader)}"
         low = "" if self.low is None else f"{self.low_name} {unit.low(self.low)}".lstrip()
@@ -92,32 +92,32 @@ class Choice:
         return self.worded(Reader())
 
 
-def above(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+def above(low: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
     """Return the bound above `low`, which is the quantity called `name`."""
     return Bound(low=low, low_open=True, unit=unit, low_name=name, note=Text.of(note))
 
 
-def at_least(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+def at_least(low: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
     """Return the bound from `low`, which is the quantity called `name`."""
     return Bound(low=low, unit=unit, low_name=name, note=Text.of(note))
 
 
-def below(high: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+def below(high: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
     """Return the bound below `high`, which is the quantity called `name`."""
     return Bound(high=high, high_open=True, unit=unit, high_name=name, note=Text.of(note))
 
 
-def at_most(high: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+def at_most(high: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
     """Return the bound up to `high`, which is the quantity called `name`."""
     return Bound(high=high, unit=unit, high_name=name, note=Text.of(note))
 
 
-def from_to(low: float, high: float, unit: str = "", high_name: str = "", note: Words = "") -> Bound:
+def from_to(low: float, high: float, unit: str = "", high_name: str = "", note: Wording = "") -> Bound:
     """Return the bound from `low` to `high`, both accepted; `high` is the quantity called `high_name`."""
     return Bound(low=low, high=high, unit=unit, high_name=high_name, note=Text.of(note))
 
 
-def exactly(value: float, note: Words = "") -> Bound:
+def exactly(value: float, note: Wording = "") -> Bound:
     """Return the bound that only `value` meets."""
     return Bound(low=value, high=value, note=Text.of(note))
 

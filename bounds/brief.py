@@ -84,11 +84,11 @@ def _field_rows(record: object) -> Iterator[Row]:
 
 def described_value(value: object) -> str:
     """Return a value of a record in a few words."""
-    for kinds, words in _WORDS:
+    for kinds, describe in _DESCRIPTIONS:
         if isinstance(value, kinds):
-            return words(value)
-    stated = is_dataclass(value) and type(value).__str__ is not object.__str__
-    return str(value) if stated else type(value).__name__
+            return describe(value)
+    has_text = is_dataclass(value) and type(value).__str__ is not object.__str__
+    return str(value) if has_text else type(value).__name__
 
 
 def _array(array: np.ndarray[Any, Any]) -> str:
@@ -112,13 +112,13 @@ def _sequence(values: list[object]) -> str:
     return _listed([described_value(value) for value in values[: LISTED + 1]], len(values))
 
 
-def _listed(words: list[str], count: int) -> str:
+def _listed(texts: list[str], count: int) -> str:
     if count <= LISTED:
-        return ", ".join(words) or "none"
-    return f"{count}: {', '.join(words[:LISTED])}, ..."
+        return ", ".join(texts) or "none"
+    return f"{count}: {', '.join(texts[:LISTED])}, ..."
 
 
-_WORDS: tuple[tuple[tuple[type, ...], Callable[[Any], str]], ...] = (
+_DESCRIPTIONS: tuple[tuple[tuple[type, ...], Callable[[Any], str]], ...] = (
     ((np.ndarray,), _array),
     ((Enum,), lambda value: value.name.lower()),
     ((str,), lambda value: next(iter(value.splitlines()), "")),

@@ -13,7 +13,7 @@ import numpy as np
 
 from bounds.bound import Bound, Choice, above, at_least, from_to, one_of
 from bounds.declared import declarations
-from bounds.text import Reader, Text, Words
+from bounds.text import Reader, Text, Wording
 from bounds.types import FloatArray
 
 
@@ -34,7 +34,7 @@ class RefusedValue(Exception):
         What to try.
     """
 
-    def __init__(self, field: str, value: object, bound: Words, suggestion: Words = "") -> None:
+    def __init__(self, field: str, value: object, bound: Wording, suggestion: Wording = "") -> None:
         value = value.item() if isinstance(value, np.generic) else value  # a number, to whoever reads it
         self.field, self.value = field, value
         self.bound = Text.of(bound) if isinstance(bound, str) else bound
@@ -44,7 +44,7 @@ class RefusedValue(Exception):
     def worded(self, reader: Reader) -> str:
         """Return field, value, bound and suggestion as one text for a reader."""
         there = reader.at(self.field)
-        text = f"{there.name} = {there.shown(self.value)!r}: must be {self.bound.worded(there)}"
+        text = f"{there.name} = {there.field_value(self.value)!r}: must be {self.bound.worded(there)}"
         suggestion = self.suggestion.worded(there).strip()
         return f"{text}. {suggestion}" if suggestion else text
 
@@ -82,7 +82,7 @@ class Checks:
 
     refused: type[RefusedValue]
 
-    def finite(self, field: str, value: float, suggestion: Words = "") -> float:
+    def finite(self, field: str, value: float, suggestion: Wording = "") -> float:
         """Return `value` as a float if it is a finite number."""
         if (
             isinstance(value, bool)
@@ -92,39 +92,39 @@ class Checks:
             raise self.refused(field, value, "a finite number", suggestion)
         return float(value)
 
-    def in_bound(self, field: str, value: float, bound: Bound, suggestion: Words = "") -> float:
+    def in_bound(self, field: str, value: float, bound: Bound, suggestion: Wording = "") -> float:
         """Return `value` as a float if it is a finite number that meets `bound`."""
         number = self.finite(field, value, suggestion)
         if not bound.holds(number):
             raise self.refused(field, value, bound, suggestion)
         return number
 
-    def within(self, field: str, value: float, low: float, high: float, suggestion: Words = "") -> float:
+    def within(self, field: str, value: float, low: float, high: float, suggestion: Wording = "") -> float:
         """Return `value` if low <= value <= high, but for rounding."""
         return self.in_bound(field, value, from_to(low, high), suggestion)
 
-    def positive(self, field: str, value: float, suggestion: Words = "") -> float:
+    def positive(self, field: str, value: float, suggestion: Wording = "") -> float:
         """Return `value` if it is finite and above zero."""
         return self.in_bound(field, value, above(0.0), suggestion)
 
-    def not_negative(self, field: str, value: float, suggestion: Words = "") -> float:
+    def not_negative(self, field: str, value: float, suggestion: Wording = "") -> float:
         """Return `value` if it is finite and zero or above."""
         return self.in_bound(field, value, at_least(0.0), suggestion)
 
-    def integer(self, field: str, value: int, low: int, high: int, suggestion: Words = "") -> int:
+    def integer(self, field: str, value: int, low: int, high: int, suggestion: Wording = "") -> int:
         """Return `value` if it is an integer from `low` to `high`."""
         if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
             raise self.refused(field, value, Bound(low, high, integer=True), suggestion)
         return int(value)
 
-    def one_of(self, field: str, value: str, names: Collection[str], suggestion: Words = "") -> str:
+    def one_of(self, field: str, value: str, names: Collection[str], suggestion: Wording = "") -> str:
         """Return `value` if it is one of `names`."""
         if value not in names:
             raise self.refused(field, value, one_of(names), suggestion)
         return value
 
     def chosen(
-        self, field: str, names: Sequence[str] | None, known: Sequence[str], suggestion: Words = ""
+        self, field: str, names: Sequence[str] | None, known: Sequence[str], suggestion: Wording = ""
     ) -> list[str]:
         """Return those of the `known` names that are in `names`, in the order of `known`; all if None."""
         for name in names or ():
@@ -149,7 +149,7 @@ class Checks:
                 self.in_bound(field, value, limits, fact.remedy if fact.unit else "")
 
     def increasing(
-        self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""
+        self, field: str, values: Sequence[float] | FloatArray, suggestion: Wording = ""
     ) -> FloatArray:
         """Return `values` as a 1-D array if it is non-empty, finite and strictly increasing."""
         array = np.atleast_1d(np.asarray(values, dtype=float))

@@ -129,12 +129,12 @@ def written(thing: Any) -> Any:
     """Return a dataclass and all in it as dictionaries, but for later fields at their defaults."""
     if not is_dataclass(thing):
         return type(thing)(map(written, thing)) if isinstance(thing, list | tuple) else thing
-    facts = declarations(type(thing))
-    own = ((entry, getattr(thing, entry.name)) for entry in fields(thing))
+    by_name = declarations(type(thing))
+    values = ((entry, getattr(thing, entry.name)) for entry in fields(thing))
     return {
         entry.name: written(value)
-        for entry, value in own
-        if not (value == entry.default and entry.name in facts and facts[entry.name].later)
+        for entry, value in values
+        if not (value == entry.default and entry.name in by_name and by_name[entry.name].later)
     }
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 SIDEBANDS = 3
 """Orders of a shaft beside a mesh order that count as its sidebands: eccentricity, ovality, three lobes."""
-WHOLE = 1e-6
+TOLERANCE = 1e-6
 """Largest distance of an order from a multiple of another, relative to that multiple."""
 
 
@@ -24,27 +24,29 @@ def order_name(order: float, mesh: Mapping[str, float], shaft: Mapping[str, floa
         The order of each mesh frequency and of one turn of each shaft, > 0, by name; the first that fits.
     """
     for name, step in mesh.items():
-        if _whole(order / step):
+        if _is_multiple(order / step):
             return f"{name} {round(order / step)}"
-    beside = min(_beside(order, mesh, shaft), key=lambda each: each[0], default=None)
-    if beside is not None:
-        return beside[1]
+    sideband = min(_sidebands(order, mesh, shaft), key=lambda item: item[0], default=None)
+    if sideband is not None:
+        return sideband[1]
     for name, step in shaft.items():
-        if _whole(order / step):
+        if _is_multiple(order / step):
             return f"{name} {round(order / step)}"
     return ""
 
 
-def _beside(order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]) -> Iterator[tuple[int, str]]:
+def _sidebands(
+    order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]
+) -> Iterator[tuple[int, str]]:
     """Yield sidebands that an order is, each after its number."""
     for name, step in mesh.items():
         harmonic = round(order / step)
         for turning, turn in shaft.items():
             number = (order - harmonic * step) / turn
-            if harmonic and _whole(number) and abs(round(number)) <= SIDEBANDS:
+            if harmonic and _is_multiple(number) and abs(round(number)) <= SIDEBANDS:
                 sign = "-" if number < 0.0 else "+"
                 yield abs(round(number)), f"{name} {harmonic} {sign} {turning} {abs(round(number))}"
 
 
-def _whole(multiple: float) -> bool:
-    return abs(multiple - round(multiple)) < WHOLE * max(abs(multiple), 1.0)
+def _is_multiple(multiple: float) -> bool:
+    return abs(multiple - round(multiple)) < TOLERANCE * max(abs(multiple), 1.0)

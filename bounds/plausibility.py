@@ -30,23 +30,23 @@ TYPED: dict[str, tuple[Unit, ...]] = {
 SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
-def _suspected_unit(value: float, own: Unit, dimension: str, low: float, high: float) -> str:
+def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, high: float) -> str:
     """Return the unit in which a number makes sense that does not in its own; empty where there is none.
 
     Parameters
     ----------
     value : float
-        In SI, as read in the unit `own`.
-    own : Unit
+        In SI, as read in the unit `field_unit`.
+    field_unit : Unit
         Of the field.
     dimension : str
         SI unit of the quantity, e.g. "m".
     low, high : float
         Usual magnitudes in SI.
     """
-    typed = abs(value) / own.factor
+    typed = abs(value) / field_unit.factor
     for unit in TYPED.get(dimension, ()):
-        if typed and not math.isclose(unit.factor, own.factor) and low <= typed * unit.factor <= high:
+        if typed and not math.isclose(unit.factor, field_unit.factor) and low <= typed * unit.factor <= high:
             return unit.name
     return ""
 
@@ -96,9 +96,9 @@ class Finding:
     whole: str = ""
     """Other fields that must have slipped with this one, in words; empty if it stands alone."""
 
-    def message(self, field: str | None = None, own: Unit | None = None) -> str:
+    def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
         """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
-        unit = own or SI_UNITS[self.unit]
+        unit = field_unit or SI_UNITS[self.unit]
         suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")
         question = f" Did you give {suspected}{self.whole}?" if suspected else ""
@@ -143,14 +143,16 @@ class Checklist:
         low = 0.0 if rule.low is None else rule.low * scale
         high = math.inf if rule.high is None else rule.high * scale
         if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
-            words = reason or f"implausible {rule.quantity}"
-            yield Finding(check, field, float(value), low, high, unit, words, rule.source, whole)
+            text = reason or f"implausible {rule.quantity}"
+            yield Finding(check, field, float(value), low, high, unit, text, rule.source, whole)
 
 
 def finding_of(content: Json) -> Finding:
     """Return the finding that `to_json` wrote."""
-    facts = {name: content[name] for name in ("check", "field", "value", "unit", "reason", "source", "whole")}
-    return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **facts)
+    values = {
+        name: content[name] for name in ("check", "field", "value", "unit", "reason", "source", "whole")
+    }
+    return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **values)
 
 
 def warn_of(findings: Sequence[Finding]) -> None:

@@ -27,7 +27,7 @@ class Reader:
         """The reader's name of the field."""
         return self.field
 
-    def own_unit(self, unit: str) -> Unit:
+    def field_unit(self, unit: str) -> Unit:
         """Return the unit of the field itself, whose SI unit is `unit` (empty: not to be written)."""
         return Unit(unit)
 
@@ -35,7 +35,7 @@ class Reader:
         """Return the unit in which a `value` in the SI unit `unit` is written inside words."""
         return Unit(unit)
 
-    def shown(self, value: Any) -> Any:
+    def field_value(self, value: Any) -> Any:
         """Return a value of the field, in its unit."""
         return value.worded(self) if isinstance(value, _Worded) else value
 
@@ -48,7 +48,7 @@ class _Worded(Protocol):
         """Return it in the reader's units and names."""
 
 
-Words = str | _Worded
+Wording = str | _Worded
 """Words without numbers that carry a unit, or anything that can be put into words."""
 
 
@@ -102,10 +102,10 @@ class Text:
     `parts`: plain words, `Quantity`, `SiNote`, `Bound`, another `Text` or a whole `RefusedValue`.
     """
 
-    parts: tuple[Words, ...] = ()
+    parts: tuple[Wording, ...] = ()
 
     @classmethod
-    def of(cls, *parts: Words) -> Text:
+    def of(cls, *parts: Wording) -> Text:
         """Return the text of `parts`, one after the other without space between them."""
         return cls(parts)
 

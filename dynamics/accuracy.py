@@ -187,7 +187,7 @@ def _decision(scene: Scene) -> set[tuple[str, str]]:
 def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
     states = trajectory.states
-    observed = observe(system.arrays, trajectory.time, states.q, states.v, states.moved, states.carried)
+    observed = observe(system.arrays, trajectory.time, states.q, states.v, states.quanta, states.carried)
     force = system.bearing_force(observed.force, states.q, states.v)[:, :3]
     elastic = np.any(system.bearing_stiffness) or system.housed or system.bearings
     if system.freedoms.column.size and not elastic:

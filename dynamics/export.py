@@ -23,7 +23,7 @@ from dynamics.universal_datasets import (
     nodes_dataset,
     units_dataset,
 )
-from host.directories import whole_file
+from host.directories import atomic_file
 
 FUNCTIONS = ("time", "spectrum", "orders")
 FIRST_MESH_NODE = 1001
@@ -85,7 +85,7 @@ def write_universal_file(
     first = result.time[0] if start is None else start
     window, count = result.window(float(first), float(result.time[-1] if end is None else end)), 0
     part = replace(result, **{name: getattr(result, name)[..., window] for name in SAMPLED})
-    with whole_file(path) as draft, draft.open("w", encoding="ascii", errors="replace") as file:
+    with atomic_file(path) as draft, draft.open("w", encoding="ascii", errors="replace") as file:
         file.write(units_dataset())
         file.write(nodes_dataset(_nodes(result)))
         for nodal in chain(_functions(part, function), _tachos(part, function)):

@@ -30,7 +30,7 @@ class Cost(NamedTuple):
         return Cost(self.seconds * count, self.bytes)
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Say the cost: "about 25 CPU s, 1.2 GB"."""
         return f"about {engineering(self.seconds, 2)} CPU s, {engineering(self.bytes / 1e9, 2)} GB"
 
@@ -103,4 +103,4 @@ def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
     `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
     """
     if cost.seconds > ANNOUNCED:
-        progress(f"{stage}; {subject}: {cost.words}", 0.0)
+        progress(f"{stage}; {subject}: {cost.text}", 0.0)

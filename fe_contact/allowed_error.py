@@ -33,7 +33,7 @@ class AllowedError:
         )
 
     @classmethod
-    def given(cls, tolerance: AllowedError | float | None) -> AllowedError | None:
+    def from_value(cls, tolerance: AllowedError | float | None) -> AllowedError | None:
         """Return what a caller requested; a number alone is the relative part."""
         if tolerance is None or isinstance(tolerance, AllowedError):
             return tolerance
@@ -52,12 +52,12 @@ class AllowedError:
         """The size in m below which the floor counts."""
         return self.floor / self.relative
 
-    def part_words(self, change: float) -> str:
+    def part_text(self, change: float) -> str:
         """Say which part of what is allowed a change takes, in parts of `scale`."""
-        return f"{engineering(100.0 * change / self.relative, 2)} % of the tolerance ({self.words})"
+        return f"{engineering(100.0 * change / self.relative, 2)} % of the tolerance ({self.text})"
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Both parts."""
         part = f"{100.0 * self.relative:.3g} %"
         return f"{part} or {1e9 * self.floor:.3g} nm" if self.floor else part

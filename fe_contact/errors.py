@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from typing import Any, Self
 
-from bounds import Checks, RefusedValue, Words
+from bounds import Checks, RefusedValue, Wording
 
 
 class FeContactError(Exception):
@@ -34,7 +34,9 @@ class InfeasibleGeometry(InputError):
     "tip clearance", "profile shift sum", "jamming", "undercut" ...
     """
 
-    def __init__(self, name: str, field: str, value: object, bound: Words, suggestion: Words = "") -> None:
+    def __init__(
+        self, name: str, field: str, value: object, bound: Wording, suggestion: Wording = ""
+    ) -> None:
         self.name = name
         super().__init__(field, value, bound, suggestion)
         self.args = (f"{name}: {self.args[0]}",)

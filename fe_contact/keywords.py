@@ -54,7 +54,7 @@ def with_keywords(
         raise TypeError(f"analyze() has no keyword {min(unknown)!r}; it has {', '.join(known)}")
     changes = _members(AnalysisOptions, keywords)
     if "tolerance" in changes:
-        changes["tolerance"] = AllowedError.given(changes["tolerance"])
+        changes["tolerance"] = AllowedError.from_value(changes["tolerance"])
     if levels := _members(TableAxes, keywords):
         axes = TableAxes(**levels) if axes is None else replace(axes, **levels)
     return axes, replace(options, **changes), replace(run, **_members(Run, keywords))

@@ -20,7 +20,7 @@ FEWEST_POSITIONS = 32
 """Positions at which a table is solved again, at least, if it has as many."""
 
 
-def some_positions(count: int) -> IntArray:
+def sampled_positions(count: int) -> IntArray:
     """Return at least `FEWEST_POSITIONS` of `count` positions, every k-th from the first.
 
     Where positions gather, every k-th of them does.

@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from host.sessions import Ended as Ended
     from host.sessions import ending_signal as ending_signal
     from host.sessions import family_cpu_seconds as family_cpu_seconds
-    from host.sessions import handlers_kept as handlers_kept
+    from host.sessions import handlers_restored as handlers_restored
     from host.sessions import has_exited as has_exited
     from host.sessions import kill as kill
     from host.sessions import kill_group as kill_group
-    from host.sessions import kill_own_group as kill_own_group
+    from host.sessions import kill_process_group as kill_process_group
     from host.sessions import lead_session as lead_session
     from host.sessions import lower_priority as lower_priority
     from host.sessions import memory_figure as memory_figure
@@ -87,12 +87,12 @@ HOMES = {
     "ending_signal": "sessions",
     "excess": "confinement",
     "family_cpu_seconds": "sessions",
-    "handlers_kept": "sessions",
+    "handlers_restored": "sessions",
     "has_exited": "sessions",
     "keep_to_one_thread": "children.environment",
     "kill": "sessions",
     "kill_group": "sessions",
-    "kill_own_group": "sessions",
+    "kill_process_group": "sessions",
     "lead_session": "sessions",
     "limit_file_size": "confinement",
     "limit_memory": "confinement",
@@ -128,13 +128,13 @@ __all__ = [
     "ending_signal",
     "excess",
     "family_cpu_seconds",
-    "handlers_kept",
+    "handlers_restored",
     "has_exited",
     "keep_freed_memory",
     "keep_to_one_thread",
     "kill",
     "kill_group",
-    "kill_own_group",
+    "kill_process_group",
     "lead_session",
     "limit_file_size",
     "limit_memory",

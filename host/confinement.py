@@ -144,11 +144,11 @@ def _readable() -> tuple[Path, ...]:
 
     Of a folder of modules outside Python's own, which may be anybody's, that is the packages and modules.
     """
-    own = [Path(folder).resolve() for folder in (sys.prefix, sys.base_prefix, *_SYSTEM)]
-    places = list(own)
+    python_folders = [Path(folder).resolve() for folder in (sys.prefix, sys.base_prefix, *_SYSTEM)]
+    places = list(python_folders)
     for entry in filter(None, (str(_ROOT), *sys.path)):
         folder = Path(entry).resolve()
-        if folder.is_file() or any(folder.is_relative_to(part) for part in own):
+        if folder.is_file() or any(folder.is_relative_to(part) for part in python_folders):
             places.append(folder)
         elif folder.is_dir():
             places += [path.parent for path in folder.glob("*/__init__.py")]

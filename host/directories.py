@@ -24,8 +24,8 @@ def default_cache_directory() -> Path | None:
     setting = os.environ.get(ENVIRONMENT)
     if setting is not None:
         return None if setting.strip().lower() in OFF else Path(setting).expanduser().absolute()
-    stated = Path(os.environ.get("XDG_CACHE_HOME", ""))
-    return (stated if stated.is_absolute() else _of_platform()) / "lineofaction"
+    configured = Path(os.environ.get("XDG_CACHE_HOME", ""))
+    return (configured if configured.is_absolute() else _of_platform()) / "lineofaction"
 
 
 def _of_platform() -> Path:
@@ -39,13 +39,13 @@ def _of_platform() -> Path:
 
 def data_home() -> Path:
     """Return the directory for results and jobs."""
-    stated = Path(os.environ.get("XDG_DATA_HOME", ""))
-    return (stated if stated.is_absolute() else Path.home() / ".local" / "share") / "lineofaction"
+    configured = Path(os.environ.get("XDG_DATA_HOME", ""))
+    return (configured if configured.is_absolute() else Path.home() / ".local" / "share") / "lineofaction"
 
 
 def cache_home() -> Path:
     """Return the directory for what can be computed or fetched again; our own alone where caches are off."""
-    return default_cache_directory() or Path(_own_folder().name)
+    return default_cache_directory() or Path(_process_folder().name)
 
 
 def absolute(path: Path) -> Path:
@@ -54,7 +54,7 @@ def absolute(path: Path) -> Path:
 
 
 @contextlib.contextmanager
-def whole_file(path: Path) -> Iterator[Path]:
+def atomic_file(path: Path) -> Iterator[Path]:
     """Yield a draft of `path`, which gets the rights of a new file and its place; an error leaves nothing."""
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     os.close(handle)
@@ -83,5 +83,5 @@ def keep_private() -> None:
 
 
 @lru_cache(maxsize=1)
-def _own_folder() -> TemporaryDirectory[str]:
+def _process_folder() -> TemporaryDirectory[str]:
     return TemporaryDirectory(prefix="lineofaction-", ignore_cleanup_errors=True)

@@ -14,7 +14,7 @@ def memory_kills(proc: Path = _PROC, groups: Path = _GROUPS) -> int | None:
     Where no control group counts them (version 1, or none), the number on the whole machine. None where the
     system counts neither. The system counts a kill before the process is dead.
     """
-    for file in (_events_of_own_group(proc, groups), groups / "memory.events", proc / "vmstat"):
+    for file in (_memory_events(proc, groups), groups / "memory.events", proc / "vmstat"):
         with suppress(OSError, ValueError):
             for line in file.read_text(encoding="ascii").splitlines():
                 name, _, count = line.partition(" ")
@@ -23,7 +23,7 @@ def memory_kills(proc: Path = _PROC, groups: Path = _GROUPS) -> int | None:
     return None
 
 
-def _events_of_own_group(proc: Path, groups: Path) -> Path:
+def _memory_events(proc: Path, groups: Path) -> Path:
     """Return the file in which version 2 counts events of the memory of this process's group."""
     with suppress(OSError):
         for line in (proc / "self" / "cgroup").read_text(encoding="utf-8").splitlines():

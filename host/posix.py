@@ -36,8 +36,8 @@ def peak_memory() -> int:
 
     The counter of getrusage begins with the peak of who started the process; Linux has another, its own.
     """
-    own = memory_figure("VmHWM")
-    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss if own is None else own
+    peak = memory_figure("VmHWM")
+    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss if peak is None else peak
 
 
 def children_peak_memory() -> int:

@@ -55,7 +55,7 @@ def kill_group(leader: int) -> None:
     os.killpg(leader, signal.SIGKILL)
 
 
-def kill_own_group() -> None:
+def kill_process_group() -> None:
     """End this process and its group at once."""
     if sys.platform == "win32":
         raise Unavailable("Groups of processes")
@@ -89,10 +89,10 @@ def has_exited(child: int) -> bool:
         raise Unavailable("Children that wait to be reaped")
     if hasattr(os, "waitid"):
         return os.waitid(os.P_PID, child, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
-    shown = subprocess.run(  # macOS before Python 3.13
+    status = subprocess.run(  # macOS before Python 3.13
         ["ps", "-o", "stat=", "-p", str(child)], capture_output=True, text=True, check=False
     )
-    return shown.stdout.strip()[:1] in {"Z", ""}
+    return status.stdout.strip()[:1] in {"Z", ""}
 
 
 def reap(child: int) -> Ended:
@@ -105,7 +105,7 @@ def reap(child: int) -> Ended:
 
 
 @contextmanager
-def handlers_kept(names: Sequence[str]) -> Iterator[None]:
+def handlers_restored(names: Sequence[str]) -> Iterator[None]:
     """Restore the handlers of signals afterwards, by their names; a system may lack some of them."""
     handlers = {name: signal.getsignal(getattr(signal, name)) for name in names if hasattr(signal, name)}
     yield
@@ -133,8 +133,8 @@ def _numbered(proc: Path) -> Iterator[int]:
 def _works_in(process: Path, directory: Path, command: bytes) -> bool:
     """Whether a process works there by such a command; not if it has ended or is another user's."""
     with suppress(OSError):
-        place = (process / "cwd").readlink()
-        return place.is_relative_to(directory) and command in (process / "cmdline").read_bytes()
+        folder = (process / "cwd").readlink()
+        return folder.is_relative_to(directory) and command in (process / "cmdline").read_bytes()
     return False
 
 

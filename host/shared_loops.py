@@ -29,7 +29,7 @@ from host.processor_family import compile_for_family
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-_held: set[Path] = set()
+_locked_files: set[Path] = set()
 
 
 class Loop(CPUDispatcher):
@@ -80,7 +80,7 @@ def _locked(file: Path) -> Iterator[None]:
     A function that calls itself holds it already. Locks nest as calls do: no two processes wait for each
     other.
     """
-    if file in _held:
+    if file in _locked_files:
         yield
         return
     descriptor = -1
@@ -88,11 +88,11 @@ def _locked(file: Path) -> Iterator[None]:
         file.parent.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(file, os.O_CREAT | os.O_RDWR, 0o666)
         lock(descriptor, wait=True)
-    _held.add(file)
+    _locked_files.add(file)
     try:
         yield
     finally:
-        _held.remove(file)
+        _locked_files.remove(file)
         if descriptor >= 0:
             os.close(descriptor)
 

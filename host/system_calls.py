@@ -176,5 +176,5 @@ def _steps_of(check: _Check) -> list[_Step]:
     """Return the instructions that refuse a call unless a condition holds, and else go on behind them."""
     steps: list[_Step] = [(_LOAD, 0, 0, _ARGUMENTS + 4 * check.word), (_AND, 0, 0, check.mask)]
     count = len(check.values)
-    steps += [(_IF_EQUAL, count - place, 0, value) for place, value in enumerate(check.values)]
+    steps += [(_IF_EQUAL, count - index, 0, value) for index, value in enumerate(check.values)]
     return [*steps, (_RETURN, 0, 0, _REFUSE)]

@@ -141,8 +141,8 @@ def __getattr__(name: str) -> object:
         return registry.FUNCTIONS[name]
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, own = _HOME.get(name, ("lineofaction.gearbox.workbench", name))
-    value = globals()[name] = getattr(import_module(module), own)
+    module, attribute = _HOME.get(name, ("lineofaction.gearbox.workbench", name))
+    value = globals()[name] = getattr(import_module(module), attribute)
     return value
 
 

@@ -81,8 +81,8 @@ class EffectAblation(Generic[F, E]):
 
     def change(self, figure: str) -> FloatArray:
         """Return the change of an array of the figures without the effect, in its unit."""
-        without, whole = (getattr(each, figure) for each in (self.without_effect, self.with_effect))
-        return np.asarray(without - whole)
+        without, included = (getattr(figures, figure) for figures in (self.without_effect, self.with_effect))
+        return np.asarray(without - included)
 
 
 A = TypeVar("A", bound=EffectAblation[Any, Any])

@@ -70,10 +70,10 @@ def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, An
     with opened_netcdf(path) as file:
         attributes = dict(file.attrs)
         raw = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
-    stated = f"{attributes.get('schema')} {attributes.get('schema_version')}"
-    if stated not in [f"{schema} {SCHEMA_VERSION}" for schema in schemas]:
+    file_schema = f"{attributes.get('schema')} {attributes.get('schema_version')}"
+    if file_schema not in [f"{schema} {SCHEMA_VERSION}" for schema in schemas]:
         raise UnreadableFile(
-            f"{path.name}: schema is {stated}, expected {' or '.join(schemas)} {SCHEMA_VERSION}"
+            f"{path.name}: schema is {file_schema}, expected {' or '.join(schemas)} {SCHEMA_VERSION}"
         )
     try:
         documents = str(attributes[DOCUMENTS])

@@ -197,7 +197,7 @@ class Frontier(Generic[R_co]):
 
 def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:
     """Return the knee; differences below the reference's own error, or below `shared` errors, are ignored."""
-    own = [error for error in (results[-1].error, *shared) if np.isfinite(error)]
-    floor = max(own, default=0.0)
+    errors = [error for error in (results[-1].error, *shared) if np.isfinite(error)]
+    floor = max(errors, default=0.0)
     known = [result for result in results if np.isfinite(result.error)]
     return knee_of({result.name: (result.cpu_seconds, max(result.error, floor)) for result in known})

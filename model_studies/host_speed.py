@@ -20,7 +20,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from host.directories import whole_file
+from host.directories import atomic_file
 
 VERSION = 1  # raise it with every change of the benchmark or its reference
 FILE = "host-speed.json"
@@ -33,12 +33,12 @@ _SLOWEST = 1000.0
 def host_slowness(cache: Path | None) -> float:
     """Return the time that this host takes beside the reference, 1 = alike, 2 = twice as long.
 
-    `cache`: as of `kept_speed`.
+    `cache`: as of `cached_speed`.
     """
-    return kept_speed(cache, "slowness", measured_slowness, (1.0 / _SLOWEST, _SLOWEST))
+    return cached_speed(cache, "slowness", measured_slowness, (1.0 / _SLOWEST, _SLOWEST))
 
 
-def kept_speed(
+def cached_speed(
     cache: Path | None, name: str, measure: Callable[[], float], bounds: tuple[float, float]
 ) -> float:
     """Return a speed of this host, measured once.
@@ -55,9 +55,9 @@ def kept_speed(
         return measure()
     file = cache / FILE
     known = _read(file)
-    kept = known.get(name)
-    if isinstance(kept, float) and bounds[0] <= kept <= bounds[1]:
-        return kept
+    stored = known.get(name)
+    if isinstance(stored, float) and bounds[0] <= stored <= bounds[1]:
+        return stored
     value = measure()
     _write(file, {**known, "identity": _identity(), name: value})
     return value
@@ -100,5 +100,5 @@ def _write(file: Path, content: dict[str, object]) -> None:
     """Keep measurements; a directory that cannot be written is left as it is."""
     with suppress(OSError):
         file.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(file) as draft:
+        with atomic_file(file) as draft:
             draft.write_text(json.dumps(content), encoding="utf-8")

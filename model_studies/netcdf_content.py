@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from host.directories import whole_file
+from host.directories import atomic_file
 
 if TYPE_CHECKING:
     import xarray
@@ -53,7 +53,7 @@ class NetcdfContent:
         unlimited, since netCDF has no other.
         """
         content = self._packed()
-        with whole_file(path) as draft, draft.open("wb") as stream:
+        with atomic_file(path) as draft, draft.open("wb") as stream:
             stream.write(content)
             stream.flush()
             os.fsync(stream.fileno())
@@ -102,7 +102,11 @@ class NetcdfContent:
     def _auxiliary(self, name: str) -> dict[str, str]:
         """Return the attribute that names coordinates beside those along the dimensions of a variable."""
         dimensions = set(self.variables[name].dimensions)
-        along = [each for each in self.coordinates if dimensions.issuperset(self.variables[each].dimensions)]
+        along = [
+            coordinate
+            for coordinate in self.coordinates
+            if dimensions.issuperset(self.variables[coordinate].dimensions)
+        ]
         is_coordinate = name in self.coordinates or name in dimensions
         return {"coordinates": " ".join(along)} if along and not is_coordinate else {}
 

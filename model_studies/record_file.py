@@ -24,7 +24,7 @@ _UNITS = {"n": "N", "n_m": "N m", "pa": "Pa"}
 
 
 @dataclass(frozen=True)
-class _Place:
+class _FieldVariable:
     """The variable of a field: its name, unit, dimensions, and the row of records that it runs along."""
 
     name: str = ""
@@ -32,34 +32,34 @@ class _Place:
     dimensions: tuple[str, ...] = ()
     row: str = ""
 
-    def of(self, field: Field[Any]) -> _Place:
+    def of(self, field: Field[Any]) -> _FieldVariable:
         """Return the place of a field of the record that is here."""
         name = f"{self.name}.{field.name}" if self.name else field.name
         unit = field.metadata.get("unit", "1")
-        return _Place(name, _UNITS.get(unit, unit), field.metadata.get("dimensions", ()), self.row)
+        return _FieldVariable(name, _UNITS.get(unit, unit), field.metadata.get("dimensions", ()), self.row)
 
     @property
-    def in_row(self) -> _Place:
+    def in_row(self) -> _FieldVariable:
         """The place of the entries of a tuple that is here."""
         return replace(self, row=self.name)
 
     def stored(self, rank: int) -> Stored:
         """Return how an array of so many dimensions is stored."""
         row = (self.row,) if self.row else ()
-        own = self.dimensions or tuple(f"{self.name}_{axis}" for axis in range(rank - len(row)))
-        return Stored((*row, *own), self.unit, self.name.replace(".", " ").replace("_", " "))
+        along = self.dimensions or tuple(f"{self.name}_{axis}" for axis in range(rank - len(row)))
+        return Stored((*row, *along), self.unit, self.name.replace(".", " ").replace("_", " "))
 
 
 def write_record(record: Any, path: Path, schema: str) -> None:
     """Write a dataclass; it appears whole or not at all. Fields with `NOT_STORED` are left out."""
-    columns: dict[_Place, list[Any]] = {}
-    rest = _apart(type(record), record, _Place(), columns)
-    arrays = {place: np.stack(rows) if place.row else rows[0] for place, rows in columns.items()}
+    columns: dict[_FieldVariable, list[Any]] = {}
+    rest = _split(type(record), record, _FieldVariable(), columns)
+    arrays = {variable: np.stack(rows) if variable.row else rows[0] for variable, rows in columns.items()}
     write_arrays(
         path,
         schema,
-        {place.name: place.stored(values.ndim) for place, values in arrays.items()},
-        {place.name: values for place, values in arrays.items()},
+        {variable.name: variable.stored(values.ndim) for variable, values in arrays.items()},
+        {variable.name: values for variable, values in arrays.items()},
         rest,
     )
 
@@ -75,52 +75,52 @@ def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
     schema, arrays, rest = read_arrays(path, tuple(kinds))
     columns: dict[str, Iterator[Any]] = {}
 
-    def taken(place: _Place) -> Any:
-        values = arrays[place.name]
-        return next(columns.setdefault(place.name, iter(values if place.row else [values])))
+    def taken(variable: _FieldVariable) -> Any:
+        values = arrays[variable.name]
+        return next(columns.setdefault(variable.name, iter(values if variable.row else [values])))
 
     try:
-        return _together(kinds[schema], rest, _Place(), taken)
+        return _rebuilt(kinds[schema], rest, _FieldVariable(), taken)
     except (*DAMAGE, StopIteration) as error:
         raise UnreadableFile(f"{path.name}: not as this version writes it") from error
 
 
-def _apart(kind: Any, value: Any, place: _Place, columns: dict[_Place, list[Any]]) -> Any:
+def _split(kind: Any, value: Any, variable: _FieldVariable, columns: dict[_FieldVariable, list[Any]]) -> Any:
     """Put the numbers of a value of a type into columns; return the rest as JSON."""
     kind = _present(kind)
     if value is None:
         return None
     if is_dataclass(kind):
         return {
-            field.name: _apart(of, getattr(value, field.name), place.of(field), columns)
+            field.name: _split(of, getattr(value, field.name), variable.of(field), columns)
             for field, of in _stored_fields(kind)
         }
     if get_origin(kind) is tuple:
-        return [_apart(get_args(kind)[0], entry, place.in_row, columns) for entry in value]
+        return [_split(get_args(kind)[0], entry, variable.in_row, columns) for entry in value]
     if _is_number(kind):
-        columns.setdefault(place, []).append(np.asarray(value))
+        columns.setdefault(variable, []).append(np.asarray(value))
         return IN_VARIABLE
     if isinstance(value, Enum | np.generic):
         return value.value if isinstance(value, Enum) else value.item()
     return dict(value) if isinstance(value, Mapping) else value
 
 
-def _together(kind: Any, plain: Any, place: _Place, taken: Any) -> Any:
-    """Return the value of a type that `_apart` took apart; `taken` gives the next entry of a variable."""
+def _rebuilt(kind: Any, plain: Any, variable: _FieldVariable, taken: Any) -> Any:
+    """Return the value of a type that `_split` took apart; `taken` gives the next entry of a variable."""
     kind = _present(kind)
     if plain is None:
         return None
     if is_dataclass(kind):
         values = {
-            field.name: _together(of, plain[field.name], place.of(field), taken)
+            field.name: _rebuilt(of, plain[field.name], variable.of(field), taken)
             for field, of in _stored_fields(kind)
             if field.name in plain or (field.default is MISSING and field.default_factory is MISSING)
         }
         return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
     if get_origin(kind) is tuple:
-        return tuple(_together(get_args(kind)[0], entry, place.in_row, taken) for entry in plain)
+        return tuple(_rebuilt(get_args(kind)[0], entry, variable.in_row, taken) for entry in plain)
     if _is_number(kind):
-        value = taken(place)
+        value = taken(variable)
         return float(value) if kind is float else np.ascontiguousarray(value)
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(plain)
@@ -144,7 +144,7 @@ def _present(kind: Any) -> Any:
 def _stored_fields(kind: Any) -> list[tuple[Field[Any], Any]]:
     """Return the stored fields of a dataclass with their types; parameters of generic bases are put in."""
     bound: dict[Any, Any] = {}
-    for base in (base for each in kind.__mro__ for base in getattr(each, "__orig_bases__", ())):
+    for base in (base for ancestor in kind.__mro__ for base in getattr(ancestor, "__orig_bases__", ())):
         bound |= dict(zip(getattr(get_origin(base), "__parameters__", ()), get_args(base), strict=False))
     hints = get_type_hints(kind)
     stored = [field for field in fields(kind) if field.metadata.get("stored", True)]
@@ -156,4 +156,4 @@ def _bound(hint: Any, bound: Mapping[Any, Any]) -> Any:
     if isinstance(hint, TypeVar):
         return bound.get(hint, hint)
     parameters = getattr(hint, "__parameters__", ())
-    return hint[tuple(bound.get(each, each) for each in parameters)] if parameters else hint
+    return hint[tuple(bound.get(parameter, parameter) for parameter in parameters)] if parameters else hint

@@ -25,8 +25,8 @@ class TimeTaken:
     @classmethod
     def now(cls, remote: RunCost | None = None) -> TimeTaken:
         """Read both clocks, to be told apart from a later reading; `remote` counts tasks of others."""
-        own = cpu_seconds()
-        return cls(own + (remote.cpu_seconds if remote else 0.0), time.perf_counter())
+        seconds = cpu_seconds()
+        return cls(seconds + (remote.cpu_seconds if remote else 0.0), time.perf_counter())
 
     def plus(self, other: TimeTaken) -> TimeTaken:
         """Return the time of both."""

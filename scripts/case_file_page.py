@@ -116,7 +116,7 @@ def default(figure: Figure) -> str:
         return "required"
     if figure.default is None:
         return "optional"
-    value = figure.own(figure.default)
+    value = figure.boundary_value(figure.default)
     if isinstance(value, bool):
         return f"default `{str(value).lower()}`"
     return f'default `"{value}"`' if isinstance(value, str) else f"default {value:.7g}"

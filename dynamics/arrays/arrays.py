@@ -44,10 +44,10 @@ class KinematicMotion(NamedTuple):
 
     speed: Cubics
     """Speed of each law, rad/s."""
-    whole: FloatArray
+    full_turns: FloatArray
     fraction: FloatArray
-    """`whole`, `fraction`: Revolutions of the law at the start of each piece, integer and remainder. Shape
-    (S,) each.
+    """`full_turns`, `fraction`: Revolutions of the law at the start of each piece, integer and remainder.
+    Shape (S,) each.
     """
     numerator: IntArray
     denominator: IntArray

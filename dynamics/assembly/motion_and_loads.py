@@ -40,7 +40,7 @@ def kinematic_motion(mechanism: Mechanism, freedoms: Freedoms) -> KinematicMotio
     shape = (len(rates), len(laws))
     return KinematicMotion(
         speed=Cubics.packed([law.polynomials() for law in laws]),
-        whole=np.concatenate([whole for whole, _ in turned]),
+        full_turns=np.concatenate([full_turns for full_turns, _ in turned]),
         fraction=np.concatenate([fraction for _, fraction in turned]),
         numerator=np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(
             shape

@@ -104,18 +104,18 @@ def _damped(system: System, mesh: int, used: PlainTable) -> System:
     return replace(system, flanks=replace(flanks, tables=tables, mean_stiffness=stiffnesses))
 
 
-def starting_at(system: System, time: float, moved: IntArray) -> System:
+def starting_at(system: System, time: float, quanta: IntArray) -> System:
     """Return `system` as it is from `time` (s) on, with that time as 0.
 
-    `moved` (k,) counts the quanta of free trains that are in the reference by then.
+    `quanta` (k,) counts the quanta of free trains that are in the reference by then.
     """
     arrays, reference = system.arrays, system.arrays.reference
     pieces = np.diff(reference.speed.first)
-    turned = np.repeat(moved, pieces)
+    turned = np.repeat(quanta, pieces)
     fraction = reference.fraction + (turned % QUANTA_PER_TURN) / QUANTA_PER_TURN
-    moved_on = reference._replace(
+    shifted = reference._replace(
         speed=reference.speed._replace(start=reference.speed.start - time),
-        whole=reference.whole + turned // QUANTA_PER_TURN,
+        full_turns=reference.full_turns + turned // QUANTA_PER_TURN,
         fraction=fraction,
     )
     torque = arrays.load.torque
@@ -125,7 +125,7 @@ def starting_at(system: System, time: float, moved: IntArray) -> System:
         laws=laws._replace(applied_force=laws.applied_force.starting_at(time))
     )
     return replace(
-        system, arrays=by_address(arrays._replace(reference=moved_on, load=load, elements=elements))
+        system, arrays=by_address(arrays._replace(reference=shifted, load=load, elements=elements))
     )
 
 

@@ -20,7 +20,7 @@ from dynamics.housings.step_files import WALL_ELEMENTS, mesh_step
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
 from dynamics.work_cost import Cost, measured, on_this_host
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
@@ -58,7 +58,7 @@ def meshed_step(
         facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
         content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
-    return kept_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
+    return cached_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
 
 
 def _read_mesh(file: Path) -> TetrahedralMesh:
@@ -107,7 +107,7 @@ def reduced_housing(
         body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
         return replace(body, cost=cost)
 
-    return kept_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
+    return cached_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
 
 
 def content_key(housing: MeshedHousing) -> str:

@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 
-from host import Limits, confine, end_after, handlers_kept
+from host import Limits, confine, end_after, handlers_restored
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3
@@ -46,7 +46,7 @@ def _start_gmsh() -> Any:
     """Import and start gmsh: one thread, silent, no user files, signal handlers left as they were."""
     import gmsh  # noqa: PLC0415
 
-    with handlers_kept(RESET_BY_GMSH):
+    with handlers_restored(RESET_BY_GMSH):
         gmsh.initialize(["loa", "-nopopup"], readConfigFiles=False, interruptible=False)
     options = {
         "General.Terminal": 0,

@@ -43,12 +43,12 @@ def _rows(system: System) -> list[Json]:
     ]
     for angle, change in zip(phases.angles, _changes(system), strict=True):
         first, second = angle.gears
-        words = f"angle from a tooth of {first} to a tooth of {second} not stated: 0{_words(change)}"
-        rows.append({"part": angle.shaft, "words": words, "angle": 0.0, **change})
+        text = f"angle from a tooth of {first} to a tooth of {second} not stated: 0{_change_text(change)}"
+        rows.append({"part": angle.shaft, "words": text, "angle": 0.0, **change})
     return rows
 
 
-def _words(change: Json) -> str:
+def _change_text(change: Json) -> str:
     if "decibels" not in change:
         return ""
     size = engineering(change["decibels"], 2)

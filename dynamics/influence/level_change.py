@@ -49,7 +49,7 @@ class LevelChange:
     """Change of that amplitude over the largest of all orders with the effect."""
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The change, in words."""
         if self.relative <= ROUNDING:
             return f"0 {self.unit} of {self.quantity}"
@@ -66,9 +66,12 @@ def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[
     return lines
 
 
-def level_change(whole: Lines, without: Lines, quantity: str, unit: str = "dB") -> LevelChange:
-    """Return what leaving an effect out changes: `whole` are the lines with it."""
-    both = {k: (math.sqrt(whole.get(k, 0.0)), math.sqrt(without.get(k, 0.0))) for k in {**whole, **without}}
+def level_change(with_effect: Lines, without: Lines, quantity: str, unit: str = "dB") -> LevelChange:
+    """Return what leaving an effect out changes: `with_effect` are the lines with it."""
+    both = {
+        k: (math.sqrt(with_effect.get(k, 0.0)), math.sqrt(without.get(k, 0.0)))
+        for k in {**with_effect, **without}
+    }
     if not any(map(any, both.values())):
         return LevelChange(quantity, unit)
     order = max(both, key=lambda k: abs(both[k][1] - both[k][0]))

@@ -80,10 +80,10 @@ def linear_figures(
     amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
     orders, loads = np.zeros((meshes, COMPARED)), np.zeros(bearings)
     quantity, lines = system.scene.quantity or BearingForces(), dict[float, float]()
-    for some in conditions:
-        at = excited(system, some.time, some.orders, POSITIONS)
-        condition = some.passing(_resonances(at)) if np.any(some.rate) else some
-        motion = condition.speed, condition.rate, some.orders, rotating
+    for point in conditions:
+        at = excited(system, point.time, point.orders, POSITIONS)
+        condition = point.passing(_resonances(at)) if np.any(point.rate) else point
+        motion = condition.speed, condition.rate, point.orders, rotating
         harmonics, shift = parametric_response(at, *motion, varying=varying)
         static = [float(np.mean(cycle.static_error)) for cycle in at.cycles]
         rest = np.array(static)[:, None] + shift
@@ -94,8 +94,8 @@ def linear_figures(
         orders = np.maximum(orders, _low_orders(harmonics.dynamic_transmission_error, harmonics))
         amplitude = np.maximum(amplitude, _low_orders(harmonics.bearing_force[:, :3], harmonics))
         loads = np.maximum(loads, _by_loads(at, condition, harmonics))
-        told = harmonics.order <= FEWER
-        lines = loudest_lines(harmonics.order[told], quantity.squares(harmonics)[:, told], lines)
+        compared = harmonics.order <= FEWER
+        lines = loudest_lines(harmonics.order[compared], quantity.squares(harmonics)[:, compared], lines)
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]

@@ -125,26 +125,26 @@ class Influence:
         return level if self.decides else max(level, in_decibels(self.largest))
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The change of the level, and the relative ones of transmission errors, in words."""
         shares = (
             100 * part if part > ROUNDING else 0.0
             for part in (self.relative_mean, self.relative_peak_to_peak)
         )
         mean, ripple = (f"{engineering(share, 2)} %" for share in shares)
-        parts = f"{self.level.words}, {mean} of the mean, {ripple} of the peak-to-peak transmission error"
+        parts = f"{self.level.text}, {mean} of the mean, {ripple} of the peak-to-peak transmission error"
         return f"{parts}; {self.beyond}" if self.beyond else parts
 
     def to_json(self) -> Json:
         """Return plain JSON without numbers that are not known; whoever shows it says `on` beside it."""
-        facts: Json = {"words": self.words}
+        content: Json = {"words": self.text}
         for item in fields(self):
             value, unit = getattr(self, item.name), item.metadata.get("unit")
             if isinstance(value, LevelChange):
-                facts[item.name] = asdict(value)
+                content[item.name] = asdict(value)
             elif item.name not in ("on", "parts") and (not isinstance(value, float) or np.isfinite(value)):
-                facts[f"{item.name}_{unit}" if unit else item.name] = np.asarray(value).tolist()
-        return facts
+                content[f"{item.name}_{unit}" if unit else item.name] = np.asarray(value).tolist()
+        return content
 
 
 def estimate_influences(
@@ -173,8 +173,8 @@ def estimate_influences(
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
     content = content_key(scene)
-    for whole in (False, free):  # sizes of all effects hold those of the free ones
-        known = _KNOWN.get((content, settled, whole))
+    for only_free in (False, free):  # sizes of all effects hold those of the free ones
+        known = _KNOWN.get((content, settled, only_free))
         if content is not None and known is not None:
             return {name: size for name, size in known.items() if not (free and _chosen(scene, name))}
     sizes = _estimated(scene, settled, system, free)
@@ -242,8 +242,8 @@ def _influences(
 ) -> dict[str, Influence]:
     screened = len(scene.meshes) >= SCREENED
     try:
-        whole = linear_figures(system, conditions)
-        mean = linear_figures(system, conditions, varying=False) if screened else whole
+        current = linear_figures(system, conditions)
+        mean = linear_figures(system, conditions, varying=False) if screened else current
     except (InputError, SolveError):
         return {}
     influences = {}
@@ -254,11 +254,11 @@ def _influences(
             other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
             influence = None
             if _same((other.arrays, other.bearing_map), (system.arrays, system.bearing_map)):
-                influence = _influence_of(system, name, on, whole, whole)
+                influence = _influence_of(system, name, on, current, current)
             elif screened:
                 influence = _influence_of(system, name, on, mean, linear_figures(other, conditions, False))
             if influence is None or influence.decibels > UNSEEN:
-                influence = _influence_of(system, name, on, whole, linear_figures(other, conditions))
+                influence = _influence_of(system, name, on, current, linear_figures(other, conditions))
         except (InputError, SolveError):
             continue
         influences[name] = influence
@@ -283,37 +283,39 @@ def _switchable(system: System) -> dict[str, bool]:
     return states
 
 
-def _influence_of(system: System, name: str, on: bool, own: LinearFigures, other: LinearFigures) -> Influence:
-    """Return what a system loses without an effect: `own` are its figures, `other` those with it toggled.
+def _influence_of(
+    system: System, name: str, on: bool, current: LinearFigures, other: LinearFigures
+) -> Influence:
+    """Return what a system loses without an effect: `current` are its figures, `other` those with it toggled.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
     flank.
     """
-    whole, without = (own, other) if on else (other, own)
-    parts = any(np.any(figures.parted > 0.0) for figures in (own, other))
-    mean, ripple = without.mean - whole.mean, without.peak_to_peak - whole.peak_to_peak
-    force = without.bearing_force - whole.bearing_force
-    orders = without.orders - whole.orders
-    bearing_orders = without.bearing_orders - whole.bearing_orders
-    if whole.coasting and not without.coasting:
+    with_effect, without = (current, other) if on else (other, current)
+    parts = any(np.any(figures.parted > 0.0) for figures in (current, other))
+    mean, ripple = without.mean - with_effect.mean, without.peak_to_peak - with_effect.peak_to_peak
+    force = without.bearing_force - with_effect.bearing_force
+    orders = without.orders - with_effect.orders
+    bearing_orders = without.bearing_orders - with_effect.bearing_orders
+    if with_effect.coasting and not without.coasting:
         room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
-        ripple = np.maximum(ripple, np.maximum(whole.parted - np.array(room), 0.0))
+        ripple = np.maximum(ripple, np.maximum(with_effect.parted - np.array(room), 0.0))
     quantity = system.scene.quantity or BearingForces()
     return Influence(
         mean=mean,
         peak_to_peak=ripple,
         bearing_force=force,
-        relative_mean=_largest(mean, whole.mean),
-        relative_peak_to_peak=_largest(ripple, whole.peak_to_peak),
-        relative_bearing_force=_largest(force, np.max(whole.bearing_force, initial=0.0)),
-        freedoms=whole.freedoms - without.freedoms,
-        rows=whole.rows - without.rows,
+        relative_mean=_largest(mean, with_effect.mean),
+        relative_peak_to_peak=_largest(ripple, with_effect.peak_to_peak),
+        relative_bearing_force=_largest(force, np.max(with_effect.bearing_force, initial=0.0)),
+        freedoms=with_effect.freedoms - without.freedoms,
+        rows=with_effect.rows - without.rows,
         on=on,
         orders=orders,
         bearing_orders=bearing_orders,
-        relative_orders=_by_order(orders, whole.orders),
-        relative_bearing_orders=_by_order(bearing_orders, whole.bearing_orders),
-        level=level_change(whole.lines, without.lines, quantity.name, quantity.unit),
+        relative_orders=_by_order(orders, with_effect.orders),
+        relative_bearing_orders=_by_order(bearing_orders, with_effect.bearing_orders),
+        level=level_change(with_effect.lines, without.lines, quantity.name, quantity.unit),
         decides=system.scene.quantity is not None,
         beyond=_beyond(system, name in LINEAR, parts),
         parts=parts,
@@ -353,7 +355,7 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
 class _Allowance:
     """What a tolerance allows effects to change, in the unit of `size`."""
 
-    words: str
+    text: str
     """The tolerance."""
     alone: float
     """Change from which on an effect is on that the scene does not call for."""
@@ -373,8 +375,8 @@ class _Allowance:
         if scene.level_tolerance is None:
             return None
         maximum = scene.level_tolerance
-        words = f"{maximum:g} dB"
-        return cls(words, maximum, LEVEL_SHARE * maximum, lambda influence: influence.decibels, False)
+        text = f"{maximum:g} dB"
+        return cls(text, maximum, LEVEL_SHARE * maximum, lambda influence: influence.decibels, False)
 
 
 @dataclass(frozen=True)
@@ -426,14 +428,14 @@ def decide_effects(
     influences = estimates(scene)
     free = {name: influence for name, influence in influences.items() if not _chosen(scene, name)}
     automatic = {
-        name: f"on for the tolerance of {allowance.words}: influence {influence.words}"
+        name: f"on for the tolerance of {allowance.text}: influence {influence.text}"
         for name, influence in free.items()
         if not influence.on and allowance.size(influence) > allowance.alone
     }
     choices = dict.fromkeys(automatic, "on")
     for name in _neglected(free, allowance):
         choices[name] = "off"
-        automatic[name] = f"neglected for the tolerance of {allowance.words}: influence {free[name].words}"
+        automatic[name] = f"neglected for the tolerance of {allowance.text}: influence {free[name].text}"
     chosen = replace(scene, effects={**scene.effects, **choices})
     return Decision(chosen, automatic, influences, TimeTaken.now().since(began))
 

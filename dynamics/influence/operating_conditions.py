@@ -50,11 +50,11 @@ class OperatingCondition:
     def passing(self, speed: FloatArray) -> OperatingCondition:
         """Return the condition with those of the speeds (k,) added that it passes, of no weight."""
         inside = speed[(speed > self.span[0]) & (speed < self.span[1])]
-        whole = np.concatenate([self.speed, inside])
-        order = np.argsort(whole)
+        speeds = np.concatenate([self.speed, inside])
+        order = np.argsort(speeds)
         rate = np.concatenate([self.rate, np.interp(inside, self.speed, self.rate)])
         weight = np.concatenate([self.weight, np.zeros(inside.size)])
-        return replace(self, speed=whole[order], rate=rate[order], weight=weight[order])
+        return replace(self, speed=speeds[order], rate=rate[order], weight=weight[order])
 
 
 def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[OperatingCondition, ...]:

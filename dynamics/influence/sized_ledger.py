@@ -24,7 +24,7 @@ def sized_ledger(ledger: Json, automatic: Mapping[str, str], influences: Mapping
 def _sized(entry: Json, automatic: Mapping[str, str], influences: Mapping[str, Influence]) -> Json:
     name, sized = entry["effect"], dict(entry)
     if entry["price"] and not entry["on"] and name in influences:
-        sized["price"] = f"left out: {influences[name].words}"
+        sized["price"] = f"left out: {influences[name].text}"
     if name in automatic and entry["possible"]:
         sized |= {"choice": "auto", "reason": automatic[name], "price": ""}
     return sized

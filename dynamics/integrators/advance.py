@@ -73,7 +73,7 @@ def _slow_enough(system: SystemArrays, work: Workspace, level: int) -> int:
     handover.
     """
     reference = system.reference
-    write_motion(reference, work.time[0], work.moved, work.motion)
+    write_motion(reference, work.time[0], work.quanta, work.motion)
     rate = 0.0
     for m in range(reference.per_radian.shape[0]):
         moving = 0.0

@@ -54,11 +54,11 @@ def restore(state: Any, arrays: Arrays, path: Path) -> None:
         target[...] = stored
 
 
-def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
-    """Write the arrays of `state`, and `facts`, to a neighbor of `path`; then move it there in one step."""
+def write_checkpoint(path: Path, state: Any, **values: Any) -> None:
+    """Write the arrays of `state`, and `values`, to a neighbor of `path`; then move it there in one step."""
     part = path.with_suffix(".part")
     with part.open("wb") as file:
-        np.savez(file, **dict(leaves_of(state)), **{f"fact {name}": value for name, value in facts.items()})
+        np.savez(file, **dict(leaves_of(state)), **{f"fact {name}": value for name, value in values.items()})
         file.flush()
         os.fsync(file.fileno())
     part.replace(path)
@@ -77,5 +77,5 @@ def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
             content = {name: file[name] for name in file.files}
     except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
         raise ResultError(f"{path.name}: not a readable checkpoint. Start a new run.") from error
-    facts = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
-    return {name: value for name, value in content.items() if name[:5] != "fact "}, facts
+    values = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
+    return {name: value for name, value in content.items() if name[:5] != "fact "}, values

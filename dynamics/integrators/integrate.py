@@ -53,16 +53,16 @@ def integrate(
     velocity: FloatArray | None = None,
     cancel: Cancel | None = None,
     trail: Trail | None = None,
-    whole: IntArray = NO_SAMPLES,
+    modal_samples: IntArray = NO_SAMPLES,
 ) -> Trajectory:
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
     polled about fifty times or more. `trail` saves the states of the run, and may say where it goes on for
-    another one. Samples `whole` (W,) keep all freedoms.
+    another one. Samples `modal_samples` (W,) keep all freedoms.
     """
     began = TimeTaken.now()
-    march = start_march(system, start, integration, velocity, whole)
+    march = start_march(system, start, integration, velocity, modal_samples)
     sink = MemorySink(march.samples, march.widths)
     if trail is not None and trail.taken is not None:
         trail.taken.into(march, sink)

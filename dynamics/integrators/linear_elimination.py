@@ -29,7 +29,7 @@ def gauss_jordan(matrix: FloatArray, size: int) -> None:
 
 @inner
 def eliminate_linear(system: SystemArrays, work: Workspace, level: int, span: float) -> None:
-    """Fill ``held`` of a level, and let linear elements follow in its ``approach``."""
+    """Fill ``linear_response`` of a level, and let linear elements follow in its ``approach``."""
     if work.linear.shape[0] == 0:
         return
     for e in range(system.elements.law.size):
@@ -69,7 +69,7 @@ def _hold(work: Workspace, level: int) -> None:
     count = work.linear.shape[0]
     for c in range(count):
         for k in range(work.response.size):
-            work.held[level, k, c] = work.held[level, k, count + c] = 0.0
+            work.linear_response[level, k, c] = work.linear_response[level, k, count + c] = 0.0
         first, end = work.linear[c, 1], work.linear[c, 2]
         for b in range(count):
             spring, damper = 0.0, 0.0
@@ -79,8 +79,8 @@ def _hold(work: Workspace, level: int) -> None:
                 damper += weight * work.local.viscous[row, c - first]
             for k in range(work.response.size):
                 answer = work.approach[level, work.linear[b, 0], k]
-                work.held[level, k, c] += spring * answer
-                work.held[level, k, count + c] += damper * answer
+                work.linear_response[level, k, c] += spring * answer
+                work.linear_response[level, k, count + c] += damper * answer
 
 
 @inner
@@ -137,13 +137,13 @@ def hold_linear(system: SystemArrays, work: Workspace, level: int, span: float) 
         work.force[row] = work.local.force[row] = 0.0
     rows, accelerated = work.force.size, has_unbalance(system.elements)
     for k in range(rows):
-        answer = _sum(work.held[level, k], work.resting)
+        answer = _sum(work.linear_response[level, k], work.resting)
         work.free[k] -= span * span * answer
         work.free_rate[k] -= span * answer
         if accelerated:
             work.free_acceleration[k] -= answer
     for m in range(work.free_position.size):
-        work.free_position[m] -= span * span * _sum(work.held[level, rows + m], work.resting)
+        work.free_position[m] -= span * span * _sum(work.linear_response[level, rows + m], work.resting)
 
 
 @inner_sums

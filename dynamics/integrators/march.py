@@ -135,7 +135,7 @@ def _by_part(names: list[str] | tuple[str, ...], peak: FloatArray, rms: FloatArr
 
 
 def stored_energy(
-    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray
+    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, quanta: IntArray
 ) -> FloatArray:
     """Return kinetic, bushing and mesh energy, J, (3,).
 
@@ -148,7 +148,7 @@ def stored_energy(
         0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
     )
     mesh, bearing = _in_elements(
-        by_address(system.elements), by_address(local_state(system, time, q, v, moved))
+        by_address(system.elements), by_address(local_state(system, time, q, v, quanta))
     )
     linear = 0.5 * q @ system.stiffness @ q - system.constant @ q
     return np.array([kinetic, linear + bearing, mesh])
@@ -157,7 +157,7 @@ def stored_energy(
 def _audited_energy(system: System, control: Control, time: float, work: Workspace) -> FloatArray:
     if not control.audit:
         return np.zeros(3)
-    return stored_energy(system.arrays, time, work.q, work.v, work.moved)
+    return stored_energy(system.arrays, time, work.q, work.v, work.quanta)
 
 
 @compiled
@@ -216,7 +216,7 @@ class March:
         """Sizes of the sampled states."""
         channels, rows = self.sampler.filtered, self.ring.local.force.size
         carried = carried_signals(self.system.arrays, self.sampler)
-        return Widths(self.sampler.kept, carried, self.work.moved.size, channels, rows)
+        return Widths(self.sampler.freedoms, carried, self.work.quanta.size, channels, rows)
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ class Ending:
     """By the stepping; in a process's first run with reading or making the compiled code."""
     figures: _SampleFigures
     """Peaks and rms over the run, and what the anti-alias filter took away."""
-    whole: FloatArray
+    modal_states: FloatArray
     """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
 
 
@@ -256,9 +256,9 @@ def start_march(
     start: StaticSolution,
     integration: Integration,
     velocity: FloatArray | None = None,
-    whole: IntArray = NO_SAMPLES,
+    modal_samples: IntArray = NO_SAMPLES,
 ) -> March:
-    """Start at t = 0 from `start`, at rest or with the `velocity` (n,); the samples `whole` (W,) have all."""
+    """Start at t = 0 from `start`, at rest or with the `velocity` (n,); `modal_samples` (W,) are complete."""
     if integration.method == "auto":
         integration = choose_method(system, start.displacement, integration).settings(integration)
     if integration.fixed_step is None:
@@ -270,7 +270,7 @@ def start_march(
         work.v[:] = velocity
     control = _control(system, integration)
     initial = _audited_energy(system, control, 0.0, work)
-    sampler = Sampler.of(system, whole)
+    sampler = Sampler.of(system, modal_samples)
     ring = SampleRing.of(system.arrays, sampler)
     run = by_address(system.arrays), by_address(work)
     passed = _Passed(*run, by_address(control), by_address(sampler), by_address(ring))
@@ -357,7 +357,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
         _step_range(work),
         taken,
         figures,
-        ring.whole,
+        ring.modal_states,
     )
 
 

@@ -44,7 +44,7 @@ HIGH_PASS = np.array([1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0]) / 64.0
 THIRD = 1.0 / 3.0
 
 
-@with_numbers("level", "whole")
+@with_numbers("level", "modal_samples")
 class Sampler(NamedTuple):
     """The filter and the series that sample the steps."""
 
@@ -66,15 +66,15 @@ class Sampler(NamedTuple):
     """Of the channels of a point; without signals where no output has them."""
     bodies: int
     """Freedoms that are not modal."""
-    kept: int
+    freedoms: int
     """Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them."""
     filtered: int
     """Channels that the filter takes: without the amplitudes of modal freedoms where no output has them."""
-    whole: IntArray
+    modal_samples: IntArray
     """Samples of which the amplitudes are kept in any case. Shape (W,)."""
 
     @classmethod
-    def of(cls, system: System, whole: IntArray) -> Sampler:
+    def of(cls, system: System, modal_samples: IntArray) -> Sampler:
         """Gather what the compiled loop needs."""
         sampling = system.sampling
         static, nominal = system.flanks.static, system.flanks.nominal_force
@@ -93,7 +93,7 @@ class Sampler(NamedTuple):
         filtered = rows + 2 * (n if wanted else bodies) + nominal.size
         displacements = n if wanted or not _dispensable(system) else bodies
         level = [level_below(by_address(static), m, float(force)) for m, force in enumerate(nominal)]
-        rest = (np.array(level, dtype=np.int64), bearings, bodies, displacements, filtered, whole)
+        rest = (np.array(level, dtype=np.int64), bearings, bodies, displacements, filtered, modal_samples)
         taps, rate = sampling.filter_taps(), sampling.inner_rate
         return cls(taps, HIGH_PASS, sampling.factor, rate, static, nominal, *rest)
 
@@ -138,7 +138,7 @@ class SampleRing(NamedTuple):
     """Of the elements there."""
     motion: FloatArray
     """Of the laws there. Shape (k, 4)."""
-    moved: IntArray
+    quanta: IntArray
     """Scratch: quanta of free trains before a step's end. Shape (k,)."""
     peaks: _Peaks
     removed: FloatArray
@@ -148,14 +148,14 @@ class SampleRing(NamedTuple):
     """
     high: FloatArray
     """Scratch: that content at one output sample. Shape (R,)."""
-    whole: FloatArray
-    """q and v of the b modal freedoms at the samples ``Sampler.whole``. Shape (W, 2, b)."""
+    modal_states: FloatArray
+    """q and v of the b modal freedoms at the samples ``Sampler.modal_samples``. Shape (W, 2, b)."""
 
     @classmethod
     def of(cls, arrays: SystemArrays, sampler: Sampler) -> SampleRing:
         """Allocate."""
         n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
-        channels = int(rows + 2 * sampler.kept + sampler.nominal_force.size)
+        channels = int(rows + 2 * sampler.freedoms + sampler.nominal_force.size)
         channels += carried_signals(arrays, sampler)
         signals = rows + sampler.bearings.constant.size
         return cls(
@@ -170,13 +170,13 @@ class SampleRing(NamedTuple):
             np.zeros(rows),
             np.zeros(rows),
             np.zeros(rows),
-            np.zeros((sampler.whole.size, 2, n - sampler.bodies)),
+            np.zeros((sampler.modal_samples.size, 2, n - sampler.bodies)),
         )
 
 
 def carried_signals(arrays: SystemArrays, sampler: Sampler) -> int:
     """Return how many signals a sample has in place of amplitudes, 2 s of `States`."""
-    return 0 if sampler.kept == arrays.mass.shape[0] else 2 * arrays.sparse.modal.row.size
+    return 0 if sampler.freedoms == arrays.mass.shape[0] else 2 * arrays.sparse.modal.row.size
 
 
 @routine
@@ -197,7 +197,7 @@ def sample_step(
         row = point % sampler.taps.size
         _interpolate(work, ring, step, time - work.time[0], has_unbalance(system.elements))
         _look(system, work, sampler, ring, time, row)
-        _keep_whole(sampler, ring, point)
+        _store_modal_states(sampler, ring, point)
         if point <= sampler.taps.size // 2:
             _mirror(ring, 0, point, -point)
         _see_peaks(ring, sampler, row)
@@ -232,12 +232,12 @@ def _mirror(ring: SampleRing, center: int, source: int, target: int) -> None:
 @inner
 def move_sampled_trains(system: SystemArrays, work: Workspace, ring: SampleRing) -> None:
     """Move the own rotation of free trains into the reference, in the state and in the ring alike."""
-    for k in range(work.moved.size):
-        ring.moved[k] = work.moved[k]
-    move_free_trains(system.reference, work.moved, work.q)
+    for k in range(work.quanta.size):
+        ring.quanta[k] = work.quanta[k]
+    move_free_trains(system.reference, work.quanta, work.q)
     first = ring.local.force.size
-    for k in range(work.moved.size):
-        count = work.moved[k] - ring.moved[k]
+    for k in range(work.quanta.size):
+        count = work.quanta[k] - ring.quanta[k]
         if count == 0:
             continue
         for row in range(ring.point.shape[0]):
@@ -271,7 +271,7 @@ def _look(
 ) -> None:
     """Write the channels of the state in the ring's `q` and `v` at `time` into its point `row`."""
     local, q, v = ring.local, ring.q, ring.v
-    write_motion(system.reference, time, work.moved, ring.motion)
+    write_motion(system.reference, time, work.quanta, ring.motion)
     set_phases(system.reference, ring.motion, local.position, local)
     set_drift(system.elements, time, ring.motion, local)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
@@ -288,7 +288,7 @@ def _look(
         force, level = sampler.nominal_force[m], sampler.level[m]
         point[rows + 2 * n + m] = deflection_from(sampler.static, m, local.position[m], force, level)
     first = rows + 2 * n + meshes
-    if sampler.kept > n:
+    if sampler.freedoms > n:
         for i in range(modes):
             point[first + i], point[first + modes + i] = q[n + i], v[n + i]
         return
@@ -299,13 +299,13 @@ def _look(
 
 
 @inner
-def _keep_whole(sampler: Sampler, ring: SampleRing, point: int) -> None:
+def _store_modal_states(sampler: Sampler, ring: SampleRing, point: int) -> None:
     """Keep the amplitudes at `point` if it is a sample that needs them."""
-    first, modes = np.uint64(sampler.bodies), np.uint64(ring.whole.shape[2])
-    for w in range(sampler.whole.size):
-        if sampler.whole[w] * sampler.factor == point:
+    first, modes = np.uint64(sampler.bodies), np.uint64(ring.modal_states.shape[2])
+    for w in range(sampler.modal_samples.size):
+        if sampler.modal_samples[w] * sampler.factor == point:
             for i in range(modes):
-                ring.whole[w, 0, i], ring.whole[w, 1, i] = ring.q[first + i], ring.v[first + i]
+                ring.modal_states[w, 0, i], ring.modal_states[w, 1, i] = ring.q[first + i], ring.v[first + i]
 
 
 @inner
@@ -356,14 +356,14 @@ def store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: int
     rows, n = ring.local.force.size, sampler.bodies
     for i in range(n):
         out.q[row, i], out.v[row, i] = ring.point[center, rows + i], ring.point[center, rows + n + i]
-    first, modes = rows + 2 * n + sampler.nominal_force.size, sampler.kept - n
+    first, modes = rows + 2 * n + sampler.nominal_force.size, sampler.freedoms - n
     for i in range(modes):
         out.q[row, n + i] = ring.point[center, first + i]
         out.v[row, n + i] = ring.point[center, first + modes + i]
     for r in range(out.carried.shape[1]):
         out.carried[row, r] = ring.point[center, first + r]
-    for k in range(work.moved.size):
-        out.moved[row, k] = work.moved[k]
+    for k in range(work.quanta.size):
+        out.quanta[row, k] = work.quanta[k]
     _see_extremes(ring, sampler.factor, center, out, row)
     _see_removed(ring, sampler.high_pass, center, point, out, row)
     counts[Count.OUTPUT] += 1

@@ -12,7 +12,7 @@ from dynamics.types import FloatArray
 @inner
 def set_motion(system: SystemArrays, work: Workspace, time: float, position: FloatArray) -> None:
     """Write the laws' motion, external force, and the meshes' phases into `position`, at `time`."""
-    write_motion(system.reference, time, work.moved, work.motion)
+    write_motion(system.reference, time, work.quanta, work.motion)
     external_force(system, time, work.motion, work.external)
     set_phases(system.reference, work.motion, position, work.local)
     set_drift(system.elements, time, work.motion, work.local)

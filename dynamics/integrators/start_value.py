@@ -16,7 +16,7 @@ from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 STATE = (
-    *("time", "time_rest", "error", "q", "v", "v_rest", "a", "moved"),
+    *("time", "time_rest", "error", "q", "v", "v_rest", "a", "quanta"),
     *("speed", "power", "work", "highest", "fallen", "counts"),
 )
 """What a workspace carries from step to step beside what is per row of the force elements."""
@@ -36,7 +36,7 @@ class _SavedState:
     """Of its ring. Shape (L, C)."""
     figures: tuple[FloatArray, ...]
     """Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,)."""
-    whole: FloatArray
+    modal_states: FloatArray
     """Of its ring. Shape (W, 2, b)."""
 
     @property
@@ -54,7 +54,7 @@ def _saved_state(march: March) -> _SavedState:
     work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
     figures = tuple(part.copy() for part in _figures(ring))
-    return _SavedState(state, work.force.copy(), ring.point.copy(), figures, ring.whole.copy())
+    return _SavedState(state, work.force.copy(), ring.point.copy(), figures, ring.modal_states.copy())
 
 
 def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
@@ -126,7 +126,7 @@ class StartValue:
         ring, rows, sampled_rows = march.ring, march.ring.local.force.size, self.rows_of
         ring.point[...] = 0.0
         ring.point[:, self._channels(march)] = self.at.point
-        ring.whole[...] = self.at.whole
+        ring.modal_states[...] = self.at.modal_states
         supports = np.arange(rows, ring.peaks.largest.size)
         signals = np.concatenate([sampled_rows, supports])
         columns = (signals, signals, signals, sampled_rows, sampled_rows)

@@ -127,11 +127,11 @@ class StateSpool:
                 target[...] = values
             self.keep(first, stop - first)
 
-    def save(self, state: Any, **facts: Any) -> None:
+    def save(self, state: Any, **values: Any) -> None:
         """Make all that was kept durable, then write a checkpoint that counts on it."""
         self._file.flush()
         os.fsync(self._file.fileno())
-        write_checkpoint(self._checkpoint, state, **facts)
+        write_checkpoint(self._checkpoint, state, **values)
 
     def begin(self) -> None:
         """Forget whatever is there."""

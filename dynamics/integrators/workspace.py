@@ -109,7 +109,7 @@ class Workspace(NamedTuple):
     """Of the laws at the current stage. Shape (k, 4)."""
     speed: FloatArray
     """Their speeds at the start of the step, rad/s, for the audit. Shape (k,)."""
-    moved: IntArray
+    quanta: IntArray
     """Quanta of a revolution by which each free train's own rotation was moved into the reference. Shape
     (k,).
     """
@@ -143,7 +143,7 @@ class Workspace(NamedTuple):
     """Accelerations of local coordinates, then of positions, per local force; linear elements follow, so that
     their own rows are 0. Shape (r, R, R + m).
     """
-    held: FloatArray
+    linear_response: FloatArray
     """Accelerations by the linear elements, per coordinate and per rate of their rows without local forces.
     Shape (r, R + m, 2 p).
     """
@@ -170,7 +170,7 @@ class Workspace(NamedTuple):
             response=np.zeros(rows + meshes),
             motion=np.zeros((laws, MOTION_COLUMNS)),
             speed=np.zeros(laws),
-            moved=np.zeros(laws, dtype=np.int64),
+            quanta=np.zeros(laws, dtype=np.int64),
             power=np.zeros((STAGES, len(Power))),
             work=np.zeros(len(Power)),
             highest=np.zeros(len(LOSSES)),
@@ -181,7 +181,7 @@ class Workspace(NamedTuple):
             ready=np.zeros(step_sizes.size, dtype=np.bool_),
             inverse=np.zeros((step_sizes.size, system.sparse.coupling.column.size)),
             approach=np.zeros((step_sizes.size, rows, rows + meshes)),
-            held=np.zeros((step_sizes.size, rows + meshes, 2 * len(linear))),
+            linear_response=np.zeros((step_sizes.size, rows + meshes, 2 * len(linear))),
         )
 
 

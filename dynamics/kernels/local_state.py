@@ -18,9 +18,9 @@ class LocalState(NamedTuple):
     """
     pace: FloatArray
     """Their rates in the kinematic motion, per second. Shape (m + f,)."""
-    whole: FloatArray
-    """Whole revolutions of the laws when `whole_part` was written; NaN: never. Shape (k,)."""
-    whole_part: FloatArray
+    full_turns: FloatArray
+    """Whole revolutions of the laws when `turns_phase` was written; NaN: never. Shape (k,)."""
+    turns_phase: FloatArray
     """What they add to the positions. Shape (m + f, k)."""
     coordinate: FloatArray
     rate: FloatArray
@@ -57,8 +57,8 @@ class LocalState(NamedTuple):
         return cls(
             position=np.zeros(positions),
             pace=np.zeros(positions),
-            whole=np.full(laws, np.nan),
-            whole_part=np.zeros((positions, laws)),
+            full_turns=np.full(laws, np.nan),
+            turns_phase=np.zeros((positions, laws)),
             clock=np.zeros(1),
             speed=np.zeros((elements, 2)),
             hint=np.zeros(elements, dtype=np.int64),

@@ -46,7 +46,7 @@ from dynamics.linearize.varying_stiffness import VaryingStiffness, still_motion
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 
 BLOCK = 4_000_000  # complex displacements held at once
 SAME = 1e-9  # of the gradients of rows that are the same
@@ -303,7 +303,7 @@ def flank_transfer(
     harmonics = possible_lines(at, orders, speed)
     _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
-    return kept_in(
+    return cached_in(
         file,
         FlankTransfer.from_netcdf,
         lambda: _computed(at, speed, harmonics, orders, progress),

@@ -15,7 +15,7 @@ from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
 # Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
-WHOLE, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
+FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
 MOTION_COLUMNS = 4
 QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
@@ -30,25 +30,25 @@ def law_value(law: Cubics, index: int, time: float) -> float:
 
 
 @compiled
-def write_motion(reference: KinematicMotion, time: float, moved: IntArray, motion: FloatArray) -> None:
-    """Write the motion of every law at `time` into `motion` (k, 4); the fraction may exceed 1 by `moved`.
+def write_motion(reference: KinematicMotion, time: float, quanta: IntArray, motion: FloatArray) -> None:
+    """Write the motion of every law at `time` into `motion` (k, 4); the fraction may exceed 1 by `quanta`.
 
-    `moved` (k,) counts the quanta of a revolution that a free train's own rotation has been moved by.
+    `quanta` (k,) counts the quanta of a revolution that a free train's own rotation has been moved by.
     """
     for k in range(motion.shape[0]):
         piece = piece_at(reference.speed, k, time)
         angle = area(reference.speed, piece, time - reference.speed.start[piece])
         turns = reference.fraction[piece] + angle / (2.0 * math.pi)
-        whole = math.floor(turns)
-        motion[k, WHOLE] = reference.whole[piece] + whole + moved[k] // QUANTA_PER_TURN
-        motion[k, FRACTION] = turns - whole + (moved[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
+        full = math.floor(turns)
+        motion[k, FULL_TURNS] = reference.full_turns[piece] + full + quanta[k] // QUANTA_PER_TURN
+        motion[k, FRACTION] = turns - full + (quanta[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
         motion[k, SPEED], motion[k, ACCELERATION] = cubic(reference.speed, piece, time)
 
 
 @inner
-def _whole_part(reference: KinematicMotion, mesh: int, law: int, whole: float) -> float:
+def _turns_phase(reference: KinematicMotion, mesh: int, law: int, full_turns: float) -> float:
     cycle = reference.denominator[mesh, law] * reference.period[mesh]
-    remainder = (int(whole) % cycle) * reference.numerator[mesh, law] % cycle
+    remainder = (int(full_turns) % cycle) * reference.numerator[mesh, law] % cycle
     return float(remainder / reference.denominator[mesh, law])
 
 
@@ -63,14 +63,14 @@ def set_phases(
     the shafts turn. That takes divisions of integers; it stays in `local` until a revolution is over.
     """
     for k in range(motion.shape[0]):
-        if local.whole[k] != motion[k, WHOLE]:
-            local.whole[k] = motion[k, WHOLE]
+        if local.full_turns[k] != motion[k, FULL_TURNS]:
+            local.full_turns[k] = motion[k, FULL_TURNS]
             for m in range(position.size):
-                local.whole_part[m, k] = _whole_part(reference, m, k, motion[k, WHOLE])
+                local.turns_phase[m, k] = _turns_phase(reference, m, k, motion[k, FULL_TURNS])
     for m in range(position.size):
         phase, pace = reference.offset[m], 0.0
         for k in range(motion.shape[0]):
-            phase += local.whole_part[m, k]
+            phase += local.turns_phase[m, k]
             phase += motion[k, FRACTION] * reference.numerator[m, k] / reference.denominator[m, k]
             pace += reference.per_radian[m, k] * motion[k, SPEED]
         position[m] = wrapped(phase, float(reference.period[m]))
@@ -137,7 +137,7 @@ def law_speed(reference: KinematicMotion, law: int, motion: FloatArray, velocity
 
 
 @inner
-def move_free_trains(reference: KinematicMotion, moved: IntArray, q: FloatArray) -> None:
+def move_free_trains(reference: KinematicMotion, quanta: IntArray, q: FloatArray) -> None:
     """Move the own rotation of free trains from `q` into the reference, up to half a quantum.
 
     It moves along the kinematic vector of the law, which changes no transmission error, no spring and no
@@ -149,7 +149,7 @@ def move_free_trains(reference: KinematicMotion, moved: IntArray, q: FloatArray)
         count = math.floor(q[reference.freedom[k]] / QUANTUM + 0.5)
         if count == 0.0:
             continue
-        moved[k] += int(count)
+        quanta[k] += int(count)
         for i in range(q.size):
             q[i] -= reference.vector[k, i] * (count * QUANTUM)
 

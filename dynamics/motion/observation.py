@@ -47,24 +47,24 @@ def observe(
     time: FloatArray,
     q: FloatArray,
     v: FloatArray,
-    moved: IntArray | None = None,
+    quanta: IntArray | None = None,
     carried: FloatArray | None = None,
 ) -> Observed:
     """Return what the elements do at T states.
 
-    `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
+    `time` (T,), `q` and `v` (T, n); `quanta` (T, k) counts those of free trains moved into the reference.
     Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).
     """
     local = make_local(system.elements, system.turn.shape[0])
-    return _look(system, local, time, moved, q, v, carried)
+    return _look(system, local, time, quanta, q, v, carried)
 
 
 def local_state(
-    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, quanta: IntArray | None = None
 ) -> LocalState:
     """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
     local = make_local(system.elements, system.turn.shape[0])
-    counted = None if moved is None else moved[np.newaxis]
+    counted = None if quanta is None else quanta[np.newaxis]
     _look(system, local, np.array([time]), counted, q[np.newaxis], v[np.newaxis])
     return local
 
@@ -73,7 +73,7 @@ def _look(
     system: SystemArrays,
     local: LocalState,
     time: FloatArray,
-    moved: IntArray | None,
+    quanta: IntArray | None,
     q: FloatArray,
     v: FloatArray,
     carried: FloatArray | None = None,
@@ -81,7 +81,7 @@ def _look(
     """Observe T states, and leave the last one in `local`."""
     rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
     seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
-    counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
+    counted = np.zeros((time.size, laws), dtype=np.int64) if quanta is None else quanta
     seats = np.empty((time.size, 0)) if carried is None else carried
     motion = np.empty((laws, MOTION_COLUMNS))
     scratch = np.empty((2, q.shape[1]))
@@ -96,7 +96,7 @@ def _observe(
     local: LocalState,
     motion: FloatArray,
     time: FloatArray,
-    moved: IntArray,
+    quanta: IntArray,
     q: FloatArray,
     v: FloatArray,
     carried: FloatArray,
@@ -104,7 +104,7 @@ def _observe(
     seen: Observed,
 ) -> None:
     for k in range(time.size):
-        write_motion(system.reference, time[k], moved[k], motion)
+        write_motion(system.reference, time[k], quanta[k], motion)
         set_phases(system.reference, motion, local.position, local)
         set_drift(system.elements, time[k], motion, local)
         if carried.shape[1] > 0:
@@ -159,10 +159,10 @@ def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:
 
 
 @compiled
-def _observe_laws(system: SystemArrays, time: FloatArray, moved: IntArray, observed: FloatArray) -> None:
+def _observe_laws(system: SystemArrays, time: FloatArray, quanta: IntArray, observed: FloatArray) -> None:
     """Write the motion of the laws into `observed` (T, k, 4)."""
     for k in range(time.size):
-        write_motion(system.reference, time[k], moved, observed[k])
+        write_motion(system.reference, time[k], quanta, observed[k])
 
 
 @compiled

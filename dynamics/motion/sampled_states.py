@@ -21,7 +21,7 @@ class States(NamedTuple):
     """Local coordinates, then their rates, of the rows that these amplitudes move; s = 0 where `q` has them.
     Shape (T, 2 s).
     """
-    moved: IntArray
+    quanta: IntArray
     """Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
     Shape (T, k).
     """
@@ -34,7 +34,7 @@ class States(NamedTuple):
     def rows(self, first: int, stop: int) -> States:
         """Return a view of the samples `first` to `stop` - 1."""
         part = slice(first, stop)
-        state = self.q[part], self.v[part], self.carried[part], self.moved[part]
+        state = self.q[part], self.v[part], self.carried[part], self.quanta[part]
         return States(*state, self.filtered[part], self.minimum[part], self.largest[part])
 
 

@@ -4,13 +4,13 @@ from dynamics.housings.reduced_housing import SurfaceHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.exact_lines import CorrectedRadiation, ExactLine, corrected_radiation, with_exact_lines
-from dynamics.noise.housing_radiation import HousingRadiation, housing_radiation, kept_radiation
+from dynamics.noise.housing_radiation import HousingRadiation, cached_radiation, housing_radiation
 from dynamics.noise.housing_recordings import (
     check_microphone,
-    heard_estimate,
     pressure_recording,
     pressure_signal,
     pressure_transfer,
+    recording_estimate,
     scattered_pressure_transfer,
     scene_pressure,
     sound_limit,
@@ -72,13 +72,12 @@ __all__ = [
     "SurfaceVelocity",
     "Together",
     "band_about",
+    "cached_radiation",
     "check_microphone",
     "corrected_radiation",
     "estimated_radiation",
     "forced_power",
-    "heard_estimate",
     "housing_radiation",
-    "kept_radiation",
     "loudest",
     "microphone_pressure",
     "models_at",
@@ -88,6 +87,7 @@ __all__ = [
     "pressure_transfer",
     "radiated_sound",
     "radiating_hull",
+    "recording_estimate",
     "regions",
     "scattered_pressure_transfer",
     "scene_pressure",

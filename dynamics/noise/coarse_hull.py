@@ -107,8 +107,8 @@ def _node_areas(hull: Hull) -> FloatArray:
 
 def _means(cell: IntArray, weight: FloatArray, values: FloatArray) -> FloatArray:
     """Return the weighted means of values (N, 3) over each cell, (C, 3)."""
-    whole = np.maximum(np.bincount(cell, weight), 1e-300)
-    return np.stack([np.bincount(cell, weight * values[:, axis]) / whole for axis in range(3)], axis=1)
+    total = np.maximum(np.bincount(cell, weight), 1e-300)
+    return np.stack([np.bincount(cell, weight * values[:, axis]) / total for axis in range(3)], axis=1)
 
 
 def _without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
@@ -213,8 +213,8 @@ def _coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntAr
     """
     hull = outer.hull
     triangles = cell[hull.triangles]
-    apart = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
-    used, corners = np.unique(triangles[apart], return_inverse=True)
+    has_area = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
+    used, corners = np.unique(triangles[has_area], return_inverse=True)
     nodes = _cell_positions(hull, cell)
     near = _nearest_nodes(hull, cell, nodes)[used]
     corners = _without_thin(nodes[used], corners.reshape(-1, 3))

@@ -46,7 +46,7 @@ def allowed_levels(
         Where there are monopoles.
     """
     monopoles_off, plane_off = (
-        np.array([model.error_band(float(each)) for each in ka]).T[:, :, None]
+        np.array([model.error_band(float(value)) for value in ka]).T[:, :, None]
         for model in (ElementalRadiators(), EquivalentRadiatedPower())
     )
     low, high = (plane - plane_off[1 - end] for end in (0, 1))
@@ -82,9 +82,9 @@ class EstimatedRadiation(HousingRadiation):
 
         The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
         """
-        count, whole = len(mode_power), max(float(mode_power.sum()), MIN)
+        count, total_power = len(mode_power), max(float(mode_power.sum()), MIN)
         knot = int(np.abs(self.frequency - frequency).argmin())
-        off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / whole
+        off: FloatArray = self.mode_error[:, knot, :count] @ mode_power / total_power
         return float(off[0]), float(off[1])
 
     def gains(self, housing: ReducedHousing, frequency: FloatArray) -> FloatArray:
@@ -97,8 +97,8 @@ class EstimatedRadiation(HousingRadiation):
         if not np.any(inside):
             return np.ones((len(frequency), shape.shape[1]))
         impulse = shape.T @ housing.mass
-        own = np.log(np.einsum("mr,frs,sm->fm", impulse, self.correction[inside], shape, optimize=True))
-        rows = [np.interp(frequency, self.frequency[inside], column) for column in own.T]
+        log_gain = np.log(np.einsum("mr,frs,sm->fm", impulse, self.correction[inside], shape, optimize=True))
+        rows = [np.interp(frequency, self.frequency[inside], column) for column in log_gain.T]
         return np.asarray(np.exp(rows).T)
 
     def off(self, frequency: FloatArray, mode_power: FloatArray) -> FloatArray:
@@ -119,17 +119,17 @@ def estimated_radiation(
     """Return the estimate for a housing from its resistance by monopoles; the air is theirs."""
     air, shape = air or Air(), housing.modes[1]
     ka = 2.0 * np.pi / air.sound_speed * monopoles.frequency * outer_hull(housing).hull.equivalent_radius
-    own = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
+    monopole_level = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
     plane = _levels(monopoles.impedance * np.einsum("mk,mn,nk->k", shape, monopoles.surface, shape))
     resolved = monopoles.frequency <= monopoles.facts.resolved_frequency
-    low, high, by_velocity = allowed_levels(own, plane[None], ka, resolved)
+    low, high, by_velocity = allowed_levels(monopole_level, plane[None], ka, resolved)
     level = low + np.interp(ka, SHARE_AT, SHARE)[:, None] * (high - low)
-    factor = 10.0 ** ((level - own) / 20.0) - 1.0
+    factor = 10.0 ** ((level - monopole_level) / 20.0) - 1.0
     correction = np.eye(len(shape)) + (shape * factor[:, None]) @ (shape.T @ housing.mass)
-    kept = {each.name: getattr(monopoles, each.name) for each in fields(HousingRadiation)}
-    kept["matrix"] = np.swapaxes(correction, 1, 2) @ monopoles.matrix @ correction
+    values = {item.name: getattr(monopoles, item.name) for item in fields(HousingRadiation)}
+    values["matrix"] = np.swapaxes(correction, 1, 2) @ monopoles.matrix @ correction
     return EstimatedRadiation(
-        **(kept | {"model_name": NAME}),
+        **(values | {"model_name": NAME}),
         correction=correction,
         mode_error=np.stack([level - high, level - low]),
         by_velocity=by_velocity,

@@ -28,7 +28,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
 from dynamics.work_cost import Cost, measured
 from host import MissingExtra
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 
 LINES, BUDGET = 4, 60.0
 """Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
@@ -92,7 +92,7 @@ def corrected_radiation(
     model : BoundaryElements
         With progress and workers.
     cache : Path, optional
-        As of `kept_radiation`.
+        As of `cached_radiation`.
     budget : float
         Predicted CPU seconds on the reference host: the lines are the same on every host.
     """
@@ -118,9 +118,9 @@ def corrected_radiation(
         budget -= seconds
         before, radiation = float(sound.power[at]), with_exact_lines(estimate, exact)
         sound = radiated_sound(response, housing, bearings, radiation)
-        own, level = sound_power_level([before, sound.power[at]]).tolist()
+        estimated_level, level = sound_power_level([before, sound.power[at]]).tolist()
         facts = exact[-1].facts
-        lines.append(ExactLine(hertz, own, level, facts.panels, facts.cost.seconds))
+        lines.append(ExactLine(hertz, estimated_level, level, facts.panels, facts.cost.seconds))
     return CorrectedRadiation(radiation, tuple(lines), tuple(left_out.values()))
 
 
@@ -168,14 +168,14 @@ def _exact_line(
         matrix, cost = measured(
             kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
         )
-        facts = RadiationFacts(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
+        metadata = RadiationFacts(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
         hermitian = 0.5 * (matrix + matrix.conj().T)
         return HousingRadiation(
-            np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, facts
+            np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata
         )
 
     file = None if cache is None else cache / f"line-{content_key(housing, model, hertz, COARSE, AIR)}.nc"
-    return kept_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
+    return cached_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
 
 
 class _Knot(NamedTuple):
@@ -219,10 +219,10 @@ def _knots_of_line(
     """Yield the knots of a line, and those at which it ends at its sides, -1 below and 1 above it."""
     hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
     for at in (hertz, *(hertz * FLAT**side for side in sides)):
-        own = _knot(estimate, at)
-        error = np.broadcast_to([[-EXACT], [EXACT]], own.mode_error.shape)
+        knot = _knot(estimate, at)
+        error = np.broadcast_to([[-EXACT], [EXACT]], knot.mode_error.shape)
         matrix = line.matrix[0] * (at / hertz) ** 2
-        yield own._replace(matrix=matrix, mode_error=error, by_velocity=np.zeros_like(own.by_velocity))
+        yield knot._replace(matrix=matrix, mode_error=error, by_velocity=np.zeros_like(knot.by_velocity))
     for side in sides:
         yield _knot(estimate, float(np.clip(hertz * BLEND**side, lowest, highest)))
 

@@ -24,7 +24,7 @@ from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 from model_studies.progress import Progress, silent, unreported
 from model_studies.workers import InProcess, Workers, divided
 
@@ -90,15 +90,15 @@ def _constant_knots(low: float, high: float, matrix: ComplexArray) -> _Knots:
     return _Knots(frequency, np.broadcast_to(matrix, (frequency.size, *matrix.shape)), 4.0 * CONSTANT_ERROR)
 
 
-def _missed(
-    left: float, middle: float, right: float, found: dict[float, ComplexArray], modes: FloatArray
+def _interpolation_error(
+    left: float, middle: float, right: float, matrices: dict[float, ComplexArray], modes: FloatArray
 ) -> float:
     """Return by how much the two ends miss the power of a mode in the middle, dB."""
-    ends = ModalResistance(np.array([left, right]), np.stack([found[left], found[right]]))
+    ends = ModalResistance(np.array([left, right]), np.stack([matrices[left], matrices[right]]))
     expected = ends.alone(np.array([middle]), modes)[0]
-    own = np.einsum("mk,mn,nk->k", modes, found[middle], modes, optimize=True).real
-    floor = NOTHING * float(own.max(initial=0.0)) or 1.0
-    return float(np.max(np.abs(10.0 * np.log10((expected + floor) / (own + floor))), initial=0.0))
+    power = np.einsum("mk,mn,nk->k", modes, matrices[middle], modes, optimize=True).real
+    floor = NOTHING * float(power.max(initial=0.0)) or 1.0
+    return float(np.max(np.abs(10.0 * np.log10((expected + floor) / (power + floor))), initial=0.0))
 
 
 class Octave(NamedTuple):
@@ -120,12 +120,12 @@ def _knots_of(
     turn, all of a width together. The error of what is kept is about a quarter of that stated. `resistances`
     yields matrices (r, r); `modes` (r, m) are vectors whose power is compared.
     """
-    found: list[dict[float, ComplexArray]] = [{} for _ in ranges]
+    computed: list[dict[float, ComplexArray]] = [{} for _ in ranges]
     error, pending = [0.0] * len(ranges), []
 
     def compute(points: Points) -> None:
         for (index, frequency), matrix in zip(points, resistances(points), strict=True):
-            found[index][frequency] = matrix
+            computed[index][frequency] = matrix
 
     for index, (low, high) in enumerate(ranges):
         count = max(int(np.ceil(np.log(high / low) / np.log(WIDEST))), 1)
@@ -137,16 +137,16 @@ def _knots_of(
         compute([(index, middle) for (index, *_), middle in zip(pending, middles, strict=True)])
         halves = []
         for (index, left, right), middle in zip(pending, middles, strict=True):
-            missed = _missed(left, middle, right, found[index], modes)
-            if missed > TOLERANCE and right / left > CLOSEST:
+            deviation = _interpolation_error(left, middle, right, computed[index], modes)
+            if deviation > TOLERANCE and right / left > CLOSEST:
                 halves += [(index, left, middle), (index, middle, right)]
             else:
-                error[index] = max(error[index], missed)
+                error[index] = max(error[index], deviation)
         pending = halves
-    knots = [(np.array(sorted(matrices)), matrices) for matrices in found]
+    knots = [(np.array(sorted(matrices)), matrices) for matrices in computed]
     return [
-        _Knots(frequency, np.stack([matrices[float(at)] for at in frequency]), missed)
-        for (frequency, matrices), missed in zip(knots, error, strict=True)
+        _Knots(frequency, np.stack([matrices[float(at)] for at in frequency]), deviation)
+        for (frequency, matrices), deviation in zip(knots, error, strict=True)
     ]
 
 
@@ -168,11 +168,11 @@ def _resistance_at(radiators: _Radiators, point: tuple[int, float]) -> ComplexAr
 
 def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -> Cost:
     """Predict the cost of `housing_radiation` once its hulls are there, on the reference host."""
-    whole = Cost(0.0, 0.0)
+    total = Cost(0.0, 0.0)
     for octave in octaves:
         cost, count = _knot_cost(octave, model, air)
-        whole = whole.then(cost.times(count))
-    return whole
+        total = total.then(cost.times(count))
+    return total
 
 
 def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
@@ -281,7 +281,7 @@ def housing_radiation(
     outer = outer_hull(housing)
     resolved = 0.0 if isinstance(model, EquivalentRadiatedPower) else resolved_frequency(outer, air)
     ends = octave_ranges(low, min(high, resolved))
-    parted = [Octave(*each, radiating_hull(outer, each[1], air.sound_speed)) for each in ends]
+    parted = [Octave(*span, radiating_hull(outer, span[1], air.sound_speed)) for span in ends]
     parts, cost = _resolved_parts(parted, model, air, housing.modes[1], progress, expected, cache, workers)
     panels = max((len(octave.hull.shapes) for octave in parted), default=len(outer.hull.triangles))
     if high > resolved:
@@ -314,16 +314,16 @@ def _resolved_parts(
     expected(on_this_host(kind, reference, cache))
     radiators = _Radiators(model, tuple(octave.hull for octave in parted), air)
     ranges = [(octave.first, octave.last) for octave in parted]
-    cost_of_each = [_knot_cost(octave, model, air)[0].seconds for octave in parted]
+    knot_seconds = [_knot_cost(octave, model, air)[0].seconds for octave in parted]
     computed: list[float] = []
 
     def resistances(points: Points) -> Iterator[ComplexArray]:
         # the first points are followed by all others
-        seconds = sum(cost_of_each[index] for index, _ in points) if computed else reference.seconds
+        seconds = sum(knot_seconds[index] for index, _ in points) if computed else reference.seconds
         matrices = divided(workers, _resistance_at, radiators, points, seconds)
         for (index, _), matrix in zip(points, matrices, strict=True):
             yield matrix
-            computed.append(cost_of_each[index])
+            computed.append(knot_seconds[index])
             done(min(sum(computed) / reference.seconds, 1.0))
 
     return measured(kind, reference, cache, lambda: _knots_of(ranges, resistances, modes), workers)
@@ -334,7 +334,7 @@ def resolved_frequency(outer: OuterHull, air: Air) -> float:
     return outer.hull.highest_wavenumber * air.sound_speed / (2.0 * np.pi) * ROUNDED_DOWN
 
 
-def kept_radiation(
+def cached_radiation(
     housing: ReducedHousing,
     model: RadiationModel,
     frequencies: ArrayLike,
@@ -378,7 +378,7 @@ def kept_radiation(
         return made.facts.cost.seconds > MIN_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
-    return kept_in(file, read, computed, write, ResultError, costly)
+    return cached_in(file, read, computed, write, ResultError, costly)
 
 
 def content_key(housing: ReducedHousing, *settings: object) -> str:

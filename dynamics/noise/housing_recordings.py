@@ -28,7 +28,7 @@ from dynamics.errors import InputError
 from dynamics.housings.reduced_housing import ReducedHousing, SurfaceHousing
 from dynamics.noise.coarse_hull import radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
-from dynamics.noise.housing_radiation import kept_radiation, resolved_frequency
+from dynamics.noise.housing_radiation import cached_radiation, resolved_frequency
 from dynamics.orders.resampling import low_passed
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
@@ -245,8 +245,8 @@ def _convolved(pieces: Iterator[FloatArray], response: FloatArray, first: int, s
     for piece in pieces:
         total[begin : begin + count] += irfft(np.sum(rfft(piece, count, axis=0) * filters, axis=1), count)
         begin += len(piece)
-    heard = total[max(-first, 0) :][: max(samples - max(first, 0), 0)]
-    return np.concatenate([np.zeros(samples - heard.size), heard])
+    signal = total[max(-first, 0) :][: max(samples - max(first, 0), 0)]
+    return np.concatenate([np.zeros(samples - signal.size), signal])
 
 
 def velocity_recording(
@@ -309,7 +309,7 @@ def pressure_recording(
     microphone : (3,) array
         In the frame of the housing's mesh, m.
     estimate : EstimatedRadiation, optional
-        As of `pressure_transfer`, by `heard_estimate`.
+        As of `pressure_transfer`, by `recording_estimate`.
     bearings : sequence of str, optional
         In the order of the seats; by default those with the names of the seats.
     """
@@ -347,29 +347,29 @@ def scene_pressure(
     microphone : (3,) array
         In the frame of the scene, m.
     cache, progress
-        As of `heard_estimate`.
+        As of `recording_estimate`.
     """
     for housing in surfaces:  # before any radiation is computed
         check_microphone(housing.body, microphone)
     parts = []
     for housing in surfaces:
-        estimate = heard_estimate(housing.body, run, cache, progress)
+        estimate = recording_estimate(housing.body, run, cache, progress)
         parts.append(pressure_recording(housing.body, run, microphone, housing.bearings, estimate=estimate))
     quantity = "; ".join(dict.fromkeys(part.quantity for part in parts))
     return replace(parts[0], samples=np.sum([part.samples for part in parts], axis=0), quantity=quantity)
 
 
-def heard_estimate(
+def recording_estimate(
     housing: ReducedHousing, run: RunResult, cache: Path | None = None, progress: Progress = silent
 ) -> EstimatedRadiation:
     """Return the estimate of the radiation up to where `pressure_recording` of a run ends.
 
-    It takes what monopoles take, 10 to 60 CPU s; `cache` and `progress` as of `kept_radiation`, whose errors
-    it raises.
+    It takes what monopoles take, 10 to 60 CPU s; `cache` and `progress` as of `cached_radiation`, whose
+    errors it raises.
     """
     highest = min(sound_limit(housing), float(run.receipt["sampling"]["pass_frequency"]))
     ends = [LOWEST, max(highest, LOWEST)]
-    return estimated_radiation(housing, kept_radiation(housing, MONOPOLES, ends, None, cache, progress))
+    return estimated_radiation(housing, cached_radiation(housing, MONOPOLES, ends, None, cache, progress))
 
 
 def scattered_pressure_transfer(

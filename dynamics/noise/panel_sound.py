@@ -128,15 +128,19 @@ def panel_sound(
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])
     weights = radiation.weights(hertz)
-    resolved = [each for each in weights if radiation.hull_at(outer, each[0], air.sound_speed)] or weights
+    resolved = [
+        weighted for weighted in weights if radiation.hull_at(outer, weighted[0], air.sound_speed)
+    ] or weights
     panels = radiation.hull_at(outer, resolved[-1][0], air.sound_speed)
     if panels is None:
         panels, model = RadiatingHull(outer.hull, outer.shapes), EquivalentRadiatedPower()
     moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in resolved}
     parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in resolved]
     power = np.sum(parts, axis=0)
-    whole = float(radiation.power(np.array([hertz]), velocity[None])[0])
-    return PanelSound(panels.hull, np.asarray(power * (whole / power.sum() if whole > 0.0 else 1.0)))
+    total_power = float(radiation.power(np.array([hertz]), velocity[None])[0])
+    return PanelSound(
+        panels.hull, np.asarray(power * (total_power / power.sum() if total_power > 0.0 else 1.0))
+    )
 
 
 @dataclass(frozen=True)
@@ -164,13 +168,15 @@ def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Regi
     points; each belongs to the region of the panel with the nearest center.
     """
     number = _region_numbers(sound.hull)
-    own = {
+    region_by_point = {
         point.name: int(number[np.argmin(np.linalg.norm(sound.hull.centers - point.position, axis=1))])
         for point in points
     }
     made = [
-        _region(sound, number == each, tuple(name for name, where in own.items() if where == each))
-        for each in np.unique(number)
+        _region(
+            sound, number == index, tuple(name for name, where in region_by_point.items() if where == index)
+        )
+        for index in np.unique(number)
     ]
     return tuple(sorted(made, key=lambda region: -region.power))
 

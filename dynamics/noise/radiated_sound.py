@@ -44,10 +44,10 @@ def _powers(
     velocity = by_bearing.sum(axis=0)
     force = radiation.reaction(hertz, velocity)
     power = np.maximum(_power(velocity, force), 0.0)
-    kept = slice(0, housing.frequency.size)
-    rate = rates.sum(axis=1)[:, kept]
-    mode_share = 0.5 * (rate.conj() * (force @ shape[:, kept])).real
-    mode_alone = 0.5 * np.abs(rate) ** 2 * radiation.alone(hertz, shape[:, kept])
+    natural_modes = slice(0, housing.frequency.size)
+    rate = rates.sum(axis=1)[:, natural_modes]
+    mode_share = 0.5 * (rate.conj() * (force @ shape[:, natural_modes])).real
+    mode_alone = 0.5 * np.abs(rate) ** 2 * radiation.alone(hertz, shape[:, natural_modes])
     alone = [_power(part, radiation.reaction(hertz, part)) for part in by_bearing]
     return {
         "power": power.reshape(grid),
@@ -56,7 +56,7 @@ def _powers(
         "bearing_alone": np.stack(alone).reshape(-1, *grid),
         "mode_share": mode_share.T.reshape(-1, *grid),
         "mode_alone": mode_alone.T.reshape(-1, *grid),
-        "natural_frequency": natural[kept] / (2.0 * np.pi),
+        "natural_frequency": natural[natural_modes] / (2.0 * np.pi),
     }
 
 
@@ -163,7 +163,7 @@ class RadiatedSound(ArrayFile):
         names = ("housing", "bearing", "mode_housing")
         by_part = ("bearing_share", "bearing_alone", "mode_share", "mode_alone", "natural_frequency")
         joined: dict[str, Any] = {
-            **{name: tuple(each for sound in sounds for each in getattr(sound, name)) for name in names},
+            **{name: tuple(value for sound in sounds for value in getattr(sound, name)) for name in names},
             **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
         }
         radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
@@ -219,8 +219,8 @@ def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
     """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
     if not floors:
         return {}
-    whole = FloorPower.of_all(floors)
-    return {f"floor_{name}": values for name, values in whole._asdict().items()}
+    total = FloorPower.of_all(floors)
+    return {f"floor_{name}": values for name, values in total._asdict().items()}
 
 
 def radiated_sound(
@@ -321,8 +321,8 @@ def loudest(sound: RadiatedSound, count: int = 15) -> tuple[LoudPoint, ...]:
     level = sound.orders.weighted_level.T
     if not np.any(sound.power > 0.0):
         return ()
-    beside = np.pad(level, ((1, 1), (0, 0)), constant_values=-np.inf)
-    peak = (level > beside[:-2]) & (level >= beside[2:]) & (level >= level.max() - QUIET)
+    padded = np.pad(level, ((1, 1), (0, 0)), constant_values=-np.inf)
+    peak = (level > padded[:-2]) & (level >= padded[2:]) & (level >= level.max() - QUIET)
     rows, columns = np.nonzero(peak)
     order = np.argsort(-level[rows, columns], kind="stable")[:count]
     return tuple(_point(sound, int(rows[k]), int(columns[k])) for k in order)
@@ -331,7 +331,7 @@ def loudest(sound: RadiatedSound, count: int = 15) -> tuple[LoudPoint, ...]:
 def _point(sound: RadiatedSound, s: int, h: int) -> LoudPoint:
     power, hertz = float(sound.power[s, h]), float(sound.frequency[s, h])
     mode, bearing = int(np.argmax(sound.mode_share[:, s, h])), int(np.argmax(sound.bearing_share[:, s, h]))
-    own = mode - sound.mode_housing.index(sound.mode_housing[mode])
+    housing_mode = mode - sound.mode_housing.index(sound.mode_housing[mode])
     powers = np.array([power, sound.bearing_alone[bearing, s, h], sound.without_bearing[bearing, s, h]])
     weighted: FloatArray = sound_power_level(np.maximum(powers, 0.0)) + a_weighting(hertz)
     return LoudPoint(
@@ -343,7 +343,7 @@ def _point(sound: RadiatedSound, s: int, h: int) -> LoudPoint:
         float(sound_power_level(power)),
         float(weighted[0]),
         float(sound.efficiency[s, h]),
-        own + 1,
+        housing_mode + 1,
         float(sound.natural_frequency[mode]),
         float(sound.mode_share[mode, s, h]) / power,
         sound.mode_housing[mode],

@@ -86,7 +86,8 @@ def scene_sound(
         housings=housings,
         models=models,
         regions=tuple(
-            _regions(housings, own, power, point) for own, point in zip(panels, points, strict=True)
+            _regions(housings, point_panels, power, point)
+            for point_panels, point in zip(panels, points, strict=True)
         ),
         error=joined_error(housings, sounds, models),
         over_time=None if run is None else _over_time(run, housings),

@@ -97,7 +97,7 @@ def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
 
-def _whole_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
+def _response_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
     return largest_level(speed, forced_power(model, speed, orders)[1])
 
 
@@ -114,7 +114,7 @@ def _flank_levels(model: SoundModel, speed: FloatArray, orders: int) -> Callable
         try:
             inputs = transfer.inputs(transfer.excitation(assemble(scene)))
         except InputError:
-            return _whole_level(replace(model, scene=scene), speed, orders)
+            return _response_level(replace(model, scene=scene), speed, orders)
         return largest_level(speed, OrderPower(transfer.frequency.T, form.of(inputs).T))
 
     return level
@@ -149,10 +149,10 @@ def sound_sensitivities(
 
     def level(figure: DesignFigure) -> Callable[[float], float]:
         if figure.name not in GUESSES:
-            at, heard = scenes(figure), level_of()
-            return lambda value: heard(at(value))
+            at, level_at = scenes(figure), level_of()
+            return lambda value: level_at(at(value))
         change = GUESSES[figure.name].varied
-        return lambda value: _whole_level(change(model, value) if value != 1.0 else model, speed, orders)
+        return lambda value: _response_level(change(model, value) if value != 1.0 else model, speed, orders)
 
     def compute(figure: DesignFigure) -> Sensitivity:
         return Sensitivity.of(figure, level(figure))

@@ -35,7 +35,7 @@ from dynamics.vibration import BearingHarmonics, housing_motion, seat_forces
 from model_studies.progress import Progress, silent
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
-MAX_MISSED = 10.0
+MAX_PEAK_ERROR = 10.0
 """dB; speeds that miss more are no map of a resonance."""
 Levels = Callable[[Mapping[str, float]], FloatArray]
 
@@ -75,8 +75,8 @@ def _radiated_power(model: SoundModel, response: BearingHarmonics) -> OrderPower
             velocity = np.swapaxes(2j * np.pi * response.frequency[..., None] * motion, 0, 1)
             power += order_power(model.resistance[part.name], frequency, velocity).power
             if response.floor is not None:
-                own = radiated_floor(response.floor, housing, part.bushings, model.resistance[part.name])
-                floors.append(own)
+                floor = radiated_floor(response.floor, housing, part.bushings, model.resistance[part.name])
+                floors.append(floor)
     return OrderPower(frequency, power, FloorPower.of_all(floors) if floors else None)
 
 
@@ -103,7 +103,7 @@ class _Guess:
     """``varied(model, factor)``: the model with it; the same object where the scene has no such figure."""
 
 
-def _each_housing(
+def _with_housings(
     change: Callable[[ReducedHousing, float], ReducedHousing], model: SoundModel, factor: float
 ) -> SoundModel:
     for name, housing in model.housings.items():
@@ -122,8 +122,8 @@ def _mesh_damping(model: SoundModel, factor: float) -> SoundModel:
     """Scale ratio and damping; a mesh uses one of them."""
 
     def damped(mesh: GearMesh) -> GearMesh:
-        own = None if mesh.damping is None else factor * mesh.damping
-        return replace(mesh, damping=own, damping_ratio=factor * mesh.damping_ratio)
+        damping = None if mesh.damping is None else factor * mesh.damping
+        return replace(mesh, damping=damping, damping_ratio=factor * mesh.damping_ratio)
 
     meshes = tuple(damped(mesh) for mesh in model.scene.meshes)
     return replace(model, scene=replace(model.scene, meshes=meshes)) if meshes else model
@@ -159,13 +159,13 @@ GUESSES = {
             "housing_damping",
             "damping of the housing",
             Range(0.4, 1.0, 2.0),
-            partial(_each_housing, with_damping),
+            partial(_with_housings, with_damping),
         ),
         _Guess(
             "housing_frequency",
             "natural frequencies of the housing",
             Range(0.97, 1.0, 1.01),
-            partial(_each_housing, with_frequencies),
+            partial(_with_housings, with_frequencies),
         ),
         _Guess("mount_stiffness", "stiffness of the mounts", Range(0.5, 1.0, 2.0), _mount_stiffness),
         _Guess("bearing_stiffness", "stiffness of the bearings", Range(0.7, 1.0, 1.4), _bearing_stiffness),
@@ -237,8 +237,10 @@ class SoundBand:
         Those of a response in which stiffness varies, where the ranges were run over the mean stiffness.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
-        own = _levels(self.order, loudest, self.order, power).tolist()
-        return self._of_bands([replace(band, nominal=at) for band, at in zip(self._bands, own, strict=True)])
+        levels = _levels(self.order, loudest, self.order, power).tolist()
+        return self._of_bands(
+            [replace(band, nominal=at) for band, at in zip(self._bands, levels, strict=True)]
+        )
 
     def with_power_error(
         self, name: str, power: OrderPower, below: FloatArray, above: FloatArray
@@ -263,8 +265,8 @@ class SoundBand:
                 shifted = replace(shifted, floor=floor._replace(power=part * floor.power))
             return _levels(self.order, loudest, self.order, shifted)
 
-        own = levels(np.zeros(power.power.shape))
-        ends = zip(self._bands, own - levels(-below), levels(above) - own, strict=True)
+        nominal_levels = levels(np.zeros(power.power.shape))
+        ends = zip(self._bands, nominal_levels - levels(-below), levels(above) - nominal_levels, strict=True)
         return self._of_bands([band.with_error(name, float(low), float(high)) for band, low, high in ends])
 
 
@@ -313,7 +315,7 @@ def sound_band(
     for name in ranges:
         one_of("ranges", name, GUESSES)
     ranges = {name: span for name, span in ranges.items() if GUESSES[name].varied(model, 2.0) is not model}
-    fewer = _each_housing(
+    fewer = _with_housings(
         lambda housing, part: with_modes(housing, max(int(part * len(housing.frequency)), 1)), model, 0.5
     )
     others = {"mode_number": fewer, **(alternatives or {})}
@@ -365,25 +367,25 @@ def _band(
     loudest = np.argmax(nominal.weighted_power, axis=1)
 
     def levels(values: Mapping[str, float]) -> FloatArray:
-        own = model
+        varied_model = model
         for name, value in values.items():
-            own = own if value == 1.0 else GUESSES[name].varied(own, value)
-        return _levels(order, loudest, *((order, nominal) if own is model else powers(own)))
+            varied_model = varied_model if value == 1.0 else GUESSES[name].varied(varied_model, value)
+        return _levels(order, loudest, *((order, nominal) if varied_model is model else powers(varied_model)))
 
     bands = list(varied(levels))
     for name, other in others.items():
         difference = _levels(order, loudest, *powers(other)) - levels({})
-        for index, missed in enumerate(np.abs(difference).tolist()):
-            bands[index] = bands[index].with_error(name, missed, missed)
+        for index, error in enumerate(np.abs(difference).tolist()):
+            bands[index] = bands[index].with_error(name, error, error)
     band = SoundBand(speed, order, bands[0], bands[1], (), speed[loudest], (), ())._of_bands(bands)
     total = nominal.total_weighted_power
     band = _with_floor_error(band, speed, nominal)
-    missed = _missed_by_steps(speed, total)
+    error = _speed_step_error(speed, total)
     peaks = zip(band.largest, nominal.weighted_power, strict=True)
     return replace(
         band,
         largest_total=_with_peak(band.largest_total, speed, total),
-        mean_total=band.mean_total.with_error("speed_steps", missed, missed),
+        mean_total=band.mean_total.with_error("speed_steps", error, error),
         largest=tuple(_with_peak(level, speed, power) for level, power in peaks),
     )
 
@@ -394,19 +396,21 @@ def _with_floor_error(band: SoundBand, speed: FloatArray, power: OrderPower) -> 
         return band
     total, name = power.total_weighted_power, "orders_left_out"
     off = np.array(power.total_error).tolist()
-    mean, missed = mean_power(speed, total), mean_power(speed, power.weighted_error)
-    minimum = float(sound_power_level(mean) - sound_power_level(max(mean - missed, 0.0)))
+    mean, mean_error = mean_power(speed, total), mean_power(speed, power.weighted_error)
+    minimum = float(sound_power_level(mean) - sound_power_level(max(mean - mean_error, 0.0)))
     largest = off[int(np.argmax(total))]
     return replace(
         band,
         largest_total=band.largest_total.with_error(name, largest, largest),
         mean_total=band.mean_total.with_error(name, minimum, minimum),
-        total=tuple(each.with_error(name, own, own) for each, own in zip(band.total, off, strict=True)),
+        total=tuple(
+            level.with_error(name, error, error) for level, error in zip(band.total, off, strict=True)
+        ),
     )
 
 
 def _with_peak(band: LevelBand, speed: FloatArray, power: FloatArray) -> LevelBand:
-    return band.with_error("speed_steps", 0.0, _missed_between(speed, power))
+    return band.with_error("speed_steps", 0.0, _peak_error(speed, power))
 
 
 def mean_power(speed: FloatArray, power: FloatArray) -> float:
@@ -414,15 +418,17 @@ def mean_power(speed: FloatArray, power: FloatArray) -> float:
     return float(np.trapezoid(power, speed) / (speed[-1] - speed[0]) if power.size > 1 else power[0])
 
 
-def _missed_by_steps(speed: FloatArray, power: FloatArray) -> float:
+def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
     """Return how far the mean of every other speed and the last lies off that of all, dB."""
-    kept = np.unique([*range(0, power.size, 2), power.size - 1])
-    coarse, fine = sound_power_level([mean_power(speed[kept], power[kept]), mean_power(speed, power)])
+    alternate = np.unique([*range(0, power.size, 2), power.size - 1])
+    coarse, fine = sound_power_level(
+        [mean_power(speed[alternate], power[alternate]), mean_power(speed, power)]
+    )
     return float(abs(coarse - fine))
 
 
-def _missed_between(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far a peak between the speeds may stand above the largest power, dB, at most `MAX_MISSED`.
+def _peak_error(speed: FloatArray, power: FloatArray) -> float:
+    """Return how far a peak between the speeds may stand above the largest, dB, at most `MAX_PEAK_ERROR`.
 
     The reciprocal of the power over speed is a parabola near a resonance: that through the largest value and
     its neighbors. At the ends of the speeds nothing is known.
@@ -435,7 +441,7 @@ def _missed_between(speed: FloatArray, power: FloatArray) -> float:
         speed[near] - speed[at], power[at] / np.maximum(power[near], 1e-30 * power[at]), 2
     )
     minimum = height - slope**2 / (4.0 * bend) if bend > 0.0 else 1.0
-    return float(-10.0 * np.log10(np.clip(minimum, 10.0 ** (-MAX_MISSED / 10.0), 1.0)))
+    return float(-10.0 * np.log10(np.clip(minimum, 10.0 ** (-MAX_PEAK_ERROR / 10.0), 1.0)))
 
 
 def largest_level(speed: FloatArray, power: OrderPower) -> float:
@@ -444,15 +450,15 @@ def largest_level(speed: FloatArray, power: OrderPower) -> float:
     Smooth in whatever shifts a resonance, where the speeds resolve it.
     """
     total = power.total_weighted_power
-    return float(sound_power_level(total.max())) + _missed_between(speed, total)
+    return float(sound_power_level(total.max())) + _peak_error(speed, total)
 
 
-def _levels(order: FloatArray, loudest: IntArray, own: FloatArray, power: OrderPower) -> FloatArray:
+def _levels(order: FloatArray, loudest: IntArray, power_orders: FloatArray, power: OrderPower) -> FloatArray:
     """Return the levels that have bands, dB(A): largest and mean total, orders' largest and there, totals."""
     weighted = np.zeros((order.size, power.power.shape[1]))
-    kept = np.isin(own, order)
-    weighted[np.searchsorted(order, own[kept])] = power.weighted_power[kept]
+    listed = np.isin(power_orders, order)
+    weighted[np.searchsorted(order, power_orders[listed])] = power.weighted_power[listed]
     total = weighted.sum(axis=0) + power.weighted_floor
     there = weighted[np.arange(order.size), loudest]
-    whole = [total.max(), mean_power(power.frequency[0], total)]
-    return sound_power_level(np.concatenate([whole, weighted.max(axis=1), there, total]))
+    totals = [total.max(), mean_power(power.frequency[0], total)]
+    return sound_power_level(np.concatenate([totals, weighted.max(axis=1), there, total]))

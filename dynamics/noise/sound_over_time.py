@@ -140,16 +140,16 @@ def sound_over_time(
 
 def _blocks(pieces: Iterable[FloatArray], samples: int) -> Iterator[FloatArray]:
     """Yield blocks of `samples` that overlap by half, of a series in pieces; no more of it is held."""
-    held: list[FloatArray] = []
+    pending: list[FloatArray] = []
     for piece in pieces:
-        held.append(piece)
-        if sum(map(len, held)) < samples:
+        pending.append(piece)
+        if sum(map(len, pending)) < samples:
             continue
-        series = np.concatenate(held)
+        series = np.concatenate(pending)
         starts = range(0, len(series) - samples + 1, samples // 2)
         for start in starts:
             yield series[start : start + samples]
-        held = [series[starts[-1] + samples // 2 :]]
+        pending = [series[starts[-1] + samples // 2 :]]
 
 
 def _line_powers(

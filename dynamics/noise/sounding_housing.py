@@ -14,7 +14,7 @@ from dynamics.housings.reduced_housing import ReducedHousing, SurfaceHousing
 from dynamics.noise.estimated_radiation import NAME as ESTIMATE
 from dynamics.noise.estimated_radiation import EstimatedRadiation, estimated_radiation
 from dynamics.noise.exact_lines import BUDGET, CorrectedRadiation, corrected_radiation
-from dynamics.noise.housing_radiation import HousingRadiation, kept_radiation
+from dynamics.noise.housing_radiation import HousingRadiation, cached_radiation
 from dynamics.noise.radiated_sound import RadiatedSound, radiated_sound
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
@@ -105,7 +105,7 @@ def _frequencies(response: BearingHarmonics, run: RunResult | None) -> FloatArra
 
 
 def _plain_radiation(body: ReducedHousing, hertz: FloatArray, radiation: Radiation) -> HousingRadiation:
-    panels = kept_radiation(
+    panels = cached_radiation(
         body,
         radiation.model,
         hertz.ravel(),

@@ -48,8 +48,8 @@ class QuantityForm:
 
     def of(self, inputs: ComplexArray) -> FloatArray:
         """Return the power or mean square of inputs (S, H, 1 + R), (S, H), not weighted."""
-        moved = (self.matrix @ inputs[..., None])[..., 0]
-        return np.asarray(np.maximum(np.sum(inputs.conj() * moved, axis=-1).real, 0.0))
+        product = (self.matrix @ inputs[..., None])[..., 0]
+        return np.asarray(np.maximum(np.sum(inputs.conj() * product, axis=-1).real, 0.0))
 
     def weighted(self, inputs: ComplexArray) -> FloatArray:
         """Return `of` with the weighting, (S, H)."""
@@ -98,8 +98,8 @@ class PointVelocity:
         housing = _housing(model, self.housing)
         (point,) = named_points(housing, (self.point,))
         velocity = _velocities(transfer, model, self.housing)
-        moved = np.moveaxis(velocity @ point.motion[_axes(self.direction)].T, 2, 3)
-        return _mean_square(transfer, "m2 s-2", VELOCITY, moved)
+        point_velocity = np.moveaxis(velocity @ point.motion[_axes(self.direction)].T, 2, 3)
+        return _mean_square(transfer, "m2 s-2", VELOCITY, point_velocity)
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class Together:
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
         """Return the sum."""
         first, *others = (part.form(transfer, model) for part in self.parts)
-        return replace(first, matrix=sum((own.matrix for own in others), first.matrix))
+        return replace(first, matrix=sum((form.matrix for form in others), first.matrix))
 
 
 class _OneInput(NamedTuple):
@@ -199,8 +199,8 @@ class QuantityLevel:
 
     def squares(self, forces: ForceLines) -> FloatArray:
         """Return powers or mean squares of a response or a run, weighted, (S, H)."""
-        own = _OneInput(forces.bearing, forces.frequency, forces.bearing_force[..., None])
-        form = self.quantity.form(own, self.model)
+        bearing_input = _OneInput(forces.bearing, forces.frequency, forces.bearing_force[..., None])
+        form = self.quantity.form(bearing_input, self.model)
         return form.weighted(np.ones((*forces.frequency.shape, 1), dtype=complex))
 
 

@@ -212,7 +212,7 @@ def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time:
     laws = arrays.elements.laws
     laws = laws._replace(applied_force=laws.applied_force.held_at(time))
     changed = arrays._replace(
-        reference=arrays.reference._replace(speed=speeds, whole=none, fraction=none),
+        reference=arrays.reference._replace(speed=speeds, full_turns=none, fraction=none),
         load=arrays.load._replace(torque=_constant(torque)),
         elements=arrays.elements._replace(laws=laws),
     )

@@ -13,7 +13,7 @@ from dynamics.forces.elements import SPATIAL_FLANK
 from dynamics.mechanism.additions import CENTER_DISTANCE_CHANGE, LOAD_ARM, MISALIGNMENT
 from dynamics.mechanism.carried_planets import ROTATION
 from dynamics.mechanism.flank_gradients import common_face_width, table_sense
-from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
+from dynamics.motion.motion import ACCELERATION, FRACTION, FULL_TURNS, QUANTA_PER_TURN, SPEED
 from dynamics.motion.observation import Observed, static_deflections
 from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
@@ -109,7 +109,7 @@ def histories(
     those of the unfiltered motion.
     """
     scene = system.scene
-    q, v, quanta = signals.q, signals.v, states.moved
+    q, v, quanta = signals.q, signals.v, states.quanta
     outputs = scene.outputs
     force, moment = _on_the_ground(system, laws, signals.force, q, v, quanta)
     driving = system.driving_rows
@@ -158,7 +158,7 @@ def checked_series(
         "least_mesh_force": states.minimum[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
         **_axis_series(system, seen.coordinate, seen.force),
-        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.moved)[0],
+        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.quanta)[0],
     }
 
 
@@ -170,10 +170,10 @@ def _contact(system: System, force: FloatArray) -> FloatArray:
 
 
 def _accelerations(
-    system: System, laws: FloatArray, time: FloatArray, signals: _Signals, moved: IntArray
+    system: System, laws: FloatArray, time: FloatArray, signals: _Signals, quanta: IntArray
 ) -> dict[str, FloatArray]:
     """Accelerations of the freedoms, and of the shafts at their bearings."""
-    none = {"acceleration": np.empty((0, len(moved))), "bearing_acceleration": np.empty((0, 3, len(moved)))}
+    none = {"acceleration": np.empty((0, len(quanta))), "bearing_acceleration": np.empty((0, 3, len(quanta)))}
     if not system.scene.outputs.accelerations:
         return none
     acceleration, series = _acceleration(system, laws[ACCELERATION], time, signals), dict(none)
@@ -182,8 +182,8 @@ def _accelerations(
     if system.scene.outputs.bearing_forces:
         moves = system.freedoms.keep(system.supports.motion + system.supports.seat)
         bearings, _, freedoms = moves.shape
-        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(moved))
-        series["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
+        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(quanta))
+        series["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, quanta)
     return series
 
 
@@ -201,7 +201,7 @@ def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: _
 
 
 def _on_the_ground(
-    system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
+    system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, quanta: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return forces and moments on the ground, (b, 3, T) each; none of them if not requested.
 
@@ -212,10 +212,10 @@ def _on_the_ground(
         return none, none
     reaction = system.bearing_force(local, q, v)
     force, moment = reaction[:, :3], reaction[:, 3:]
-    turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, moved)
+    turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, quanta)
     if not _holds_tilt(system):
         return turned, none
-    return turned, _seen_from_the_ground(system, np.ascontiguousarray(moment), laws, moved)
+    return turned, _seen_from_the_ground(system, np.ascontiguousarray(moment), laws, quanta)
 
 
 def _holds_tilt(system: System) -> bool:
@@ -226,10 +226,12 @@ def _holds_tilt(system: System) -> bool:
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
 
 
-def _seen_from_the_ground(system: System, force: FloatArray, laws: FloatArray, moved: IntArray) -> FloatArray:
+def _seen_from_the_ground(
+    system: System, force: FloatArray, laws: FloatArray, quanta: IntArray
+) -> FloatArray:
     """Turn vectors on the ground from the carrier's frame into the fixed one, (b, 3, T)."""
     ratio = system.kinematics.float_ratio
-    turned = laws[WHOLE] + laws[FRACTION] + moved.T / QUANTA_PER_TURN
+    turned = laws[FULL_TURNS] + laws[FRACTION] + quanta.T / QUANTA_PER_TURN
     for bearing, frame in enumerate(system.supports.frame):
         if frame is None:
             continue

@@ -106,18 +106,18 @@ class RunFacts:
 def effect_ledger(run: RunFacts) -> Json:
     """Return the `sized_ledger` with the checks of the run."""
     ledger = with_assumed_phases(run.system.ledger.to_json(), run.system)
-    whole = sized_ledger(ledger, run.automatic, run.influences)
-    entries = [entry | _checked(entry, run.checks) for entry in whole["entries"]]
-    return {**whole, "entries": entries, "checks": [check.to_json() for check in run.checks]}
+    sized = sized_ledger(ledger, run.automatic, run.influences)
+    entries = [entry | _checked(entry, run.checks) for entry in sized["entries"]]
+    return {**sized, "entries": entries, "checks": [check.to_json() for check in run.checks]}
 
 
 def _checked(entry: Json, checks: Sequence[Check]) -> Json:
-    found_checks = [
+    effect_checks = [
         check for check in checks if (check.effect, check.part) == (entry["effect"], entry["part"])
     ]
     return {
-        "checked": "; ".join(check.reason for check in found_checks) or NOT_CHECKED,
-        "holds": all(check.holds for check in found_checks) if found_checks else None,
+        "checked": "; ".join(check.reason for check in effect_checks) or NOT_CHECKED,
+        "holds": all(check.holds for check in effect_checks) if effect_checks else None,
     }
 
 
@@ -241,17 +241,17 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
     law = leading_law(system)
     branches = branches_up_to(system, linear, abs(system.scene.references[law].speed.extreme))
     speed = branches.speed
-    whole = np.all(np.isfinite(branches.frequency), axis=0)
+    complete = np.all(np.isfinite(branches.frequency), axis=0)
     maximum = np.argmax(branches.kinetic_energy[-1], axis=1)
     return {
         "shaft": system.scene.references[law].shaft,
         "speed": speed.tolist(),
         "mesh_frequency": mesh_frequencies(system, speed).tolist(),
-        "frequency": branches.frequency[:, whole].T.tolist(),
-        "damping_ratio": branches.damping_ratio[:, whole].T.tolist(),
-        "whirl": branches.whirl[:, whole].T.tolist(),
-        "freedom": [linear.freedom[index] for index in maximum[whole]],
-        "moves": _moves(linear.freedom, branches.kinetic_energy[-1][whole]),
+        "frequency": branches.frequency[:, complete].T.tolist(),
+        "damping_ratio": branches.damping_ratio[:, complete].T.tolist(),
+        "whirl": branches.whirl[:, complete].T.tolist(),
+        "freedom": [linear.freedom[index] for index in maximum[complete]],
+        "moves": _moves(linear.freedom, branches.kinetic_energy[-1][complete]),
     }
 
 
@@ -383,7 +383,7 @@ def _known_influences(decision: Decision, system: System) -> Mapping[str, Influe
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return all series of `RunResult` for the `states` at `time` (T,), and those to check, unfiltered."""
-    seen = observe(system.arrays, time, states.q, states.v, states.moved, states.carried)
+    seen = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
     motion = system, time, observe_laws(system.arrays, time), states, seen
     if system.sampling.stop_band == 0.0:
         points = histories(*motion, unfiltered(system, seen, states))

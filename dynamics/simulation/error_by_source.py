@@ -94,8 +94,8 @@ class _Window:
 
     def on_laws_of(self, other: System) -> System:
         """Return its system with the force laws of `other`, the run's system but for these."""
-        laws_here, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
-        laws = laws._replace(applied_force=laws_here.applied_force)  # whose clock starts here
+        window_laws, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
+        laws = laws._replace(applied_force=window_laws.applied_force)  # whose clock starts here
         arrays = self.system.arrays._replace(elements=other.arrays.elements._replace(laws=laws))
         return replace(self.system, arrays=by_address(arrays))
 
@@ -136,22 +136,22 @@ def _spans(system: System) -> list[tuple[int, int]]:
     return [(end - size, end) for end in ends]
 
 
-def _windows(system: System, states_of: StatesOf, whole: FloatArray) -> list[_Window]:
-    """Return the windows of a run; `whole` (W, 2, b) are the modal freedoms at their starts."""
+def _windows(system: System, states_of: StatesOf, modal_states: FloatArray) -> list[_Window]:
+    """Return the windows of a run; `modal_states` (W, 2, b) are the modal freedoms at their starts."""
     return [
         _window(system, states_of, *span, amplitudes)
-        for span, amplitudes in zip(_spans(system), whole, strict=False)
+        for span, amplitudes in zip(_spans(system), modal_states, strict=False)
     ]
 
 
 def _window(system: System, states_of: StatesOf, first: int, stop: int, amplitudes: FloatArray) -> _Window:
     rate, bodies = system.sampling.rate, system.arrays.sparse.modal.first
     states, time = states_of(first, stop), np.arange(stop - first) / rate
-    later = starting_at(system, first / rate, states.moved[0])
+    later = starting_at(system, first / rate, states.quanta[0])
     outputs = replace(system.scene.outputs, energy_audit=False)
     scene = replace(system.scene, duration=float(time[-1]), outputs=outputs)
     later = replace(later, scene=scene, sampling=system.sampling.points())
-    counted = states._replace(moved=states.moved - states.moved[0])
+    counted = states._replace(quanta=states.quanta - states.quanta[0])
     position, error, force = observed_signals(later, time, counted)
     start = np.concatenate([[states.q[0, :bodies], states.v[0, :bodies]], amplitudes], axis=1)
     return _Window(first, stop, time, later, counted, start, position, error, force)
@@ -161,23 +161,23 @@ def observed_signals(
     system: System, time: FloatArray, states: States
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return positions (m, T), base pitches, transmission errors (m, T), m, bearing forces (b, 3, T), N."""
-    seen = observe(system.arrays, time, states.q, states.v, states.moved, states.carried)
+    seen = observe(system.arrays, time, states.q, states.v, states.quanta, states.carried)
     force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
 
 
 def error_by_source(
-    system: System, states_of: StatesOf, whole: FloatArray, steps: Json | None = None
+    system: System, states_of: StatesOf, modal_states: FloatArray, steps: Json | None = None
 ) -> Json:
     """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
     Sources: time steps, unless `steps` states their error from all of the run, and table interpolation
-    between positions. `whole` (W, 2, b) are the modal freedoms at the samples `window_starts`.
+    between positions. `modal_states` (W, 2, b) are the modal freedoms at the samples `window_starts`.
     """
     integration = system.scene.integration
     began = cpu_seconds()
-    looked = _windows(system, states_of, whole)
+    looked = _windows(system, states_of, modal_states)
     if not looked:
         return {"time_step": steps} if steps else requested_error(integration)
     measured = steps or _step_error(looked, integration)

@@ -120,8 +120,8 @@ def _probe(system: System, time: float) -> _Probe:
         )
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
-        whole = stretch >= system.scene.duration  # of a short run all its steps are few
-        if not first and (whole or (steps >= MIN_STEPS and seconds > ENOUGH)):
+        is_entire = stretch >= system.scene.duration  # of a short run all its steps are few
+        if not first and (is_entire or (steps >= MIN_STEPS and seconds > ENOUGH)):
             light = outlives_windows(system, choice)
             return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)
         stretch, first = 2.0 * stretch, False

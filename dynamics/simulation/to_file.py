@@ -76,7 +76,7 @@ class _Leg:
         resume: bool,
         earlier: _MadeRun | None = None,
     ) -> None:
-        self.march: March = start_march(system, start, integration, whole=window_starts(system))
+        self.march: March = start_march(system, start, integration, modal_samples=window_starts(system))
         work, control, duration = self.march.work, self.march.control, system.scene.duration
         self._mark = fingerprint(
             system.arrays, control, self.march.sampler, work.step_sizes, start.displacement, duration
@@ -94,14 +94,14 @@ class _Leg:
         else:
             self.spool.begin()
 
-    def _resume(self, path: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
-        if str(facts.get("mark")) != self._mark:
+    def _resume(self, path: Path, arrays: dict[str, Any], values: dict[str, Any]) -> None:
+        if str(values.get("mark")) != self._mark:
             raise ResultError(f"{path}: of another scene or version. Start a new run.")
         restore(self.march.state, arrays, path)
-        self.spool.resume(int(facts["samples"]))
-        self._taken = TimeTaken(float(facts["cpu_seconds"]), float(facts["wall_seconds"]))
-        self.since = float(facts["since"])
-        status = RunStatus(int(facts["status"]))
+        self.spool.resume(int(values["samples"]))
+        self._taken = TimeTaken(float(values["cpu_seconds"]), float(values["wall_seconds"]))
+        self.since = float(values["since"])
+        status = RunStatus(int(values["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
     def _go_on_for(self, widths: Widths, taken: StartValue) -> None:
@@ -138,8 +138,8 @@ class _Leg:
 
     def _save(self, status: RunStatus) -> None:
         samples = int(self.march.work.counts[Count.OUTPUT])
-        facts = {"mark": self._mark, "samples": samples, "since": self.since, **asdict(self._taken)}
-        self.spool.save(self.march.state, **facts, status=int(status))
+        values = {"mark": self._mark, "samples": samples, "since": self.since, **asdict(self._taken)}
+        self.spool.save(self.march.state, **values, status=int(status))
 
 
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
@@ -273,7 +273,7 @@ def _run(
         progress,
         cancel=cancel,
         trail=start.trail,
-        whole=window_starts(system),
+        modal_samples=window_starts(system),
     )
     start.clock.book("integration", trajectory.taken)
 
@@ -302,7 +302,7 @@ class _Errors:
     states_of: StatesOf
     finer: Callable[[Integration], tuple[Ending, StatesOf]]
 
-    def measure(self, end: Ending, facts: RunFacts) -> tuple[Json, RunStatus]:
+    def measure(self, end: Ending, run: RunFacts) -> tuple[Json, RunStatus]:
         """Return the errors by source, and how the run ended once they are measured.
 
         That of the steps is measured over the whole run where windows cannot see it, unless effects are found
@@ -312,22 +312,24 @@ class _Errors:
         if not end.status.usable:
             return requested_error(integration), end.status
         reason = blind_windows(system, self.start.choice, self.states_of, end)
-        if not reason or _is_repeated(facts):
-            return with_tolerance(error_by_source(system, self.states_of, end.whole), integration), end.status
+        if not reason or _is_repeated(run):
+            return with_tolerance(
+                error_by_source(system, self.states_of, end.modal_states), integration
+            ), end.status
         other, finer_states = self.finer(finer_run(integration, end))
         if other.status.usable and other.samples == end.samples:
             pair = RunPair(system, self.states_of, finer_states, end.samples)
             steps = pair.error(reason) | {"seconds": other.taken.cpu_seconds}
-            error = error_by_source(system, self.states_of, end.whole, steps)
+            error = error_by_source(system, self.states_of, end.modal_states, steps)
             return with_tolerance(error, integration), end.status
-        error = error_by_source(system, self.states_of, end.whole)
+        error = error_by_source(system, self.states_of, end.modal_states)
         steps = error["time_step"] | {"not_covered": reason}
         ends = integration.estimate_error or other.status is RunStatus.CANCELLED
         return error | {"time_step": steps}, other.status if ends else end.status
 
 
-def _is_repeated(facts: RunFacts) -> bool:
-    return facts.scene.on_violation == "repeat" and bool(needed_effects(effect_ledger(facts)))
+def _is_repeated(run: RunFacts) -> bool:
+    return run.scene.on_violation == "repeat" and bool(needed_effects(effect_ledger(run)))
 
 
 def _result(
@@ -344,14 +346,14 @@ def _result(
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    facts = RunFacts.of(system, trajectory, checks, clock, decision, before)
+    run = RunFacts.of(system, trajectory, checks, clock, decision, before)
     error: Json = {}
     if errors is not None:
         with clock.stage("error_estimate"):
-            error, status = errors.measure(trajectory, facts)
-        facts, trajectory = facts.with_errors(error), replace(trajectory, status=status)
-    about = documents(facts, trajectory, clock, error, before, choice)
-    return RunResult(**series, **describe(facts, about))
+            error, status = errors.measure(trajectory, run)
+        run, trajectory = run.with_errors(error), replace(trajectory, status=status)
+    about = documents(run, trajectory, clock, error, before, choice)
+    return RunResult(**series, **describe(run, about))
 
 
 def _checked_series(
@@ -367,17 +369,17 @@ def _checked_series(
 
 def _joined(parts: Iterator[dict[str, Any]], samples: int) -> dict[str, Any]:
     """Write blocks of series into those of the whole run; the memory of a block is used again."""
-    whole, first = next(parts), 0
-    if whole["time"].size == samples:
-        return whole
-    part = whole
-    whole = part | {name: np.empty((*part[name].shape[:-1], samples), part[name].dtype) for name in SAMPLED}
+    joined, first = next(parts), 0
+    if joined["time"].size == samples:
+        return joined
+    part = joined
+    joined = part | {name: np.empty((*part[name].shape[:-1], samples), part[name].dtype) for name in SAMPLED}
     while part:
         stop = first + part["time"].size
         for name in SAMPLED:
-            whole[name][..., first:stop] = part[name]
+            joined[name][..., first:stop] = part[name]
         part, first = next(parts, {}), stop
-    return whole
+    return joined
 
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
@@ -499,12 +501,12 @@ def _write(
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
-        facts = RunFacts.of(system, end, checks, start.clock, decision, before)
+        run = RunFacts.of(system, end, checks, start.clock, decision, before)
         with start.clock.stage("error_estimate"):
-            error, status = errors.measure(end, facts)
-        facts = facts.with_errors(error)
-        made = documents(facts, replace(end, status=status), start.clock, error, before, start.choice)
-        about = described(facts, made)
+            error, status = errors.measure(end, run)
+        run = run.with_errors(error)
+        made = documents(run, replace(end, status=status), start.clock, error, before, start.choice)
+        about = described(run, made)
         file.publish(attributes(about))
     return status, dict(about["effect_ledger"])
 

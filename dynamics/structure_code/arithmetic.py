@@ -76,12 +76,12 @@ class Arithmetic:
             if not isinstance(value, bool | int):
                 raise Unsupported(f"{value} as an integer")
             return kind(int(value))
-        own = value.ir.type
-        if own == kind:
+        ir_type = value.ir.type
+        if ir_type == kind:
             return value.ir
         if kind is FLOAT:
-            return self.b.uitofp(value.ir, FLOAT) if own == FLAG else self.b.sitofp(value.ir, FLOAT)
-        if own == FLAG and kind is WORD:
+            return self.b.uitofp(value.ir, FLOAT) if ir_type == FLAG else self.b.sitofp(value.ir, FLOAT)
+        if ir_type == FLAG and kind is WORD:
             return self.b.zext(value.ir, WORD)
         raise Unsupported("a number changes its type")
 
@@ -154,7 +154,7 @@ class Arithmetic:
 
     def intrinsic(self, name: str, *values: Any) -> Value:
         """Return a function of floats that the processor or the C library has."""
-        floats = [self.cast(each, FLOAT) for each in values]
+        floats = [self.cast(value, FLOAT) for value in values]
         module = self.module.module
         function = module.globals.get(name) or ir.Function(
             module, ir.FunctionType(FLOAT, [FLOAT] * len(values)), name
@@ -163,16 +163,16 @@ class Arithmetic:
 
     def extreme(self, sign: str, *values: Any) -> Any:
         """Return the largest (`>`) or least (`<`): a later one where the comparison holds, as in numba."""
-        found = values[0]
+        result = values[0]
         for value in values[1:]:
-            if not isinstance(found, Value) and not isinstance(value, Value):
-                found = max(found, value) if sign == ">" else min(found, value)
+            if not isinstance(result, Value) and not isinstance(value, Value):
+                result = max(result, value) if sign == ">" else min(result, value)
                 continue
-            kind = FLOAT if FLOAT in (self.type_of(found), self.type_of(value)) else WORD
-            a, v = self.cast(found, kind), self.cast(value, kind)
+            kind = FLOAT if FLOAT in (self.type_of(result), self.type_of(value)) else WORD
+            a, v = self.cast(result, kind), self.cast(value, kind)
             wins = self.b.fcmp_ordered(sign, v, a) if kind is FLOAT else self.b.icmp_signed(sign, v, a)
-            found = Value(self.b.select(wins, v, a))
-        return found
+            result = Value(self.b.select(wins, v, a))
+        return result
 
 
 def _integer(writer: Arithmetic, value: Value) -> Value:

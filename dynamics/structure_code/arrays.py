@@ -132,13 +132,13 @@ class ArrayAccess(Arithmetic):
             return base[index]
         index = index if isinstance(index, tuple) else (index,)
         if base.content is not None:
-            if not any(isinstance(each, Value) for each in index):
-                found = base.content[index]
-                return self._part(base, index, found) if isinstance(found, np.ndarray) else found.item()
+            if not any(isinstance(subscript, Value) for subscript in index):
+                content = base.content[index]
+                return self._part(base, index, content) if isinstance(content, np.ndarray) else content.item()
             self.lost = True
         if len(index) < len(base.shape):
             return self._part(base, index, None)
-        loaded = self.b.load(self.place(base, index))
+        loaded = self.b.load(self.element_pointer(base, index))
         loaded.set_metadata("tbaa", base.alias)
         return Value(self.b.trunc(loaded, ir.IntType(1)) if base.item is BYTE else loaded)
 
@@ -151,13 +151,13 @@ class ArrayAccess(Arithmetic):
         for axis, length in enumerate(array.shape):
             total = self.binary(ast.Mult(), total, length) if axis else total
             if axis < len(index):
-                each = index[axis]
-                if not isinstance(each, Value) and each < 0:
-                    each = self.binary(ast.Add(), length, each)
-                total = self.binary(ast.Add(), total, each) if axis else each
+                subscript = index[axis]
+                if not isinstance(subscript, Value) and subscript < 0:
+                    subscript = self.binary(ast.Add(), length, subscript)
+                total = self.binary(ast.Add(), total, subscript) if axis else subscript
         return self.binary(ast.Add(), array.first, total)
 
-    def place(self, array: Array, index: Any) -> Any:
+    def element_pointer(self, array: Array, index: Any) -> Any:
         """Return the operand that points to an item."""
         if array.alias is None:
             raise Unsupported("a table of constants read by a number that is not known")

@@ -34,31 +34,31 @@ def tree_of(function: Any) -> ast.FunctionDef:
 @cache
 def assigned_in(node: ast.AST) -> frozenset[str]:
     """Return the names that a statement assigns."""
-    names = (each for each in ast.walk(node) if isinstance(each, ast.Name))
-    return frozenset(each.id for each in names if isinstance(each.ctx, ast.Store))
+    names = (name for name in ast.walk(node) if isinstance(name, ast.Name))
+    return frozenset(name.id for name in names if isinstance(name.ctx, ast.Store))
 
 
 @cache
 def reads_in(node: ast.AST) -> Counter[str]:
     """Return how often a statement reads each name."""
-    changed = (each.target for each in ast.walk(node) if isinstance(each, ast.AugAssign))
-    names = [each for each in ast.walk(node) if isinstance(each, ast.Name)]
-    read = [each for each in names if isinstance(each.ctx, ast.Load)]
-    return Counter(each.id for each in (*read, *changed) if isinstance(each, ast.Name))
+    changed = (child.target for child in ast.walk(node) if isinstance(child, ast.AugAssign))
+    names = [child for child in ast.walk(node) if isinstance(child, ast.Name)]
+    read = [child for child in names if isinstance(child.ctx, ast.Load)]
+    return Counter(child.id for child in (*read, *changed) if isinstance(child, ast.Name))
 
 
 @cache
 def has_in(node: ast.AST, kind: type[ast.AST]) -> bool:
     """Return whether a statement holds a node of a kind."""
-    return any(isinstance(each, kind) for each in ast.walk(node))
+    return any(isinstance(child, kind) for child in ast.walk(node))
 
 
 @cache
 def is_plain(node: ast.For) -> bool:
     """Return whether a loop calls nothing but conversions, and decides nothing."""
-    calls = (ast.unparse(each.func) for each in ast.walk(node) if isinstance(each, ast.Call))
+    calls = (ast.unparse(child.func) for child in ast.walk(node) if isinstance(child, ast.Call))
     decides = any(has_in(node, kind) for kind in (ast.If, ast.While, ast.Continue, ast.Return))
-    nested = any(has_in(each, ast.For) for each in node.body)
+    nested = any(has_in(child, ast.For) for child in node.body)
     return not decides and not nested and set(calls) <= {"range", "np.uint64"}
 
 
@@ -99,7 +99,7 @@ class Frame:
     """Whether the compiler may choose the order of its sums."""
     tree: ast.AST
     """The function."""
-    own: list[frozenset[str]] = field(default_factory=list)
+    local_names: list[frozenset[str]] = field(default_factory=list)
     """Of each branch and loop around the current statement that is decided when it runs, the names that are
     assigned and read within it alone.
     """

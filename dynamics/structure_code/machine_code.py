@@ -15,7 +15,7 @@ import llvmlite.binding as llvm
 
 from dynamics.structure_code.module import Module
 
-KEPT_IN_MEMORY, KEPT_IN_FILES = 32, 256
+MAX_IN_MEMORY, MAX_IN_FILES = 32, 256
 SUFFIX = ".structure"
 
 
@@ -31,9 +31,9 @@ class MachineCode:
 
     def call(self, name: str, *arguments: Any) -> int:
         """Call a function of tuples by address and floats without the interpreter's lock."""
-        kinds = [c_double if isinstance(each, float) else c_void_p for each in arguments]
+        kinds = [c_double if isinstance(argument, float) else c_void_p for argument in arguments]
         function = CFUNCTYPE(c_int64, *kinds)(self._engine.get_function_address(name))
-        passed = (each if isinstance(each, float) else each._address for each in arguments)
+        passed = (argument if isinstance(argument, float) else argument._address for argument in arguments)
         return int(function(*passed))
 
 
@@ -41,8 +41,8 @@ def _machine() -> Any:
     """Return the processor at hand as a target; an engine takes it for its own."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    own = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten()}
-    return llvm.Target.from_default_triple().create_target_machine(opt=3, jit=True, **own)
+    processor = {"cpu": llvm.get_host_cpu_name(), "features": llvm.get_host_cpu_features().flatten()}
+    return llvm.Target.from_default_triple().create_target_machine(opt=3, jit=True, **processor)
 
 
 def compiled(module: Module) -> bytes:
@@ -68,18 +68,18 @@ class CodeStore:
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._lock = folder, Lock()
-        self._held: OrderedDict[str, MachineCode] = OrderedDict()
+        self._loaded: OrderedDict[str, MachineCode] = OrderedDict()
 
     def get(self, key: str) -> MachineCode | None:
         """Return the code of a structure if there is some."""
         with self._lock:
-            if key in self._held:
-                self._held.move_to_end(key)
-                return self._held[key]
+            if key in self._loaded:
+                self._loaded.move_to_end(key)
+                return self._loaded[key]
         with suppress(OSError):
-            held = self._file(key).read_bytes()
-            if len(held) > 32 and sha256(held[32:]).digest() == held[:32]:
-                return self._hold(key, MachineCode(held[32:]))
+            content = self._file(key).read_bytes()
+            if len(content) > 32 and sha256(content[32:]).digest() == content[:32]:
+                return self._hold(key, MachineCode(content[32:]))
         return None
 
     def seen(self, key: str) -> bool:
@@ -99,9 +99,9 @@ class CodeStore:
 
     def _hold(self, key: str, code: MachineCode) -> MachineCode:
         with self._lock:
-            self._held[key] = code
-            while len(self._held) > KEPT_IN_MEMORY:
-                self._held.popitem(last=False)
+            self._loaded[key] = code
+            while len(self._loaded) > MAX_IN_MEMORY:
+                self._loaded.popitem(last=False)
         return code
 
     def _file(self, key: str) -> Path:
@@ -113,5 +113,5 @@ class CodeStore:
                 new.write(content)
             Path(new.name).replace(self._file(key))
             files = sorted(self._folder.glob("*" + SUFFIX), key=lambda file: file.stat().st_mtime)
-            for old in files[:-KEPT_IN_FILES]:
+            for old in files[:-MAX_IN_FILES]:
                 old.unlink()

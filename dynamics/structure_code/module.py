@@ -57,10 +57,10 @@ class Module:
         python = unwrap(function)
         hints = get_type_hints(python)
         kinds = [TYPES.get(hints[name], POINTER) for name in signature(python).parameters]
-        own = ir.Function(self.module, ir.FunctionType(WORD, kinds), python.__name__)
-        groups = (Group(by_value(each), each._numba_type_, None, known) for each, known in tuples.items())
+        exported = ir.Function(self.module, ir.FunctionType(WORD, kinds), python.__name__)
+        groups = (Group(by_value(group), group._numba_type_, None, known) for group, known in tuples.items())
         number = Value(None)
-        self._write(python, own, [next(groups) if kind is POINTER else number for kind in kinds])
+        self._write(python, exported, [next(groups) if kind is POINTER else number for kind in kinds])
 
     def function(self, routine: Routine, values: Sequence[Any]) -> Any:
         """Return the function of `routine` for these tuples and numbers of any value.
@@ -68,12 +68,12 @@ class Module:
         Where it reads known items by a number, and cannot otherwise be written or is short, it is one for the
         known numbers among `values`.
         """
-        tuples = tuple(id(each.value) for each in values if isinstance(each, Group))
+        tuples = tuple(id(value.value) for value in values if isinstance(value, Group))
         key: tuple[Any, ...] = (routine.symbol, tuples)
         if key not in self._functions:
-            self._functions[key] = self._written(routine, [_anything(each) for each in values])
+            self._functions[key] = self._written(routine, [_anything(value) for value in values])
         if self._functions[key] is None:
-            known = tuple(None if isinstance(each, Group | Value) else each for each in values)
+            known = tuple(None if isinstance(value, Group | Value) else value for value in values)
             key = *key, known
             if key not in self._functions:
                 self._functions[key] = self._written(routine, values)
@@ -107,16 +107,16 @@ class Module:
             before = self.expressions
         return not (statements.lost and anything) or self.expressions - before > FEW_EXPRESSIONS
 
-    def _end(self, statements: Statements, found: Any, kind: Any) -> None:
+    def _end(self, statements: Statements, result: Any, kind: Any) -> None:
         if kind == ir.VoidType():
             statements.b.ret_void()
         elif isinstance(kind, ir.LiteralStructType):
             made: Any = ir.Constant(kind, ir.Undefined)
             for k, part in enumerate(kind.elements):
-                made = statements.b.insert_value(made, statements.cast(found[k], part), k)
+                made = statements.b.insert_value(made, statements.cast(result[k], part), k)
             statements.b.ret(made)
         else:
-            statements.b.ret(statements.cast(found, kind))
+            statements.b.ret(statements.cast(result, kind))
         statements.finish()
 
 

@@ -62,7 +62,7 @@ class Statements(ArrayAccess):
         """Write the body of a function for these arguments, and return its result."""
         python = python_of(function)
         tree = tree_of(python)
-        names = dict(zip([each.arg for each in tree.args.args], values, strict=True))
+        names = dict(zip([argument.arg for argument in tree.args.args], values, strict=True))
         options = getattr(function, "targetoptions", {})
         frame = Frame(names, python.__globals__, bool(options.get("fastmath")), tree)
         outer, self.frame = self.frame, frame
@@ -72,7 +72,7 @@ class Statements(ArrayAccess):
             if result or not ended:
                 self._deliver(result[0] if result else None)
             self.b.position_at_end(frame.done)
-            result = [self._kept(frame.results)]
+            result = [self._loaded(frame.results)]
         self.frame = outer
         return result[0] if result else None
 
@@ -96,9 +96,9 @@ class Statements(ArrayAccess):
         elif slots is not None:
             self.b.store(self.cast(value, slots.type), slots.ir)
 
-    def _kept(self, slots: Any) -> Any:
+    def _loaded(self, slots: Any) -> Any:
         if isinstance(slots, tuple):
-            return alike(slots, map(self._kept, slots))
+            return alike(slots, map(self._loaded, slots))
         return None if slots is None else Value(self.b.load(slots.ir))
 
     def _blocks(self, count: int) -> list[Any]:
@@ -107,7 +107,7 @@ class Statements(ArrayAccess):
     # Statements
 
     def _body(self, statements: Sequence[ast.stmt], result: list[Any]) -> bool:
-        return any(self._statement(each, result) for each in statements)
+        return any(self._statement(statement, result) for statement in statements)
 
     def _statement(self, node: ast.stmt, result: list[Any]) -> bool:
         write = getattr(self, f"_{type(node).__name__}", None)
@@ -154,7 +154,7 @@ class Statements(ArrayAccess):
 
     def _Return(self, node: ast.Return, result: list[Any]) -> bool:
         value = None if node.value is None else self.value(node.value)
-        if not self.frame.own:
+        if not self.frame.local_names:
             result.append(value)
             return True
         if self.frame.done is None:
@@ -164,13 +164,13 @@ class Statements(ArrayAccess):
 
     def _store(self, target: ast.expr, value: Any) -> None:
         if isinstance(target, ast.Tuple):
-            for each, part in zip(target.elts, value, strict=True):
-                self._store(each, part)
+            for element, part in zip(target.elts, value, strict=True):
+                self._store(element, part)
         elif isinstance(target, ast.Name):
             self._bind(target.id, value)
         elif isinstance(target, ast.Subscript):
             array = self.value(target.value)
-            where = self.place(array, self.value(target.slice))
+            where = self.element_pointer(array, self.value(target.slice))
             item = FLAG if array.item is ITEMS["?"] else array.item
             stored = self.cast(value, item)
             stored = self.b.store(stored if item is array.item else self.b.zext(stored, array.item), where)
@@ -179,8 +179,8 @@ class Statements(ArrayAccess):
             raise Unsupported(ast.unparse(target))
 
     def _bind(self, name: str, value: Any) -> None:
-        names, own = self.frame.names, self.frame.own
-        if own and name not in own[-1] and not isinstance(names.get(name), Variable):
+        names, local_names = self.frame.names, self.frame.local_names
+        if local_names and name not in local_names[-1] and not isinstance(names.get(name), Variable):
             self._vary(name, value)
         known = names.get(name)
         if isinstance(known, Variable):
@@ -206,15 +206,17 @@ class Statements(ArrayAccess):
             if is_number(value):
                 self._vary(name, value)
                 self._bind(name, value)
-        whole = reads_in(self.frame.tree)
-        self.frame.own.append(frozenset(n for n in assigned if n not in names and whole[n] == within[n]))
+        all_reads = reads_in(self.frame.tree)
+        self.frame.local_names.append(
+            frozenset(n for n in assigned if n not in names and all_reads[n] == within[n])
+        )
         yield
         self._forget()
-        self.frame.own.pop()
+        self.frame.local_names.pop()
 
     def _forget(self) -> None:
         """Forget what a branch has given its own names."""
-        for name in self.frame.own[-1]:
+        for name in self.frame.local_names[-1]:
             self.frame.names.pop(name, None)
 
     def _If(self, node: ast.If, result: list[Any]) -> bool:
@@ -263,10 +265,10 @@ class Statements(ArrayAccess):
 
     def _For(self, node: ast.For, result: list[Any]) -> bool:
         if isinstance(node.iter, ast.Tuple):
-            return self._unrolled(node, [self.value(each) for each in node.iter.elts], result)
+            return self._unrolled(node, [self.value(value) for value in node.iter.elts], result)
         if not (isinstance(node.iter, ast.Call) and ast.unparse(node.iter.func) == "range"):
             raise Unsupported(f"a loop over {ast.unparse(node.iter)}")
-        bounds = [self.value(each) for each in node.iter.args]
+        bounds = [self.value(value) for value in node.iter.args]
         start, stop, step = (0, bounds[0], 1) if len(bounds) == 1 else (*bounds, 1)[:3]
         known = not isinstance(start, Value) and not isinstance(stop, Value)
         if known and start >= stop:
@@ -315,17 +317,19 @@ class Statements(ArrayAccess):
 
     def _even(self, node: ast.For) -> bool:
         """Return whether each pass does the same with the next items of arrays of numbers."""
-        own = assigned_in(node)
-        for each in ast.walk(node):
-            if isinstance(each, ast.If | ast.While | ast.Continue | ast.Return):
+        assigned = assigned_in(node)
+        for child in ast.walk(node):
+            if isinstance(child, ast.If | ast.While | ast.Continue | ast.Return):
                 return False
-            if isinstance(each, ast.Call) and any(self._structured(part, own, True) for part in each.args):
+            if isinstance(child, ast.Call) and any(
+                self._structured(part, assigned, True) for part in child.args
+            ):
                 return False
-            if isinstance(each, ast.Subscript) and self._structured(each.value, own, False):
+            if isinstance(child, ast.Subscript) and self._structured(child.value, assigned, False):
                 return False
         return True
 
-    def _structured(self, node: ast.expr, own: frozenset[str], whole: bool) -> bool:
+    def _structured(self, node: ast.expr, assigned: frozenset[str], any_array: bool) -> bool:
         """Return whether an expression is a tuple, or an array (any, or one of known items)."""
         if not isinstance(node, ast.Name | ast.Attribute):
             return not isinstance(node, ast.Constant | ast.BinOp | ast.UnaryOp | ast.Subscript | ast.Call)
@@ -334,12 +338,12 @@ class Statements(ArrayAccess):
             root = root.value
         if not isinstance(root, ast.Name):
             return True
-        if root.id in own:
+        if root.id in assigned:
             return False
-        found = self.value(node)
-        if isinstance(found, Array):
-            return whole or found.content is not None
-        return not isinstance(found, Scalar | Value)
+        value = self.value(node)
+        if isinstance(value, Array):
+            return any_array or value.content is not None
+        return not isinstance(value, Scalar | Value)
 
     # Expressions
 
@@ -358,7 +362,7 @@ class Statements(ArrayAccess):
         return self.attribute(self.value(node.value), node.attr)
 
     def _Tuple(self, node: ast.Tuple) -> Any:
-        return tuple(self.value(each) for each in node.elts)
+        return tuple(self.value(element) for element in node.elts)
 
     def _Subscript(self, node: ast.Subscript) -> Any:
         return self.item(self.value(node.value), self.value(node.slice))
@@ -376,7 +380,7 @@ class Statements(ArrayAccess):
         frame, name = self.frame, node.id
         if name in frame.names:
             value = frame.names[name]
-            return self._kept(value.slots) if isinstance(value, Variable) else value
+            return self._loaded(value.slots) if isinstance(value, Variable) else value
         value = frame.globals[name] if name in frame.globals else getattr(builtins, name)
         if isinstance(value, np.ndarray):
             return Array(lambda: None, value.shape, ITEMS[value.dtype.char], None, value)
@@ -412,14 +416,16 @@ class Statements(ArrayAccess):
             return self.value(node.body if test else node.orelse)
         yes, no, after = self._blocks(3)
         self.b.cbranch(test.ir, yes, no)
-        found = []
+        branches = []
         for block, branch in ((yes, node.body), (no, node.orelse)):
             self.b.position_at_end(block)
             value = self.value(branch)
-            found.append((value, self.b.block))
-        kind = FLOAT if FLOAT in (self.type_of(value) for value, _ in found) else self.type_of(found[0][0])
+            branches.append((value, self.b.block))
+        kind = (
+            FLOAT if FLOAT in (self.type_of(value) for value, _ in branches) else self.type_of(branches[0][0])
+        )
         slot = self._slot(kind)
-        for value, block in found:
+        for value, block in branches:
             self.b.position_at_end(block)
             self.b.store(self.cast(value, kind), slot.ir)
             self.b.branch(after)
@@ -428,16 +434,18 @@ class Statements(ArrayAccess):
 
     def _Call(self, node: ast.Call) -> Any:
         called = self.value(node.func)
-        values = [self.value(each) for each in node.args]
+        values = [self.value(argument) for argument in node.args]
         if isinstance(called, Routine):
             return self._routine(called, values)
         if hasattr(called, "py_func"):
             return self.inline(called, values)
         if isinstance(called, type) and issubclass(called, tuple):
-            return called(*values, **{str(each.arg): self.value(each.value) for each in node.keywords})
+            return called(
+                *values, **{str(argument.arg): self.value(argument.value) for argument in node.keywords}
+            )
         if called is np.uint64:
             return values[0]
-        if not any(isinstance(each, Value) for each in values):
+        if not any(isinstance(argument, Value) for argument in values):
             return called(*values)
         if called not in CALLS:
             raise Unsupported(str(called))
@@ -448,8 +456,8 @@ class Statements(ArrayAccess):
         function = self.module.function(called, values)
         kinds = (TYPES.get(hint) for hint in called.arguments)
         passed = [
-            each.pointer if isinstance(each, Group) else self.cast(each, kind)
-            for each, kind in zip(values, kinds, strict=True)
+            value.pointer if isinstance(value, Group) else self.cast(value, kind)
+            for value, kind in zip(values, kinds, strict=True)
         ]
         result = self.b.call(function, passed)
         kind = function.function_type.return_type

@@ -85,10 +85,10 @@ def structure_key(tuples: Mapping[Any, Known]) -> str | None:
         begin = words[layout.address]
         lengths = np.append(words, 1)[layout.dimensions]
         size = np.prod(lengths, axis=1)
-        shown = np.where(lengths <= LONGEST, lengths, -1)
+        key_lengths = np.where(lengths <= LONGEST, lengths, -1)
         if known is Known.WIDTHS:
-            shown[:, 0] = -1
-        digest.update(shown.tobytes())
+            key_lengths[:, 0] = -1
+        digest.update(key_lengths.tobytes())
         if known is Known.ALL:
             digest.update(words[layout.numbers].tobytes())
             for k in np.flatnonzero(layout.known & (size <= LONGEST) & (size > 0)):

@@ -6,7 +6,7 @@ from typing import Unpack
 
 from bounds import warn_of
 from fe_contact.analysis.database.compute_database import compute_database, solved_findings
-from fe_contact.analysis.database.kept_tolerance import OnDraft, kept_tolerance
+from fe_contact.analysis.database.refined_table import OnDraft, refined_table
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.geometry import ParallelAxes
@@ -77,7 +77,7 @@ def analyze(
     request = checked.request
     phrased = case or request.to_json()
     if request.options.refines:
-        database = kept_tolerance(checked, phrased, run, on_draft)
+        database = refined_table(checked, phrased, run, on_draft)
     else:
         database = compute_database(checked, phrased, run)
     warn_of(unexpected(request.findings, solved_findings(request, database)))

@@ -20,7 +20,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning.cost_model import unit_work
 from fe_contact.planning.cost_of_derivatives import CycleSeconds
-from fe_contact.ste.curve_quantities import BESIDE_MESH, HARMONICS, QUANTITIES
+from fe_contact.ste.curve_quantities import HARMONICS, OFF_MESH, QUANTITIES
 from fe_contact.ste.spectrum import Spectrum, spectrum
 from fe_contact.types import BoolArray, FloatArray
 from model_studies import in_unit
@@ -52,7 +52,7 @@ class DeviatingCycle:
 
     def orders(self, load: int = -1) -> Spectrum:
         """Return the orders of mesh and shafts at one of the loads, with the errors of `quantity_error`."""
-        errors = self.quantity_error[BESIDE_MESH:, load]
+        errors = self.quantity_error[OFF_MESH:, load]
         return spectrum(self.ste[..., load].ravel(), len(self.ste), self.teeth, errors)
 
 
@@ -101,7 +101,7 @@ def cycle_contact(
     positions = options.positions or POSITIONS
     options = replace(options, positions=positions)
     within("positions", positions, 2 * HARMONICS + 1, 4096, "They tell twenty mesh harmonics apart.")
-    choice = decide(check_request(pair, axes, options, whole_table=False), run.cache)
+    choice = decide(check_request(pair, axes, options, check_size=False), run.cache)
     request, plan = choice.checked.request, choice.plan
     bodies = condensed_bodies(choice.checked, plan, StageClock(run.workers.cost), run)
     (point,) = operating_points(request.scene, request.choices, bodies).places
@@ -121,4 +121,4 @@ def _solved(
     envelope = chosen(contact, allowed) if predicted.pays(contact.pitches) else None
     if envelope is None:
         return contact.exact(every), every >= 0, none
-    return envelope.ste, envelope.solved, np.vstack([envelope.missed.error, envelope.quantity_errors])
+    return envelope.ste, envelope.solved, np.vstack([envelope.drawn_errors.error, envelope.quantity_errors])

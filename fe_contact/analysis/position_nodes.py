@@ -146,7 +146,7 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
         report(min(tried / expected, 1.0))
         if points.period == 1:
             return curves
-        near = plan.nodes.reached_beside(position)
+        near = plan.nodes.reached_by_neighbor(position)
         values = np.full((3, *curves.shape[1:]), np.nan)
         values[1] = curves[0]
         for way in (-1, 1) if near.any() else ():

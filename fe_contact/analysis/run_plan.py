@@ -158,17 +158,19 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     """
     choice = decide(checked, cache)
     pair, model = choice.checked.request.pair, choice.checked.model
-    whole = predict_run(pair, choice.plan, model, (1, 1), cache)
-    parts = whole.parts
+    prediction = predict_run(pair, choice.plan, model, (1, 1), cache)
+    parts = prediction.parts
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
     design = _DESIGN * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
-    table = whole.stages["contact"] + whole.correction["error estimate"] * errors
+    table = prediction.stages["contact"] + prediction.correction["error estimate"] * errors
     slowness = host_slowness(cache)
     unit = unit_work(pair, choice.plan, choice.plan.discretization.slices)
     work = ContactWork(*(slowness * work_of_part for work_of_part in unit))
-    memory = float(whole.memory_bytes)
-    return PredictedDesigns(bodies, design, errors, whole.positions, model.across_face, memory, table, work)
+    memory = float(prediction.memory_bytes)
+    return PredictedDesigns(
+        bodies, design, errors, prediction.positions, model.across_face, memory, table, work
+    )
 
 
 def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
@@ -190,7 +192,7 @@ def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache:
 
 def _conflict(choice: Decision, time_budget: float, cache: Path | None) -> str:
     tolerance = choice.checked.request.options.tolerance
-    goal = f"level {choice.mesh.level}" if tolerance is None else tolerance.words
+    goal = f"level {choice.mesh.level}" if tolerance is None else tolerance.text
     refusal = f"{goal} within {time_budget:.3g} CPU s cannot be had"
     if not choice.mesh.met:
         return f"{refusal}: {choice.mesh.reason}"

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.pairs.contact_fields import OF_PAIRS, OF_SUPPORT, contact_fields
-from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
+from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
@@ -53,7 +53,7 @@ def table_of_solution(
     )
 
 
-def table_fields(points: OperatingPoints, contacts: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+def table_fields(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> dict[str, NDArray[Any]]:
     """Arrays of the database at the requested loads, (P, F, M, D, ...), and its pair axis."""
     seen = np.concatenate([contact.problem.candidates.pair for contact in contacts])
     pairs = np.arange(seen.min(), seen.max() + 1)
@@ -71,7 +71,7 @@ def table_fields(points: OperatingPoints, contacts: Sequence[KeptContact]) -> di
     return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
 
 
-def table_support(points: OperatingPoints, contacts: Sequence[KeptContact]) -> dict[str, NDArray[Any]]:
+def table_support(points: OperatingPoints, contacts: Sequence[SolvedContact]) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
     good = np.all([contact.solution.status == Status.CONVERGED for contact in contacts], axis=(0, 1))
     arrays = {

@@ -16,9 +16,9 @@ import numpy as np
 from bounds import engineering
 from fe_contact.analysis.cycle.derived_pitches import DerivedCycle, derived_cycle
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
-from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.analysis.position_nodes import PositionNodes, table_nodes
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked, Request
@@ -47,9 +47,9 @@ class SolvedTable(SolvedRun):
     prediction: Prediction
     """What it was expected to cost."""
     nodes: PositionNodes
-    kept: Sequence[KeptContact]
-    support: Sequence[KeptContact]
-    """`kept`, `support`: Of every place at the loads of the table, and at the support loads."""
+    contacts: Sequence[SolvedContact]
+    support: Sequence[SolvedContact]
+    """`contacts`, `support`: Of every place at the loads of the table, and at the support loads."""
     table: SteDatabase
     """Its errors not yet estimated."""
     condition: FloatArray | None = None
@@ -60,7 +60,7 @@ class SolvedTable(SolvedRun):
     @property
     def edge_depths(self) -> list[FloatArray]:
         """See `SolvedRun`; they were found with the solutions."""
-        return [contact.edge_depth for contact in self.kept]
+        return [contact.edge_depth for contact in self.contacts]
 
 
 def solve_table(
@@ -119,7 +119,7 @@ def solve_table(
 
 def _solved_places(
     points: OperatingPoints, position: FloatArray, decision: Decision, *, full: bool, report: Report
-) -> tuple[OperatingPoints, list[list[KeptContact]], FloatArray | None, DerivedCycle | None]:
+) -> tuple[OperatingPoints, list[list[SolvedContact]], FloatArray | None, DerivedCycle | None]:
     """Solve all places, their pitches by derivatives where that is predicted to take less.
 
     Returns the places, what is kept of them for each set of loads, condition numbers where workers found
@@ -135,7 +135,7 @@ def _solved_places(
         known = derived_cycle(points, position, loads, checked.request.options, edges=edges)
         if known.tables:
             report(1.0)
-            return known.places, known.kept, None, known
+            return known.places, known.contacts, None, known
     contacts, condition = solve_operating_points(
         points, position, loads, conditioned=full, edges=edges, report=report
     )
@@ -182,8 +182,8 @@ def _condensed(
         return pair_contact(pair, plan, cache, coarse, changes)
 
 
-def _same_bodies(own: Plan, other: Plan) -> bool:
-    first, second = ((plan.discretization, plan.parts) for plan in (own, other))
+def _same_bodies(plan: Plan, other: Plan) -> bool:
+    first, second = ((plan.discretization, plan.parts) for plan in (plan, other))
     return first == second
 
 
@@ -191,8 +191,8 @@ def assembled_table(
     request: Request,
     points: OperatingPoints,
     nodes: PositionNodes,
-    contacts: Sequence[KeptContact],
-    support: Sequence[KeptContact],
+    contacts: Sequence[SolvedContact],
+    support: Sequence[SolvedContact],
 ) -> SteDatabase:
     """Assemble the table, its errors not yet estimated; `support` may be empty."""
     position = (np.arange(points.period)[:, None] + nodes.position).ravel()

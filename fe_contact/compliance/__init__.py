@@ -1,7 +1,7 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
 import host.analysis  # noqa: F401 (says what to install)
-from fe_contact.compliance.cache_coverage import free_ends_kept, section_kept, solid_kept
+from fe_contact.compliance.cache_coverage import free_ends_cached, section_cached, solid_cached
 from fe_contact.compliance.condensation_cost import predict_cost
 from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
@@ -10,7 +10,7 @@ from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_co
 from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.unit_root_stress import (
-    stress_kept,
+    stress_cached,
     unit_root_stress,
     unit_root_stress_3d,
     unit_root_stresses,
@@ -31,11 +31,11 @@ __all__ = [
     "flank_compliance_3d",
     "flank_compliances",
     "flank_compliances_3d",
-    "free_ends_kept",
+    "free_ends_cached",
     "predict_cost",
-    "section_kept",
-    "solid_kept",
-    "stress_kept",
+    "section_cached",
+    "solid_cached",
+    "stress_cached",
     "unit_root_stress",
     "unit_root_stress_3d",
     "unit_root_stresses",

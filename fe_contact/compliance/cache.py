@@ -24,13 +24,13 @@ from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.types import Json
 from host import lock
 
-KEPT_KEYS = 64
+CACHED_KEYS = 64
 """Hashes of what was requested last, kept in memory."""
 PATIENCE_S = 600.0
 """How long another process may take for a result before it is computed here too: it may have been stopped."""
 _LOOK_S = 0.05
 NOT_ARRAYS = ("facts", "checksum")
-Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
+Cached = TypeVar("Cached", FlankCompliance, FlankCompliance3D, UnitRootStress)
 Result = TypeVar("Result")
 
 
@@ -45,7 +45,9 @@ def content_hash(content: Json) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def kept_or_computed(directory: Path | None, key: str, kind: type[Kept], compute: Callable[[], Kept]) -> Kept:
+def cached_or_computed(
+    directory: Path | None, key: str, kind: type[Cached], compute: Callable[[], Cached]
+) -> Cached:
     """Return the result kept under `key`, or compute it and keep it; without a directory just compute.
 
     Of all processes that share the directory one computes; the others wait for it.
@@ -100,7 +102,7 @@ def _locked(descriptor: int) -> bool:
             return True
 
 
-def once_each(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Result, ...]:
+def computed_once(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Result, ...]:
     """Return a result for each key, computed with the number of its first place: equal keys share one."""
     results: dict[str, Result] = {}
     for number, key in enumerate(keys):
@@ -109,24 +111,24 @@ def once_each(keys: Sequence[str], compute: Callable[[int], Result]) -> tuple[Re
     return tuple(results[key] for key in keys)
 
 
-def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
+def read_compliance(directory: Path, key: str, kind: type[Cached]) -> Cached | None:
     """Return the result kept under `key`, or None if there is none or its file is damaged."""
     result = _read(directory, key, kind)
     COMPLIANCE_READS.note(hit=result is not None)
     return result
 
 
-def _read(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
+def _read(directory: Path, key: str, kind: type[Cached]) -> Cached | None:
     """Read the file of a key; raises nothing."""
     try:
         # NumPy leaves a file it opened itself open when the content is damaged.
         with _file(directory, key).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files if name not in NOT_ARRAYS}
-            facts = str(file["facts"])
-            intact = str(file["checksum"]) == _checksum(arrays, facts)
+            header = str(file["facts"])
+            intact = str(file["checksum"]) == _checksum(arrays, header)
         with suppress(OSError):  # of another owner
             os.utime(_file(directory, key))  # its last use, by which caches are kept small
-        return _restored(kind, arrays, json.loads(facts)) if intact else None
+        return _restored(kind, arrays, json.loads(header)) if intact else None
     # What a truncated, overwritten or foreign file makes NumPy, zipfile, json and the constructors raise.
     except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
         return None
@@ -142,7 +144,7 @@ def write_compliance(
     content = {f.name: getattr(compliance, f.name) for f in fields(compliance) if f.name != "from_cache"}
     arrays = {name: value for name, value in content.items() if isinstance(value, np.ndarray)}
     plain = {name: value for name, value in content.items() if name not in arrays}
-    facts = json.dumps(plain | {"checks": asdict(compliance.checks)})
+    header = json.dumps(plain | {"checks": asdict(compliance.checks)})
     try:
         directory.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=directory, suffix=".partial")
@@ -150,13 +152,13 @@ def write_compliance(
         return
     try:
         with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, allow_pickle=False, facts=facts, checksum=_checksum(arrays, facts), **arrays)
+            np.savez(stream, allow_pickle=False, header=header, checksum=_checksum(arrays, header), **arrays)
         Path(name).replace(_file(directory, key))
     except OSError:
         Path(name).unlink(missing_ok=True)
 
 
-def kept_size(directory: Path | None, key: str) -> int:
+def cached_size(directory: Path | None, key: str) -> int:
     """Return the bytes kept under `key`, 0 if nothing is; whether it is whole shows when it is read."""
     if directory is None:
         return 0
@@ -170,8 +172,8 @@ def _file(directory: Path, key: str) -> Path:
     return directory / f"compliance-{key}.npz"
 
 
-def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
-    digest = hashlib.sha256(facts.encode())
+def _checksum(arrays: dict[str, np.ndarray[Any, Any]], header: str) -> str:
+    digest = hashlib.sha256(header.encode())
     for name, value in arrays.items():
         array = np.ascontiguousarray(value)
         digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
@@ -179,8 +181,8 @@ def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
     return digest.hexdigest()
 
 
-def _restored(kind: type[Kept], arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> Kept:
+def _restored(kind: type[Cached], arrays: dict[str, np.ndarray[Any, Any]], header: Json) -> Cached:
     laws = RootStressChecks if issubclass(kind, UnitRootStress) else ComplianceChecks
-    checks = laws(**facts.pop("checks"))
-    content: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
+    checks = laws(**header.pop("checks"))
+    content: dict[str, Any] = arrays | header | {"checks": checks, "from_cache": True}
     return kind(**content)

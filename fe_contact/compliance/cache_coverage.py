@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fe_contact.compliance.cache import kept_size
+from fe_contact.compliance.cache import cached_size
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
 from fe_contact.compliance.plane_hypothesis import PlaneHypothesis
@@ -14,15 +14,15 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.bore_support import PlaneStrain, bore_support
 
 
-def solid_kept(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> int:
+def solid_cached(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> int:
     """Return the bytes of the compliance over the face that is kept, 0 if it is not."""
     if cache is None:
         return 0
     support = bore_support(gear.right_handed())
-    return kept_size(cache, compliance_key_3d(gear, recipe, usual_reach(gear), support))
+    return cached_size(cache, compliance_key_3d(gear, recipe, usual_reach(gear), support))
 
 
-def free_ends_kept(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path | None) -> int:
+def free_ends_cached(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path | None) -> int:
     """Return the bytes kept of the solids that correct the plane with `teeth` teeth; 0 if one is missing."""
     if cache is None:
         return 0
@@ -30,15 +30,15 @@ def free_ends_kept(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Path
     keys = (
         compliance_key_3d(gear, recipe, reach, support) for support in (bore_support(gear), PlaneStrain())
     )
-    sizes = [kept_size(cache, key) for key in keys]
+    sizes = [cached_size(cache, key) for key in keys]
     return sum(sizes) if all(sizes) else 0
 
 
-def section_kept(
+def section_cached(
     gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, cache: Path | None
 ) -> int:
     """Return the bytes of the compliance of `teeth` teeth in the plane that is kept, 0 if it is not."""
     if cache is None:
         return 0
     count = condensed_teeth(gear, recipe, teeth)
-    return kept_size(cache, compliance_key(gear, recipe, hypothesis, count))
+    return cached_size(cache, compliance_key(gear, recipe, hypothesis, count))

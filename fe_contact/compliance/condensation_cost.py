@@ -18,7 +18,7 @@ from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
 from host import cpu_seconds
-from model_studies.host_speed import kept_speed
+from model_studies.host_speed import cached_speed
 
 RANK_SHARE = 0.23  # flank loads that are solved for over flank freedoms, at most; measured 0.22 to 0.24
 
@@ -123,7 +123,7 @@ def _predicted(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Pred
         "keeping": KEEPING * (reach + 1) * sizes.flank**2,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
-    rate = kept_speed(cache, "dense_rate", _dense_rate, _RATES)
+    rate = cached_speed(cache, "dense_rate", _dense_rate, _RATES)
     seconds = {part: count / rate for part, count in operations.items()}
     return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
 
@@ -138,8 +138,8 @@ def _ring_operations(sizes: _SectorSizes) -> float:
     harmonic = 4.0 * (space**3 / 6.0 + space**2 * loads)
     summing = 20.0 * (sizes.reach + 1) * space * loads
     back = (2 * sizes.reach + 1) * 2.0 * nf * space * loads + (sizes.reach + 1) * 2.0 * nf**2 * loads
-    whole = min(SOLVED, sizes.harmonics) * solved + sizes.harmonics * (harmonic + summing)
-    return holding + scaling + within + whole + back
+    by_harmonics = min(SOLVED, sizes.harmonics) * solved + sizes.harmonics * (harmonic + summing)
+    return holding + scaling + within + by_harmonics + back
 
 
 def _working_bytes(tree: EliminationTree, sizes: _SectorSizes) -> int:

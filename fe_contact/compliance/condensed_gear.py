@@ -34,15 +34,15 @@ class CondensedGear:
     """Its element matrices."""
     condensation: Condensation
     """How its freedoms follow from the kept ones: flank, left cut, right cut."""
-    held: HeldSector
+    condensed: HeldSector
     """The sector on its cuts."""
     ring: RingSolution
     """The gear under the loads `probe_loads`."""
 
     def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
         """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""
-        direct = self.held.flank @ loads if tooth == 0 else 0.0
-        return np.asarray(direct + self.held.transmitted.T @ self.cuts(tooth))
+        direct = self.condensed.flank @ loads if tooth == 0 else 0.0
+        return np.asarray(direct + self.condensed.transmitted.T @ self.cuts(tooth))
 
     def cuts(self, tooth: int) -> FloatArray:
         """Return the displacement of the left and right cut of a tooth under the probe loads, (2 nc, p)."""
@@ -50,8 +50,8 @@ class CondensedGear:
 
     def cut_forces(self, tooth: int, loads: FloatArray | None = None) -> FloatArray:
         """Return the forces (2 nc, p) that move a sector's cuts as they move, under flank `loads` (nf, p)."""
-        passed = 0.0 if loads is None else self.held.transmitted @ loads
-        return np.asarray(self.held.cuts @ self.cuts(tooth) - passed)
+        passed = 0.0 if loads is None else self.condensed.transmitted @ loads
+        return np.asarray(self.condensed.cuts @ self.cuts(tooth) - passed)
 
 
 def pressure_forces(s: FloatArray, z: FloatArray, index: IntArray, loaded: FloatArray) -> FloatArray:
@@ -104,7 +104,7 @@ def condensed_gear(
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
     free = free_turn(section, tooth.sector)
-    ring = close_ring(tooth.held, gear.teeth, reach, loads, free, partial(clock.progress, "ring"))
+    ring = close_ring(tooth.condensed, gear.teeth, reach, loads, free, partial(clock.progress, "ring"))
     clock.finish("ring")
     return CondensedGear(*tooth, ring), loads
 
@@ -115,7 +115,7 @@ class CondensedTooth(NamedTuple):
     sector: SweptSector
     stiffness: ElementStiffness
     condensation: Condensation
-    held: HeldSector
+    condensed: HeldSector
 
 
 def condensed_tooth(

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.compliance.cache import (
-    KEPT_KEYS,
+    CACHED_KEYS,
+    cached_or_computed,
+    cached_size,
+    computed_once,
     content_hash,
-    kept_or_computed,
-    kept_size,
     mesher_version,
-    once_each,
 )
 from fe_contact.compliance.condensation_cost import predict_cost
 from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
@@ -74,7 +74,7 @@ def flank_compliance_3d(
     reach = usual_reach(gear) if reach is None else integer("reach", reach, 0, gear.teeth // 2)
     key = compliance_key_3d(gear, recipe, reach, support)
     right = gear.right_handed()
-    result = kept_or_computed(
+    result = cached_or_computed(
         cache,
         key,
         FlankCompliance3D,
@@ -101,11 +101,13 @@ def flank_compliances_3d(
         for gear, recipe in zip(gears, recipes, strict=True)
     ]
     costs = {
-        key: 0.0 if kept_size(cache, key) else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
+        key: 0.0
+        if cached_size(cache, key)
+        else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
         for key, gear, recipe in zip(keys, gears, recipes, strict=True)
     }
     progress = by_cost(report, costs)
-    compliances = once_each(
+    compliances = computed_once(
         keys,
         lambda i: flank_compliance_3d(
             gears[i], recipes[i], support=support, cache=cache, report=partial(progress, keys[i])
@@ -122,7 +124,7 @@ def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support:
     return _key(gear, recipe, reach, support.name, MODEL_VERSION)
 
 
-@lru_cache(maxsize=KEPT_KEYS)
+@lru_cache(maxsize=CACHED_KEYS)
 def _key(gear: Toothing, recipe: SectorRecipe, reach: int, support: str, version: int) -> str:
     """Hash them once: predictions ask for the same few keys again and again."""
     content: Json = {
@@ -155,7 +157,7 @@ def compute_flank_compliance_3d(
     profile = tooth_profile(gear)
     solved, loads = condensed_gear(gear, section, recipe, reach, support, clock)
     lever = gear.base_radius * math.cos(gear.base_helix_angle)
-    checks = gear_checks(solved, loads, lever, gear.held_radius)
+    checks = gear_checks(solved, loads, lever, gear.seat_radius)
     clock.finish("checks")
     flank = len(solved.sector.flank)
     blocks = np.ascontiguousarray(solved.ring.blocks[:, :flank, :flank])
@@ -176,7 +178,7 @@ def compute_flank_compliance_3d(
         base_helix_angle=gear.base_helix_angle,
         teeth=gear.teeth,
         checks=checks,
-        unknowns=gear.teeth * (solved.sector.size - solved.held.cut_size),
+        unknowns=gear.teeth * (solved.sector.size - solved.condensed.cut_size),
         seconds=clock.seconds,
         solver=SOLVER,
         **keyed,

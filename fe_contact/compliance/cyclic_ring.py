@@ -212,7 +212,7 @@ def close_ring(
         everywhere[..., :count],
         closed.shares,
         solved,
-        SOFTENED * (closed.missed / largest + 2.0 * minimum),
+        SOFTENED * (closed.error / largest + 2.0 * minimum),
         everywhere[..., count:],
         np.zeros(0) if free is None else free.turn,
         restraint,

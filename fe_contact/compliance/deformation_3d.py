@@ -35,7 +35,7 @@ def deformed_solids(
     gear: Toothing,
     recipe: SectorRecipe,
     loads: Sequence[Load],
-    beside: int = 1,
+    unloaded: int = 1,
     *,
     seen_from_behind: bool = False,
 ) -> tuple[DeformedGear, ...]:
@@ -50,7 +50,7 @@ def deformed_solids(
     loads : sequence of mapping
         Tooth number to nodal forces (nf,) along the outward normal, in the freedoms of `FlankCompliance3D`,
         N: a load presses with negative forces.
-    beside : int
+    unloaded : int
         How many unloaded teeth to show on either side of the loaded ones.
     seen_from_behind : bool
         The loads, and the flank displacements returned, are in the freedoms of the mirrored compliance, as
@@ -69,14 +69,14 @@ def deformed_solids(
     sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
     columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
     tooth, _ = condensed_tooth(right, section, recipe, support, StageClock())
-    cuts = loaded_cuts(tooth.held, columns, right.teeth)
+    cuts = loaded_cuts(tooth.condensed, columns, right.teeth)
     solved = CondensedGear(*tooth, RingSolution(np.empty((0, 0, 0)), cuts.everywhere))
     elements = sector_elements(right, section, solved.sector)
     deformed = []
     for case in range(len(loads)):
         members = [i for i, (number, _) in enumerate(sources) if number == case]
         loaded = _Loaded(np.array([sources[i][1] for i in members]), np.array(members), columns[:, members])
-        deformed.append(_deformed(gear.teeth, solved, elements, loaded, beside, mirror, left))
+        deformed.append(_deformed(gear.teeth, solved, elements, loaded, unloaded, mirror, left))
     return tuple(deformed)
 
 
@@ -98,16 +98,16 @@ def _mirrored_back(values: FloatArray, mirror: IntArray | None) -> FloatArray:
     return back
 
 
-def _shown(loaded: IntArray, beside: int, teeth: int) -> IntArray:
+def _teeth_in_view(loaded: IntArray, unloaded: int, teeth: int) -> IntArray:
     """Return consecutive tooth numbers from the first to the last loaded one and beside them, at most all."""
-    teeth_in_view = np.arange(loaded.min() - beside, loaded.max() + beside + 1)
+    teeth_in_view = np.arange(loaded.min() - unloaded, loaded.max() + unloaded + 1)
     return teeth_in_view if len(teeth_in_view) <= teeth else np.arange(teeth) - (teeth - 1) // 2
 
 
 def _fields(gear: CondensedGear, loaded: _Loaded, view: IntArray) -> tuple[FloatArray, FloatArray]:
     """Return all freedoms (n, T) and the flank loads (nf, T) of the teeth `view`."""
     left = gear.ring.left
-    size, teeth = gear.held.cut_size, len(left)
+    size, teeth = gear.condensed.cut_size, len(left)
     cuts = np.zeros((2 * size, len(view)))
     forces = np.zeros((len(loaded.forces), len(view)))
     for tooth, column, force in zip(loaded.teeth, loaded.columns, loaded.forces.T, strict=True):
@@ -115,7 +115,7 @@ def _fields(gear: CondensedGear, loaded: _Loaded, view: IntArray) -> tuple[Float
         cuts[:size] += left[distance % teeth, :, column].T
         cuts[size:] += left[(distance - 1) % teeth, :, column].T
         forces[:, distance % teeth == 0] += force[:, None]
-    flank = gear.held.flank @ forces + gear.held.transmitted.T @ cuts
+    flank = gear.condensed.flank @ forces + gear.condensed.transmitted.T @ cuts
     return gear.condensation.expand(np.concatenate([flank, cuts])), forces
 
 
@@ -124,11 +124,11 @@ def _deformed(
     gear: CondensedGear,
     elements: SectorElements,
     loaded: _Loaded,
-    beside: int,
+    unloaded: int,
     mirror: IntArray | None,
     left: bool,
 ) -> DeformedGear:
-    view = _shown(loaded.teeth, beside, teeth)
+    view = _teeth_in_view(loaded.teeth, unloaded, teeth)
     fields, forces = _fields(gear, loaded, view)
     closed = len(view) == teeth
     numbers = _numbers(gear.sector, elements, len(view), closed)

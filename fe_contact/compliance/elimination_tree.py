@@ -174,4 +174,4 @@ def sector_tree(sector: SweptSector) -> EliminationTree:
     retained = np.concatenate([sector.loaded, sector.left, sector.right])
     free = sector.freedoms.max(axis=1) >= 0
     nodes = np.where(free[sector.elements], sector.elements, -1)
-    return bisected_tree(nodes, sector.element_freedoms, sector.place, retained)
+    return bisected_tree(nodes, sector.element_freedoms, sector.grid_cell, retained)

@@ -23,7 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.compliance.cache import once_each
+from fe_contact.compliance.cache import computed_once
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d, flank_compliance_3d
 from fe_contact.compliance.flank import FlankCompliance, FlankCompliance3D
 from fe_contact.errors import InputError
@@ -90,7 +90,7 @@ def finite_width_compliances(
     keys = [
         compliance_key_3d(gear, recipe, 0, ClampedBore()) for gear, recipe in zip(gears, recipes, strict=True)
     ]
-    return once_each(keys, lambda i: _beyond_plane_strain(gears[i], recipes[i], teeth, cache))
+    return computed_once(keys, lambda i: _beyond_plane_strain(gears[i], recipes[i], teeth, cache))
 
 
 def _beyond_plane_strain(

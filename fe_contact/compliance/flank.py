@@ -192,14 +192,14 @@ class FlankCompliance3D:
         0.
         """
         if len(self.key_rows) == 0:
-            return self._apart(tooth, other)
+            return self._by_distance(tooth, other)
         span = len(self.key_rows) // 2
         if max(abs(tooth), abs(other)) > span:
             raise KeyError((tooth, other))
         first, second = (self.key_rows[j + span] for j in (tooth, other))
-        return np.asarray(self._apart(tooth, other) + first.T @ self.key_core @ second)
+        return np.asarray(self._by_distance(tooth, other) + first.T @ self.key_core @ second)
 
-    def _apart(self, tooth: int, other: int) -> FloatArray:
+    def _by_distance(self, tooth: int, other: int) -> FloatArray:
         """Return the part of `block` that depends on the distance of the teeth alone."""
         ahead = (tooth - other) % self.teeth
         behind = self.teeth - ahead

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.compliance.cache import (
-    KEPT_KEYS,
+    CACHED_KEYS,
+    cached_or_computed,
+    computed_once,
     content_hash,
-    kept_or_computed,
     mesher_version,
-    once_each,
 )
 from fe_contact.compliance.condensed_sector import condense_sector
 from fe_contact.compliance.factorization import FACTORIZATION
@@ -67,7 +67,7 @@ def flank_compliance(
     recipe = recipe or MeshRecipe.standard(gear)
     count = condensed_teeth(gear, recipe, teeth)
     key = compliance_key(gear, recipe, hypothesis, count)
-    return kept_or_computed(
+    return cached_or_computed(
         cache, key, FlankCompliance, lambda: compute_flank_compliance(gear, recipe, hypothesis, count)
     )
 
@@ -86,7 +86,7 @@ def flank_compliances(
     """
     recipes = recipes or [MeshRecipe.standard(gear) for gear in gears]
     keys = section_keys(gears, recipes, hypothesis, teeth)
-    return once_each(
+    return computed_once(
         keys, lambda i: flank_compliance(gears[i], recipes[i], hypothesis, teeth=teeth, cache=cache)
     )
 
@@ -118,7 +118,7 @@ def compliance_key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothes
     return _key(gear, recipe, hypothesis, teeth, MODEL_VERSION)
 
 
-@lru_cache(maxsize=KEPT_KEYS)
+@lru_cache(maxsize=CACHED_KEYS)
 def _key(gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, version: int) -> str:
     """Hash them once: predictions ask for the same few keys again and again."""
     section = gear.macro_geometry()

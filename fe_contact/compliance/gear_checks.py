@@ -32,7 +32,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     load, ring, sector = loads[:, :1], gear.ring, gear.sector
     solved = replace(gear, ring=replace(ring, left=ring.solved))
     everywhere = np.tile(ring.solved.sum(axis=0), (2, 1))[:, :1]
-    turning = gear.held.flank @ load * ring.shares.sum() + gear.held.transmitted.T @ everywhere
+    turning = gear.condensed.flank @ load * ring.shares.sum() + gear.condensed.transmitted.T @ everywhere
     values = [
         np.concatenate([solution.flank(0, loads)[:, :1], solution.cuts(0)[:, :1]])
         for solution in (gear, solved)
@@ -42,7 +42,7 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     forces = [element_forces(sector, gear.stiffness, field) for field in fields]
     cuts = np.concatenate([ring.left, np.roll(ring.left, 1, axis=0)], axis=1)[1:, :, 0]
     at_cuts = float(
-        np.sum(cuts @ gear.held.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0])
+        np.sum(cuts @ gear.condensed.cuts * cuts) + np.sum(ring.left[:, :, 0] @ ring.restraining[:, 0])
     )
     free = sector.element_freedoms >= 0
     inside = float(np.sum(fields[0][sector.element_freedoms] * forces[0] * free))
@@ -87,7 +87,7 @@ def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray, shares: 
     inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
     out: FloatArray = -inside.astype(float)
     out[sector.loaded] += shares[0] * load[:, 0]
-    size = gear.held.cut_size
+    size = gear.condensed.cut_size
     out[sector.left] -= gear.cut_forces(1, shares[1] * load)[size:, 0]
     out[sector.right] -= gear.cut_forces(-1, shares[-1] * load)[:size, 0]
     for cut in (sector.left, sector.right):

@@ -25,9 +25,9 @@ SECTION = np.array([0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3])
 
 QUADRATURE_ORDER = 5  # three Gauss points each way
 
-_APART = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
+_NODE_DISTANCE = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
 
-_NODE, _FUNCTION = _APART.argmin(axis=1), _APART.argmin(axis=0)  # of scikit-fem's functions, and back
+_NODE, _FUNCTION = _NODE_DISTANCE.argmin(axis=1), _NODE_DISTANCE.argmin(axis=0)  # scikit-fem to VTK, back
 
 
 def layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:

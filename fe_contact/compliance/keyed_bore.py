@@ -27,7 +27,7 @@ from fe_contact.mesh.swept_sector import SweptSector, between_ends
 from fe_contact.types import FloatArray, IntArray
 
 POINTS = 3  # of Gauss each way on the part of a face that the key covers: exact along the bore
-KEPT = 1e-10  # least over largest singular value of what is kept of Z
+RANK_TOLERANCE = 1e-10  # least over largest singular value of what is kept of Z
 
 
 class _KeyUpdate(NamedTuple):
@@ -64,15 +64,15 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
         Teeth on either side of tooth 0.
     """
     points = _key_points(gear, solved.sector, twist)
-    clamped, flank = solved.held, len(solved.sector.flank)
+    clamped, flank = solved.condensed, len(solved.sector.flank)
     sectors, number, foundation = _modes(points, len(solved.sector.key_bore) + len(solved.sector.key_cut))
     teeth, under = np.arange(-span, span + 1), np.unique(sectors)
     distances = np.unique((np.concatenate([teeth, under])[:, None] - under) % gear.teeth)
-    motion = _moved(solved, distances)
+    motion = _unit_motion(solved, distances)
     between = np.searchsorted(distances, (sectors[:, None] - sectors) % gear.teeth)
     coupled = foundation.T @ motion[between, flank + number[:, None], number] @ foundation
     turned = clamped.transmitted[:, :flank].T @ np.tile(solved.ring.turn, 2)
-    key_turn = gear.held_radius * foundation.sum(axis=0)
+    key_turn = gear.seat_radius * foundation.sum(axis=0)
     rows = np.empty((len(teeth), 1 + foundation.shape[1], flank))
     for i, tooth in enumerate(teeth):
         response = motion[np.searchsorted(distances, (tooth - sectors) % gear.teeth), :flank, number]
@@ -83,12 +83,12 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
     return _compressed(rows, matrix)
 
 
-def _moved(solved: CondensedGear, distances: IntArray) -> FloatArray:
+def _unit_motion(solved: CondensedGear, distances: IntArray) -> FloatArray:
     """Return what unit forces on the bore of sector 0 move: flank and bore of the sectors `distances`.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """
-    clamped, sector, left = solved.held, solved.sector, solved.ring.bore
+    clamped, sector, left = solved.condensed, solved.sector, solved.ring.bore
     inner = len(sector.key_bore)
     both = np.concatenate([left[distances], left[distances - 1]], axis=1)
     inside = clamped.transmitted.T @ both
@@ -101,7 +101,7 @@ def _key_points(gear: Toothing, sector: SweptSector, twist: float) -> _KeyPoints
     key, modulus = gear.seat.key, gear.seat.key_modulus
     assert key is not None
     number = _numbers(sector)
-    faces = np.flatnonzero(sector.place[: sector.bodies, 1] == -sector.grid.body_rows)
+    faces = np.flatnonzero(sector.grid_cell[: sector.bodies, 1] == -sector.grid.body_rows)
     z = _node_positions(sector)
     low, high = gear.seat.ends(gear.face_width)
     step = 2.0 * math.pi / gear.teeth / sector.grid.columns
@@ -111,7 +111,7 @@ def _key_points(gear: Toothing, sector: SweptSector, twist: float) -> _KeyPoints
         bottom, top = z[nodes[0]], z[nodes[2]]
         if not low < 0.5 * (bottom + top) < high:
             continue
-        first = (sector.place[face, 0] - 0.5 * sector.grid.columns) * step
+        first = (sector.grid_cell[face, 0] - 0.5 * sector.grid.columns) * step
         for s, x, y, weight in _covered(gear, key, first, step, (bottom, top), twist):
             shares = face_functions(np.array([x]), np.array([y]))[0]
             scale = math.sqrt(modulus * weight)
@@ -128,7 +128,7 @@ def _covered(
     runs from left to right, against the angle.
     """
     t, w = np.polynomial.legendre.leggauss(POINTS)
-    half = 0.5 * key.width / gear.held_radius
+    half = 0.5 * key.width / gear.seat_radius
     pitch, length = 2.0 * math.pi / gear.teeth, ends[1] - ends[0]
     points: list[tuple[int, float, float, float]] = []
     for y, wy in zip(t, w, strict=True):
@@ -141,7 +141,7 @@ def _covered(
                     continue
                 for x, wx in zip(t, w, strict=True):
                     at = 0.5 * (low + high) + 0.5 * (high - low) * x
-                    area = 0.25 * gear.held_radius * (high - low) * length * wx * wy
+                    area = 0.25 * gear.seat_radius * (high - low) * length * wx * wy
                     points.append((s, float(1.0 - 2.0 * at / step), float(y), float(area)))
     return points
 
@@ -185,7 +185,7 @@ def _compressed(rows: FloatArray, matrix: FloatArray) -> _KeyUpdate:
     scale = np.linalg.norm(flat, axis=1)
     scale[1:] = scale[1:].max()
     left, values, right = np.linalg.svd(flat / scale[:, None], full_matrices=False)
-    significant = values > KEPT * values[0]
+    significant = values > RANK_TOLERANCE * values[0]
     left = left[:, significant] * values[significant] * scale[:, None]
     core = left.T @ np.linalg.solve(matrix, left)
     shaped = right[significant].reshape(-1, teeth, flank).transpose(1, 0, 2)

@@ -12,10 +12,10 @@ from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
 # Shares of the largest entry of A:
-MIN_TOLD = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
+MIN_SIGNIFICANT = 1e-12  # compliance by what flank loads pass to the cuts that is told from rounding
 MIN_PASSED = 1e-7  # the same that is solved for where not every harmonic is
 MIN_ENERGY = 1e-8  # energy under unit loads that a direction of the space holds
-LARGEST_MISSED = 3e-7  # what a flank node may be off by harmonics that are not solved
+LARGEST_ERROR = 3e-7  # what a flank node may be off by harmonics that are not solved
 
 SOFTENED = 2.0  # what moving neighbors add to the compliance of a cut; where it is more, the space holds it
 RESOLVED = 1e-10  # of the largest energy among vectors: the least that their products show
@@ -30,21 +30,21 @@ def first_harmonics(teeth: int) -> list[int]:
 
 def least_passed(teeth: int) -> float:
     """Return the share of the compliance that tells loads apart; more where all harmonics are solved."""
-    return MIN_TOLD if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
+    return MIN_SIGNIFICANT if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
 
 
 class ClosedRing(NamedTuple):
     """All harmonics in the space of `basis` (nc, k), as `left_cuts` takes them.
 
     `solved` (z, nc, p) are scaled left cuts under some loads, of which `shares` (z,) act on each tooth so
-    that solved harmonics alone appear; `missed` is what a flank node is off, estimated, m/N.
+    that solved harmonics alone appear; `error` is what a flank node is off, estimated, m/N.
     """
 
     basis: FloatArray
     solutions: list[ComplexArray]
     solved: FloatArray
     shares: FloatArray
-    missed: float
+    error: float
 
 
 def solve_few(
@@ -79,8 +79,8 @@ def solve_few(
             report(len(known) / (len(known) + 2.0))
         within = ring.within(basis)
         solutions = [within.solve(number) for number in ring.harmonics]
-        residual = _missed(ring, basis, solutions, modes)
-        if residual.sum(axis=0).max() <= LARGEST_MISSED * largest:
+        residual = _residual_energy(ring, basis, solutions, modes)
+        if residual.sum(axis=0).max() <= LARGEST_ERROR * largest:
             break
         chosen = [int(residual.max(axis=1).argmax())]
         # as large as the problem, or rounding alone is left
@@ -112,7 +112,7 @@ def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatAr
         basis = np.concatenate([basis, added @ _whitening(_gram(added), 0.5)[0]], axis=1)
 
 
-def _missed(
+def _residual_energy(
     ring: TurningLoads, basis: FloatArray, solutions: list[ComplexArray], modes: FloatArray
 ) -> FloatArray:
     """Return the energy of what is unbalanced under unit load, by harmonic and flank node or other load.

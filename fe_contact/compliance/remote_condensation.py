@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from fe_contact.compliance.cache import kept_size, write_compliance
+from fe_contact.compliance.cache import cached_size, write_compliance
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d, compute_flank_compliance_3d
 from fe_contact.compliance.flank import FlankCompliance3D
 from fe_contact.compliance.tooth_reach import usual_reach
@@ -14,7 +14,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
 from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from model_studies.progress import Report, unreported
-from model_studies.workers import InProcess, Remembering, Workers, kept
+from model_studies.workers import InProcess, Remembering, Workers, cluster_cached
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def condense_remotely(
     if isinstance(workers, InProcess):
         return
     solids = {solid.key: solid for solid in map(_Solid.of, gears, recipes)}
-    missing = {key: solid for key, solid in solids.items() if not kept_size(cache, key)}
+    missing = {key: solid for key, solid in solids.items() if not cached_size(cache, key)}
     if not missing:
         return
     compliances = workers.run(condense, None, list(missing.values()))
@@ -68,7 +68,7 @@ def condense_remotely(
         report(count / len(missing))
 
 
-@kept
+@cluster_cached
 def condense(_: None, solid: _Solid) -> FlankCompliance3D:
     """Condense a gear: one task."""
     return compute_flank_compliance_3d(solid.gear, solid.recipe, solid.reach, solid.support)

@@ -20,7 +20,7 @@ from fe_contact.compliance.cyclic_compliance import SOLVER
 from fe_contact.compliance.cyclic_harmonics import LeftCuts
 from fe_contact.compliance.cyclic_ring import RingSolution, even_sector, loaded_cuts
 from fe_contact.compliance.gear_checks import element_forces, residual
-from fe_contact.compliance.reduced_harmonics import MIN_TOLD, row_space
+from fe_contact.compliance.reduced_harmonics import MIN_SIGNIFICANT, row_space
 from fe_contact.compliance.root_stress import (
     RootStressChecks,
     UnitRootStress,
@@ -61,8 +61,12 @@ def compute_root_stress_3d(
     root = quad_root(section, profile)
     clock.finish("mesh")
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
-    modes = row_space(even_sector(tooth.held).transmitted, MIN_TOLD * np.abs(tooth.held.flank).max())
-    cuts = loaded_cuts(tooth.held, np.concatenate([modes, loads], axis=1), gear.teeth, reach, modes.shape[1])
+    modes = row_space(
+        even_sector(tooth.condensed).transmitted, MIN_SIGNIFICANT * np.abs(tooth.condensed.flank).max()
+    )
+    cuts = loaded_cuts(
+        tooth.condensed, np.concatenate([modes, loads], axis=1), gear.teeth, reach, modes.shape[1]
+    )
     clock.finish("ring")
     functionals = root_functionals(gear, section, tooth.sector, root)
     stress = _unit_load_stress(tooth, functionals, modes, cuts, reach)
@@ -86,7 +90,7 @@ def compute_root_stress_3d(
             z=ends,
             index=tooth.sector.flank_index,
             checks=checks,
-            unknowns=gear.teeth * (tooth.sector.size - tooth.held.cut_size),
+            unknowns=gear.teeth * (tooth.sector.size - tooth.condensed.cut_size),
             seconds=clock.seconds,
             solver=SOLVER,
         )
@@ -115,8 +119,8 @@ def _unit_load_stress(
     tooth: CondensedTooth, functionals: sp.csr_array, modes: FloatArray, cuts: LeftCuts, reach: int
 ) -> FloatArray:
     """Return the stresses (2 reach + 1, r, nf) of tooth m = -reach .. reach by forces on tooth 0."""
-    retained = _kept_functionals(tooth.condensation, functionals)
-    clamped, count = tooth.held, len(tooth.sector.flank)
+    retained = _on_retained(tooth.condensation, functionals)
+    clamped, count = tooth.condensed, len(tooth.sector.flank)
     by_cuts = retained[:, count:] + retained[:, :count] @ clamped.transmitted.T
     stress = np.empty((2 * reach + 1, len(retained), count))
     for m in range(-reach, reach + 1):
@@ -126,12 +130,12 @@ def _unit_load_stress(
     return stress
 
 
-def _kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatArray:
+def _on_retained(condensation: Condensation, rows: sp.csr_array) -> FloatArray:
     """Return the rows (r, k) on the kept freedoms of a condensation that stand for `rows` (r, n) on all.
 
     The transpose of `Condensation.expand`: what a front eliminates it hands to its border.
     """
-    functionals = np.empty((rows.shape[0], len(condensation.kept)))
+    functionals = np.empty((rows.shape[0], len(condensation.retained)))
     for start in range(0, rows.shape[0], ROWS_AT_ONCE):
         part = np.asfortranarray(rows[start : start + ROWS_AT_ONCE].T.toarray())
         for front in reversed(condensation.factors):
@@ -140,7 +144,7 @@ def _kept_functionals(condensation: Condensation, rows: sp.csr_array) -> FloatAr
             if used.size:
                 solved = blas.dtrsm(1.0, front.factor, np.asfortranarray(inner[:, used]), lower=1)
                 part[np.ix_(front.front.border, used)] -= front.coupling @ solved
-        functionals[start : start + ROWS_AT_ONCE] = part[condensation.kept].T
+        functionals[start : start + ROWS_AT_ONCE] = part[condensation.retained].T
     return functionals
 
 

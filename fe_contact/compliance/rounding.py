@@ -67,4 +67,4 @@ def least_face_width(gear: Toothing, layers: int) -> float:
             disc_rounding(10.0**power, gear.helix_angle, layers, gear.material) / LARGEST_ROUNDING
         )
 
-    return abs(gear.root_radius - gear.held_radius) / float(10.0 ** scipy.optimize.brentq(beyond, -3.0, 9.0))
+    return abs(gear.root_radius - gear.seat_radius) / float(10.0 ** scipy.optimize.brentq(beyond, -3.0, 9.0))

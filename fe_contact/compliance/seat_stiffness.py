@@ -29,7 +29,7 @@ def seat_stiffness(gear: Toothing, grid: SectorGrid, thickness: float, seat: Bor
     quadratic over a rectangle of the unrolled cylinder: a turn of the whole bore is met exactly, on
     helical meshes too. Only the finite stiffnesses count; freedoms in rigid directions are held.
     """
-    area = gear.held_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
+    area = gear.seat_radius * 2.0 * math.pi / gear.teeth / grid.columns * thickness
     mass = 0.25 * area * face_mass()
     matrix, nodes = np.zeros((20, 3, 20, 3)), np.array(LOWER_FACE)
     for c, stiffness in enumerate(seat.stiffness):

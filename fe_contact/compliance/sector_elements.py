@@ -94,7 +94,7 @@ def sector_elements(gear: Toothing, section: QuadSector, sector: SweptSector) ->
     for batch in bodies:
         local, frames = placed_layer(section, batch, axes, twist(gear))
         middle = np.interp(
-            sector.place[batch.elements[:, 0], 2], np.arange(len(sector.layers.ends)), sector.layers.ends
+            sector.grid_cell[batch.elements[:, 0], 2], np.arange(len(sector.layers.ends)), sector.layers.ends
         )
         turns = np.stack([turn_about_axis(twist(gear) * float(z)) for z in middle])
         nodes[batch.elements] = np.einsum("cxy,mpy->cmpx", turns, local)

@@ -32,7 +32,7 @@ class Condensation:
 
     factors: tuple[_FrontFactor, ...]
     """From the root down: parents before their children."""
-    kept: IntArray
+    retained: IntArray
     """The kept freedoms. Shape (k,)."""
     size: int
     """Number of all freedoms."""
@@ -40,7 +40,7 @@ class Condensation:
     def expand(self, values: FloatArray) -> FloatArray:
         """Return all freedoms (n, m) from the kept ones (k, m), no force on the others."""
         u = np.zeros((self.size, values.shape[1]))
-        u[self.kept] = values
+        u[self.retained] = values
         for part in self.factors:
             right = np.asfortranarray(part.coupling.T @ u[part.front.border])
             u[part.front.inner] = -blas.dtrsm(1.0, part.factor, right, lower=1, trans_a=1)
@@ -67,13 +67,13 @@ def condense(
         Stiffness condensed on the kept freedoms, N/m, whose lower triangle is valid, and how others follow.
     """
     factors: list[_FrontFactor] = []
-    done, whole = 0.0, tree.operations
+    done, total = 0.0, tree.operations
 
     def eliminate(front: Front, gathered: _Gathered) -> None:
         nonlocal done
         factors.append(_FrontFactor(front, *_eliminated(gathered)))
         done += front.operations
-        report(done / whole)
+        report(done / total)
 
     matrix = _reduced(tree.root, tree.order, freedoms, stiffness, eliminate)
     return matrix, Condensation(tuple(factors[::-1]), tree.root.border, len(tree.order))

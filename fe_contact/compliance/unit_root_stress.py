@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 
-from fe_contact.compliance.cache import content_hash, kept_or_computed, kept_size, once_each
+from fe_contact.compliance.cache import cached_or_computed, cached_size, computed_once, content_hash
 from fe_contact.compliance.condensed_sector import freedoms
 from fe_contact.compliance.cyclic_compliance import compliance_key_3d
 from fe_contact.compliance.factorization import FACTORIZATION
@@ -84,7 +84,7 @@ def unit_root_stress(
     recipe = recipe or MeshRecipe.standard(gear)
     count = condensed_teeth(gear, recipe, teeth)
     key = compliance_key(gear, recipe, hypothesis, count)
-    return _kept(key, lambda: _compute_in_plane(gear, recipe, hypothesis, count), cache)
+    return _cached_stress(key, lambda: _compute_in_plane(gear, recipe, hypothesis, count), cache)
 
 
 def unit_root_stress_3d(
@@ -111,7 +111,7 @@ def unit_root_stress_3d(
 
         return compute_root_stress_3d(gear.right_handed(), recipe, distance, support)
 
-    stress = _kept(compliance_key_3d(gear, recipe, distance, support), compute, cache)
+    stress = _cached_stress(compliance_key_3d(gear, recipe, distance, support), compute, cache)
     return stress.mirrored() if gear.helix_angle < 0.0 else stress
 
 
@@ -124,7 +124,7 @@ def unit_root_stresses(
     cache: Path | None = None,
 ) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears of one section, material and recipe are computed once."""
-    return once_each(
+    return computed_once(
         section_keys(gears, recipes, hypothesis, teeth),
         lambda i: unit_root_stress(gears[i], recipes[i], hypothesis, teeth=teeth, cache=cache),
     )
@@ -139,14 +139,14 @@ def unit_root_stresses_3d(
         compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear))
         for gear, recipe in zip(right_hand, recipes, strict=True)
     ]
-    stresses = once_each(keys, lambda i: unit_root_stress_3d(right_hand[i], recipes[i], cache=cache))
+    stresses = computed_once(keys, lambda i: unit_root_stress_3d(right_hand[i], recipes[i], cache=cache))
     return tuple(
         stress.mirrored() if gear.helix_angle < 0.0 else stress
         for gear, stress in zip(gears, stresses, strict=True)
     )
 
 
-def stress_kept(
+def stress_cached(
     gear: Toothing, recipe: MeshRecipe | SectorRecipe, hypothesis: PlaneHypothesis, cache: Path | None
 ) -> bool:
     """Whether the unit-load root stress of a gear is in the cache; solids have no use of the hypothesis."""
@@ -155,15 +155,17 @@ def stress_kept(
         key = compliance_key_3d(right, recipe, usual_reach(right), bore_support(right))
     else:
         key = compliance_key(gear, recipe, hypothesis, condensed_teeth(gear, recipe, None))
-    return bool(kept_size(cache, _stress_key(key)))
+    return bool(cached_size(cache, _stress_key(key)))
 
 
 def _stress_key(compliance: str) -> str:
     return content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
 
 
-def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
-    return kept_or_computed(cache, _stress_key(compliance), UnitRootStress, compute)
+def _cached_stress(
+    compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None
+) -> UnitRootStress:
+    return cached_or_computed(cache, _stress_key(compliance), UnitRootStress, compute)
 
 
 def _compute_in_plane(

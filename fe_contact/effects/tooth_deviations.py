@@ -53,16 +53,14 @@ class ToothDeviations(Effect):
 
     def across_face(self, scene: ContactScene) -> str | None:
         """Wobble, waves inclined to the contact lines, and flanks of teeth that vary along the face."""
-        causes = dict.fromkeys(
-            words for gear in scene.gears.values() for words in _across_face(gear).values()
-        )
+        causes = dict.fromkeys(text for gear in scene.gears.values() for text in _across_face(gear).values())
         return " and ".join(causes) or None
 
     def refuse_plane(self, scene: ContactScene) -> None:
         """Refuse what varies along the face."""
         for name, gear in scene.gears.items():
-            for field, words in _across_face(gear).items():
-                raise InputError(f"{name}.{field}", words, "none for a plane model", "Use the 3-D model.")
+            for field, text in _across_face(gear).items():
+                raise InputError(f"{name}.{field}", text, "none for a plane model", "Use the 3-D model.")
 
     def without(self, scene: ContactScene) -> ContactScene:
         """Return the scene of gears without them."""
@@ -119,7 +117,7 @@ def _across_face(gear: Toothing) -> dict[str, str]:
         "waves": ("waves across the face", inclined),
         "tooth_flanks": ("helix deviations of teeth", flanks),
     }
-    return {field: words for field, (words, there) in causes.items() if there}
+    return {field: text for field, (text, there) in causes.items() if there}
 
 
 def _figures(gear: Toothing) -> str:

@@ -178,13 +178,13 @@ def _part(modification: FlankModification, kind: type[FlankPart]) -> FlankPart:
     return plain if values == default else kind(**values)
 
 
-def _own_fields(part: FlankPart) -> dict[str, Any]:
+def _part_fields(part: FlankPart) -> dict[str, Any]:
     return {name: getattr(part, name) for name in _DEFAULTS[type(part)][1]}
 
 
 def _together(parts: Iterable[FlankPart]) -> FlankModification:
-    fields_of_parts = (_own_fields(part) for part in parts)
-    return FlankModification(**{name: value for facts in fields_of_parts for name, value in facts.items()})
+    fields_of_parts = (_part_fields(part) for part in parts)
+    return FlankModification(**{name: value for values in fields_of_parts for name, value in values.items()})
 
 
 UNMODIFIED = FlankModification()

@@ -60,8 +60,8 @@ class FlankPart:
     @cached_property
     def varies(self) -> Direction:
         """Directions along which it does act; none if nothing is removed anywhere."""
-        facts = declarations(type(self)).items()
-        acting = (fact.along for field, fact in facts if fact.kind in _ACTING and getattr(self, field))
+        items = declarations(type(self)).items()
+        acting = (fact.along for field, fact in items if fact.kind in _ACTING and getattr(self, field))
         return reduce(or_, acting, Direction.NONE)
 
     def check_fits(self, gear: Tooth) -> None:

@@ -35,7 +35,7 @@ _REMEDY = "A relief starts on the involute, before the end of the flank to which
 class _Way:
     """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
 
-    words: str
+    text: str
     unit: str
     maximum: float
     """Largest value, in SI."""
@@ -64,7 +64,7 @@ WAYS = {
 def _start(relief: str, way: str, example: float) -> Any:
     """Return the field of one way to state where a relief starts."""
     kind = WAYS[way]
-    text = f"{kind.words.capitalize()} at which the {relief} starts, instead of its length; left out: none"
+    text = f"{kind.text.capitalize()} at which the {relief} starts, instead of its length; left out: none"
     bound = between(0.0, kind.maximum)
     return declared(
         None, Declared(Kind.START, kind.unit, bound, text, example, Direction.PROFILE, later=True)
@@ -107,19 +107,19 @@ class StatedStarts:
         """Return the one way in which a start is stated, and its value; none where a length is."""
         by_field = {f"{relief}_{way}": way for way in WAYS}
         starts = {field: value for field in by_field if (value := getattr(self, field)) is not None}
-        length, words = modification.get(f"{relief}_length", 0.0), relief.replace("_", " ")
+        length, text = modification.get(f"{relief}_length", 0.0), relief.replace("_", " ")
         ways = [*([f"{relief}_length"] if length else []), *starts]
         if len(ways) > 1:
             bound, remedy = (
                 Text.of("left out beside ", FieldName(ways[0])),
-                f"State once where the {words} starts.",
+                f"State once where the {text} starts.",
             )
             raise InputError(f"modification.{ways[1]}", starts[ways[1]], bound, remedy)
         if not ways and modification.get(relief, 0.0):
             names = tuple(part for field in by_field for part in (", ", FieldName(field)))
             bound = Text.of("above 0, or left out beside one of ", *names[1:])
             raise InputError(
-                f"modification.{relief}_length", length, bound, f"State where the {words} starts."
+                f"modification.{relief}_length", length, bound, f"State where the {text} starts."
             )
         return {by_field[field]: value for field, value in starts.items()}
 
@@ -131,7 +131,7 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     form, tip = (
         way.of_roll_length(gear.base_radius, roll) for roll in (gear.form_roll_length, gear.tip_roll_length)
     )
-    names = {form: f"the form {way.words}", tip: f"the tip {way.words}"}
+    names = {form: f"the form {way.text}", tip: f"the tip {way.text}"}
     low, high = sorted(names)
     end = tip if at_tip else form
     bound = Bound(low, high, end == low, end == high, low_name=names[low], high_name=names[high])

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bounds import Declared, Direction, Kind, SiNote, Text, Words, between, declared
+from bounds import Declared, Direction, Kind, SiNote, Text, Wording, between, declared
 from fe_contact.errors import InputError, within
 from fe_contact.flank.involute import involute_normal, involute_point
 from fe_contact.flank.part import FlankPart, ReliefStart
@@ -69,7 +69,7 @@ def _check_chamfer(gear: Tooth, height: float, angle: float) -> None:
     _check("modification.tip_chamfer", height, 0.0, fits, _CHAMFER_FITS)
 
 
-def _check(field: str, value: float, minimum: float, fits: Callable[[float], bool], remedy: Words) -> None:
+def _check(field: str, value: float, minimum: float, fits: Callable[[float], bool], remedy: Wording) -> None:
     """Refuse a value that does not fit, naming the largest that does."""
     if fits(value):
         return

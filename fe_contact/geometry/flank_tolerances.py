@@ -156,7 +156,7 @@ class MisalignmentRange:
         return (-end, -0.5 * end, 0.0, 0.5 * end, end)
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Say how the range is made, in one sentence."""
         parts = ", ".join(f"{name} {1e6 * value:.1f}" for name, value in self.by_source.items())
         return (
@@ -190,10 +190,12 @@ def misalignment_range(
     for name, gear in gears.items():
         check_scope(name, gear)
     face, angle = pair.face_width, pair.working_pressure_angle
-    whole = max(helix_tolerance(gear, tolerance_class) * face / gear.face_width for gear in gears.values())
+    deviation = max(
+        helix_tolerance(gear, tolerance_class) * face / gear.face_width for gear in gears.values()
+    )
     by_source = {
-        "axes in their plane": whole * math.sin(angle),
-        "axes out of their plane": 0.5 * whole * math.cos(angle),
+        "axes in their plane": deviation * math.sin(angle),
+        "axes out of their plane": 0.5 * deviation * math.cos(angle),
     }
     for name, gear in gears.items():
         slope = helix_slope_tolerance(gear, tolerance_class)

@@ -74,7 +74,7 @@ class Gear(Toothing):
         )
 
     @property
-    def held_radius(self) -> float:
+    def seat_radius(self) -> float:
         """Radius of the bore, m."""
         return 0.5 * self.bore_diameter
 

@@ -18,7 +18,7 @@ THINNEST_WEB = 0.02  # in face widths
 
 def refuse_bore(gear: Toothing) -> None:
     """Refuse a bore that leaves no rim under the teeth."""
-    bore = 2.0 * gear.held_radius
+    bore = 2.0 * gear.seat_radius
     if bore >= 2.0 * gear.root_radius:
         bound = below(2.0 * gear.root_radius, "m", "the root diameter")
         remedy = "Lower the bore or add teeth."
@@ -27,7 +27,7 @@ def refuse_bore(gear: Toothing) -> None:
 
 def refuse_rim(gear: Toothing, blank: GearBlank) -> None:
     """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
-    bore = 2.0 * gear.held_radius
+    bore = 2.0 * gear.seat_radius
     hub = bore if blank.hub_diameter is None else blank.hub_diameter
     if hub < bore:
         bound = at_least(bore, "m", "the bore diameter")

@@ -21,8 +21,8 @@ def seat_compliance(gear: Toothing) -> float:
     if modulus is None:
         return 0.0
     low, high = gear.seat.ends(gear.face_width)
-    around = 2.0 * math.pi * gear.held_radius if key is None else key.width
-    torsion = gear.held_radius**2 * around * (high - low) * modulus
+    around = 2.0 * math.pi * gear.seat_radius if key is None else key.width
+    torsion = gear.seat_radius**2 * around * (high - low) * modulus
     return gear.base_radius**2 / torsion
 
 
@@ -37,7 +37,7 @@ def refuse_misfit_seat(gear: Toothing) -> None:
     if abs(seat.offset) > room + 1e-9 * face:
         bound = from_to(-room, room, "m", note=", so that the seat stays within the face")
         raise InfeasibleGeometry("seat", "seat.offset", seat.offset, bound, "Lower the offset or the width.")
-    around = 2.0 * math.pi * gear.held_radius
+    around = 2.0 * math.pi * gear.seat_radius
     if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
         bound = at_most(around, "m", "the circumference of the bore")
         raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")

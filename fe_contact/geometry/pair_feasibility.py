@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NoReturn
 
-from bounds import LIMIT_SLACK, FieldName, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
+from bounds import LIMIT_SLACK, FieldName, Quantity, SiNote, Text, Wording, at_least, at_most, below, exactly
 from fe_contact.errors import InfeasibleGeometry, declared_fields, finite
 from fe_contact.geometry.backlash import base_radius_sum, shift_sum, tight_center_distance, tight_shift_sum
 from fe_contact.geometry.fillet_interference import FILLET_SLACK, fillet_penetration, largest_clear_tip
@@ -156,7 +156,7 @@ def _refuse_fillet_interference(pair: ParallelAxes) -> None:
             _refuse_long_tip(pair, name, gear, reason, remedy)
 
 
-def _refuse_long_tip(pair: ParallelAxes, name: str, gear: Toothing, reason: Words, remedy: str) -> NoReturn:
+def _refuse_long_tip(pair: ParallelAxes, name: str, gear: Toothing, reason: Wording, remedy: str) -> NoReturn:
     """Refuse a tip diameter, and say which one is clear of the mating flank and fillet."""
     mate = pair.wheel if gear is pair.pinion else pair.pinion
     largest = largest_clear_tip(pair, gear, mate)

@@ -110,7 +110,7 @@ class RingGear(Toothing):
         return inverse_involute(involute)
 
     @property
-    def held_radius(self) -> float:
+    def seat_radius(self) -> float:
         """Outer radius of the rim, m."""
         return 0.5 * self.rim_diameter
 

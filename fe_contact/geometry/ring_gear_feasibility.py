@@ -30,7 +30,7 @@ def refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float,
 
 def refuse_narrow_rim(gear: Toothing) -> None:
     """Refuse a rim whose outside is not beyond the root circle."""
-    rim = 2.0 * gear.held_radius
+    rim = 2.0 * gear.seat_radius
     if rim <= 2.0 * gear.root_radius:
         bound = above(2.0 * gear.root_radius, "m", "the root diameter")
         raise InfeasibleGeometry("rim", "rim_diameter", rim, bound, "Raise the rim diameter.")

@@ -28,13 +28,13 @@ _FACE_WAVES = (
 )
 
 
-def _amount(words: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(0.0, _LARGEST), words, example, written=_UM, later=True)
+def _amount(text: str, example: float) -> Declared:
+    return Declared(Kind.LENGTH, "m", between(0.0, _LARGEST), text, example, written=_UM, later=True)
 
 
-def _angle(words: str) -> Declared:
+def _angle(text: str) -> Declared:
     limit = 2.0 * math.pi
-    return Declared(Kind.ANGLE, "rad", between(-limit, limit), words, 0.0, later=True)
+    return Declared(Kind.ANGLE, "rad", between(-limit, limit), text, 0.0, later=True)
 
 
 @described

@@ -35,13 +35,13 @@ _GRID = replace(
 )
 
 
-def _deviation(words: str, example: float) -> Declared:
-    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), words, example, written="µm", later=True)
+def _deviation(text: str, example: float) -> Declared:
+    return Declared(Kind.LENGTH, "m", between(-_LARGEST, _LARGEST), text, example, written="µm", later=True)
 
 
 def _waves(along: str) -> Declared:
-    words = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
-    return Declared(Kind.COUNT, "", integers(0, 50), words, 0, later=True)
+    text = f"Waves of the form deviation over the {along}, a crest in its middle; 0: a parabola"
+    return Declared(Kind.COUNT, "", integers(0, 50), text, 0, later=True)
 
 
 @described

@@ -119,7 +119,7 @@ class Toothing:
     if TYPE_CHECKING:  # what the kinds answer
 
         @property
-        def held_radius(self) -> float:
+        def seat_radius(self) -> float:
             """Radius in m of the circle that the gear is held by: its bore, the outside of a ring's rim."""
 
         def macro_geometry(self) -> Json:
@@ -261,7 +261,7 @@ class Toothing:
 
     @property
     def seat(self) -> BoreSeat:
-        """The seat of the gear at `held_radius`."""
+        """The seat of the gear at `seat_radius`."""
         return CLAMPED
 
     @property
@@ -272,7 +272,7 @@ class Toothing:
     @property
     def rim_inside_radius(self) -> float:
         """Radius to which the body is as wide as the face: to a web, or where the gear is held, m."""
-        return self.held_radius if self.web is None else self.web.outer_radius
+        return self.seat_radius if self.web is None else self.web.outer_radius
 
     @property
     def rim_thickness(self) -> float:
@@ -282,7 +282,7 @@ class Toothing:
     @property
     def body_depth(self) -> float:
         """Distance in m from the root circle to the circle that the gear is held by: rim and web."""
-        return self.sign * (self.root_radius - self.held_radius)
+        return self.sign * (self.root_radius - self.seat_radius)
 
     @cached_property
     def base_pitch(self) -> float:

@@ -25,7 +25,7 @@ class BoreSupport(Protocol):
     def seat(self) -> BoreSeat:
         """Its finite stiffnesses are elements on the bore; groups of layers end where it ends."""
 
-    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+    def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Return which components (radial, tangential, axial) are held, (planes, n, 3); `z` (planes,), m."""
 
 
@@ -36,7 +36,7 @@ class ClampedBore:
     name: str = "clamped bore"
     seat: BoreSeat = CLAMPED
 
-    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+    def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold all components on the bore."""
         fixed = np.zeros((len(z), grid.nodes, 3), dtype=bool)
         fixed[:, grid.bore] = True
@@ -50,9 +50,9 @@ class PlaneStrain:
     name: str = "clamped bore, plane strain"
     seat: BoreSeat = CLAMPED
 
-    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+    def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold all components on the bore and the axial one everywhere."""
-        fixed = ClampedBore().held(grid, z)
+        fixed = ClampedBore().constrained(grid, z)
         fixed[..., 2] = True
         return fixed
 
@@ -69,7 +69,7 @@ class _SeatedBore:
         """All that decides the seat."""
         return f"seat {json.dumps(self.seat.content(), sort_keys=True)}"
 
-    def held(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
+    def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Hold the rigid directions on the planes from one end of the seat to the other."""
         low, high = self.seat.ends(self.face_width)
         close = ROUNDING * self.face_width

@@ -38,9 +38,9 @@ def layers_to_mid_face(width: float, count: int, growth: float = 1.0, breaks: Se
     """
     if len(breaks):
         below = [-z for z in reversed(breaks)]
-        whole = _broken(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
-        middle = len(whole.kind) // 2
-        return Layers(whole.ends[middle:], whole.kind[middle:], whole.thickness)
+        layers = _broken(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
+        middle = len(layers.kind) // 2
+        return Layers(layers.ends[middle:], layers.kind[middle:], layers.thickness)
     kind = np.arange(count)[::-1]
     relative = growth ** (np.arange(count) / max(count - 1, 1))
     thickness = 0.5 * width * relative / relative.sum()

@@ -152,7 +152,7 @@ def mesh_gear(
     outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
     (mesh,) = quadratic_meshes(outlines, module, recipe.growth, limits)
     sector = tooth_sector(mesh, outline)
-    rest = None if bottom_radius == gear.held_radius else _mesh_hub(gear, sector, teeth, recipe, limits)
+    rest = None if bottom_radius == gear.seat_radius else _mesh_hub(gear, sector, teeth, recipe, limits)
     # Copies of the sector are as good as the sector, which is checked.
     return _assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
@@ -161,8 +161,8 @@ def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> flo
     """Return the radius to which a tooth sector reaches, m."""
     depth = gear.rim_thickness
     slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
-    if gear.web is None and all_real and not slender and gear.held_radius >= TAPER * gear.root_radius:
-        return gear.held_radius
+    if gear.web is None and all_real and not slender and gear.seat_radius >= TAPER * gear.root_radius:
+        return gear.seat_radius
     return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
 
 

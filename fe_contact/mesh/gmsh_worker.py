@@ -25,7 +25,7 @@ import os
 import sys
 from typing import Any
 
-from host import end_after, handlers_kept
+from host import end_after, handlers_restored
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 
@@ -39,7 +39,7 @@ def _start_gmsh() -> Any:
     sys.modules["numpy"] = None  # type: ignore[assignment] # gmsh's documented fallback; saves 0.2 CPU s of start-up
     import gmsh  # noqa: PLC0415
 
-    with handlers_kept(RESET_BY_GMSH):
+    with handlers_restored(RESET_BY_GMSH):
         gmsh.initialize(["loa", "-nopopup"], readConfigFiles=False, interruptible=False)
     options = {
         "General.Terminal": 0,

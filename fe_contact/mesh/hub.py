@@ -79,13 +79,13 @@ def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: M
 
 def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
     """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
-    held_radius, web = gear.held_radius, gear.web
-    radii, thickness = [bottom_radius, held_radius], [1.0]
+    seat_radius, web = gear.seat_radius, gear.web
+    radii, thickness = [bottom_radius, seat_radius], [1.0]
     if web is not None:
         radii = [bottom_radius, web.outer_radius, web.inner_radius]
         thickness = [1.0, web.thickness / gear.face_width]
-        if web.inner_radius > held_radius:
-            radii, thickness = [*radii, held_radius], [*thickness, 1.0]
+        if web.inner_radius > seat_radius:
+            radii, thickness = [*radii, seat_radius], [*thickness, 1.0]
     depths = [*(abs(a - b) for a, b in pairwise(radii)), np.inf]
     return tuple(
         _InnerRing(_divided_circle(r, min(near), abs(bottom_radius - r), recipe), part)
@@ -117,7 +117,7 @@ def joined_hub(
     for ring, thick in zip(meshes[1:], thickness[1:], strict=True):
         mesh = _joined(mesh, ring)
         parts.append(np.full(len(ring.triangles), thick))
-    around, held = mesh.boundary[::sign]
+    around, inner = mesh.boundary[::sign]
     names = {p.name for p in toothed.pieces}
 
     def nodes(name: str) -> IntArray:
@@ -129,7 +129,7 @@ def joined_hub(
         bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
         right_side=nodes("right side")[::-1],
         left_side=nodes("left side"),
-        bore=held,
+        bore=inner,
         thickness=np.concatenate(parts),
     )
 

@@ -92,7 +92,7 @@ class SectorOutline:
         """Points of the bore from the right cut to the left one."""
         half = 0.5 * self.profile.pitch_angle
         angle = np.linspace(half, -half, 2 * self.grid.columns + 1)
-        return self.profile.gear.held_radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+        return self.profile.gear.seat_radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
 
     @property
     def circles(self) -> dict[int, FloatArray]:
@@ -111,7 +111,7 @@ class SectorOutline:
     def right_cut(self) -> FloatArray:
         """Points of the right cut from the root down to the bore, (q, 2)."""
         gear, angle = self.profile.gear, 0.5 * self.profile.pitch_angle
-        radius = (1.0 - self.depth) * gear.root_radius + self.depth * gear.held_radius
+        radius = (1.0 - self.depth) * gear.root_radius + self.depth * gear.seat_radius
         return np.asarray(radius[:, None] * np.array([np.sin(angle), np.cos(angle)]))
 
 

@@ -39,7 +39,7 @@ class SweptSector:
     """Nodes: bottom corners, top corners, bottom middles, top middles, middles between bottom and top; each
     four in the order of `SectorGrid.quads`. Shape (e, 20).
     """
-    place: FloatArray
+    grid_cell: FloatArray
     """Column, row and layer of each element on the logical grid. Shape (e, 3)."""
     batches: tuple[Batch, ...]
     """The elements by equal matrices."""
@@ -146,7 +146,7 @@ def swept_sector(
     batches, elements, position = with_seat(
         grid, layers, (batches, elements, position), support.seat.ends(face_width), support.seat.elastic
     )
-    fixed = support.held(grid, between_ends(layers.ends))
+    fixed = support.constrained(grid, between_ends(layers.ends))
     fixed[0, :, 2] |= recipe.half_face
     free = ~fixed[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)

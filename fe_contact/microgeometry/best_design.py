@@ -60,7 +60,7 @@ def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None)
     )
     if memory is not None:
         problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
-    assessed = problem.assess(problem.place(request.own))
+    assessed = problem.assess(problem.place(request.start_design))
     if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
         raise SolveError("the contact of the start design cannot be solved at every position and load")
     return replace(problem, scale=assessed.objective)
@@ -78,8 +78,8 @@ def choose(
     """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all."""
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
-        own = dict(zip(problem.names, request.own, strict=True))
-        designs = own, problem.values(runs[best].place)
+        start_values = dict(zip(problem.names, request.start_design, strict=True))
+        designs = start_values, problem.values(runs[best].place)
         seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
         shared = problem, study, run.cache
         start, optimum = divided(to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
@@ -112,8 +112,8 @@ def _refined(
     evaluator = choice.problem.evaluator.at(np.union1d(*seen))
     problem = replace(choice.problem, evaluator=evaluator)
     with clock.stage("search"):
-        place, workers = choice.run.place, run.workers
-        further = search_from(problem, shorter, place, search.starts, cancel=cancel, workers=workers)
+        best, workers = choice.run.place, run.workers
+        further = search_from(problem, shorter, best, search.starts, cancel=cancel, workers=workers)
     with clock.stage("confirmation"):
         optimum = confirm(problem, problem.values(further.place), study, run.cache)
     return Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
@@ -137,8 +137,8 @@ def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
     if cancel() or isinstance(workers, InProcess):
         return InProcess()
 
-    def told(lost: WorkersLost) -> None:
+    def raise_unless_cancelled(lost: WorkersLost) -> None:
         if not cancel():
             raise lost
 
-    return OrHere(workers, told)
+    return OrHere(workers, raise_unless_cancelled)

@@ -24,14 +24,14 @@ def outcome_and_reason(choice: Choice, request: OptimizationRequest) -> tuple[Ou
         over = f"{excess(choice.optimum)}{_worse(choice)}"
         return outcome, f"the best design exceeds the limits by {over}; {ended}"
     gain = gain_of(choice.start, choice.optimum)
-    moved = "falls" if gain.value >= 0.0 else "rises"
+    trend = "falls" if gain.value >= 0.0 else "rises"
     change = (
-        f"expected peak-to-peak {moved} by {1e6 * abs(gain.value):.3g} µm, errors "
+        f"expected peak-to-peak {trend} by {1e6 * abs(gain.value):.3g} µm, errors "
         f"{engineering(1e6 * gain.error, 2)} µm{_worse(choice)}"
     )
     if outcome is Outcome.IMPROVED:
         return outcome, f"{change}; {ended}"
-    if outcome is Outcome.LIMITS_KEPT:
+    if outcome is Outcome.LIMITS_MET:
         return outcome, f"the limits are kept, which the start exceeds; {change}; {ended}"
     return outcome, f"{change}; {_why_not(choice, request, gain.error)}{ended}"
 
@@ -88,7 +88,7 @@ def untried_steps(choice: Choice, request: OptimizationRequest, study: DesignStu
 
 def _not_varied(free: set[str]) -> list[str]:
     """Name the figures that stay, those of both gears once; lengths only of amounts that vary."""
-    kept = {
+    fixed_names = {
         gear: [
             name
             for name in QUANTITIES
@@ -97,8 +97,10 @@ def _not_varied(free: set[str]) -> list[str]:
         ]
         for gear in GEARS
     }
-    both = [name for name in QUANTITIES if all(name in own for own in kept.values())]
-    names = [f"{gear}.{name}" for gear, own in kept.items() for name in own if name not in both]
+    both = [name for name in QUANTITIES if all(name in figures for figures in fixed_names.values())]
+    names = [
+        f"{gear}.{name}" for gear, figures in fixed_names.items() for name in figures if name not in both
+    ]
     return [*names, f"{', '.join(both)} of both gears"] if both else names
 
 

@@ -110,8 +110,8 @@ def confirm(
     )
     counted_figures = figures.at_loads(counted)
     rule = _scatter_error(problem, values)
-    own = problem.objective.of(harris.expected_error[counted])
-    objective = Estimate(problem.objective.of(harris.expected[counted]), own + rule, "m")
+    map_error = problem.objective.of(harris.expected_error[counted])
+    objective = Estimate(problem.objective.of(harris.expected[counted]), map_error + rule, "m")
     violation = counted_figures.violation(problem.limits)
     return ConfirmedDesign(dict(values), harris, counted_figures, objective, rule, violation, table)
 
@@ -152,7 +152,9 @@ def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float
     if finer is None:
         return 0.0
     other = replace(search, nodes=finer)
-    value, refined = (problem.objective.of(each.expected(each.evaluate(values))) for each in (search, other))
+    value, refined = (
+        problem.objective.of(evaluator.expected(evaluator.evaluate(values))) for evaluator in (search, other)
+    )
     return abs(refined - value)
 
 

@@ -14,7 +14,7 @@ from fe_contact.analysis.pairs.pair_contact import PairContact, pair_contact
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.root_influence import RootInfluence
 
-HELD = {"pressure": 1.0, "face_load_factor": 1.5, "root_stress": 1.0}
+REMAINING = {"pressure": 1.0, "face_load_factor": 1.5, "root_stress": 1.0}
 """Figures of an evaluation whose errors are told in a field `NAME_error`, and the part of changes that
 is left: set on ten drawn pairs against finer meshes in more slices (benchmarks/limit_coverage.py)."""
 
@@ -38,10 +38,10 @@ def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: 
     cache : Path, optional
         Directory of flank compliances: the coarse meshes are taken from it, or computed.
     """
-    own = evaluator.evaluate(values)
-    changes = list(_changes(evaluator, own, values, cache))
-    errors = {f"{name}_error": _left(changes, name) * getattr(own, name) for name in HELD}
-    return replace(own, **errors)
+    evaluation = evaluator.evaluate(values)
+    changes = list(_changes(evaluator, evaluation, values, cache))
+    errors = {f"{name}_error": _left(changes, name) * getattr(evaluation, name) for name in REMAINING}
+    return replace(evaluation, **errors)
 
 
 def _left(changes: list[_Change], name: str) -> float:
@@ -51,11 +51,11 @@ def _left(changes: list[_Change], name: str) -> float:
         change.counts * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()
         for change, ratio in zip(changes, ratios, strict=True)
     ]
-    return HELD[name] * float(np.linalg.norm(parts))
+    return REMAINING[name] * float(np.linalg.norm(parts))
 
 
 def _changes(
-    evaluator: Evaluator, own: Evaluation, values: Mapping[str, float], cache: Path | None
+    evaluator: Evaluator, evaluation: Evaluation, values: Mapping[str, float], cache: Path | None
 ) -> Iterator[_Change]:
     """Solve a design on rougher discretizations; all but the positions are changed at half of these.
 
@@ -68,13 +68,13 @@ def _changes(
         return replace(few, contact=replace(other, varied=True), roots=roots).evaluate(values)
 
     half = few.evaluate(values)
-    yield _Change(own, half)
-    yield _Change(own, others.evaluate(values))  # without the position of the largest where the first has it
+    yield _Change(evaluation, half)
+    yield _Change(evaluation, others.evaluate(values))  # without the largest's position if the first has it
     if made.slices > 1:
         yield _Change(half, on(contact.in_slices(made.coarse_slices), evaluator.roots))
     plain = contact.in_plane_strain  # as the coarse meshes are
     coarse = pair_contact(contact.pair, contact.plan, cache, coarse=True)
-    by_mesh = [half if each is contact else on(each) for each in (plain, plain.in_coarse_patches, coarse)]
+    by_mesh = [half if other is contact else on(other) for other in (plain, plain.in_coarse_patches, coarse)]
     yield from (_Change(*ends) for ends in pairwise(by_mesh))
     if evaluator.roots is not None and evaluator.roots.rough is not None:
         rough = replace(few, roots=evaluator.roots.rough).evaluate(values)

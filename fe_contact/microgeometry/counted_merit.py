@@ -94,7 +94,7 @@ class CountedMerit:
         """Whether it pays to give workers parts of walks, by the last design that was linearized."""
         return pays(self.workers, self._seconds * USUAL_DESIGNS)
 
-    def each(self, points: Sequence[FloatArray]) -> Iterator[float]:
+    def assessed_in_turn(self, points: Sequence[FloatArray]) -> Iterator[float]:
         """Assess designs, as far as the budget reaches; those in the memory cost nothing, and stay here."""
         results = divided(self.workers, _assess, self.problem, points[: self.left])
         for point in points:
@@ -121,13 +121,15 @@ class CountedMerit:
 
     def end(self, point: FloatArray) -> None:
         """Remember the design at which a walk ended."""
-        self.ends.append(next(own for own in reversed(self.designs) if np.array_equal(own[1], point)))
+        self.ends.append(
+            next(design for design in reversed(self.designs) if np.array_equal(design[1], point))
+        )
 
     @property
     def levels(self) -> tuple[float, ...]:
         """Objectives at which walks ended that exceed the limits by hardly more than the best of them."""
-        minimum = min((own.violation for own, _ in self.ends), default=0.0) + SLACK
-        return tuple(own.objective for own, _ in self.ends if own.violation <= minimum)
+        minimum = min((assessed.violation for assessed, _ in self.ends), default=0.0) + SLACK
+        return tuple(assessed.objective for assessed, _ in self.ends if assessed.violation <= minimum)
 
     @property
     def best(self) -> Design | None:
@@ -137,7 +139,7 @@ class CountedMerit:
     @property
     def spread(self) -> float:
         """Largest less least objective of its designs that could be assessed."""
-        known = [own.objective for own, _ in self.designs if math.isfinite(own.objective)]
+        known = [assessed.objective for assessed, _ in self.designs if math.isfinite(assessed.objective)]
         return max(known) - min(known) if known else 0.0
 
 

@@ -153,13 +153,13 @@ def curve_derivatives(
         opened = Difference.of(pair, name).opened(strips)
         return strips.change(opened), strips.arm_change(opened)
 
-    derivatives, of_arm = (np.stack(each) for each in zip(*map(derivative, names), strict=True))
+    derivatives, of_arm = (np.stack(arrays) for arrays in zip(*map(derivative, names), strict=True))
     curves, period = solution.deflection.T, checked.model.period
     weights = np.stack([quantity_derivatives(curve, period) for curve in curves], axis=-1)
     changes = np.einsum("qpf,apf->aqf", weights, derivatives)
     of_quantities = changes[:, MEAN], changes[:, PEAK_TO_PEAK], changes[:, FIRST_HARMONIC:]
-    own = names, loads, problem.candidates.position, solution.deflection, derivatives
-    return CurveDerivatives(*own, arm, of_arm, *of_quantities, strips, weights)
+    axes_and_curves = names, loads, problem.candidates.position, solution.deflection, derivatives
+    return CurveDerivatives(*axes_and_curves, arm, of_arm, *of_quantities, strips, weights)
 
 
 def _differences(
@@ -167,9 +167,9 @@ def _differences(
 ) -> tuple[FloatArray, FloatArray]:
     """Return what a step of the center distance changes of deflection and load arm, per m."""
     _require_solved(further.solution)
-    moved = load_arm(further.pair, further.problem, further.solution)
+    further_arm = load_arm(further.pair, further.problem, further.solution)
     change = further.solution.deflection - solution.deflection
-    return change / DISTANCE_STEP, (moved - arm) / DISTANCE_STEP
+    return change / DISTANCE_STEP, (further_arm - arm) / DISTANCE_STEP
 
 
 def _all_names(pair: ParallelAxes, checked: Checked) -> tuple[str, ...]:

@@ -65,8 +65,8 @@ class DesignLoads:
 
 def misalignment_axis(misalignment: FloatArray, deviation: FloatArray) -> FloatArray:
     """Return the axis of a table that holds misalignments (L,) with none and with each deviation (S,), m."""
-    own = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
-    rising = np.unique(own)
+    values = np.concatenate([misalignment, np.add.outer(deviation, misalignment).ravel()])
+    rising = np.unique(values)
     return np.asarray(rising[np.append(True, np.diff(rising) > SAME)])
 
 
@@ -76,10 +76,10 @@ def snapped_to_axis(axis: FloatArray, misalignment: FloatArray) -> FloatArray:
     return np.where(np.abs(nearest - misalignment) <= SAME, nearest, misalignment)
 
 
-def _misalignments(given: Misalignments, loads: int) -> FloatArray:
-    values = np.atleast_1d(np.asarray(given, dtype=object)).tolist()
+def _misalignments(misalignment: Misalignments, loads: int) -> FloatArray:
+    values = np.atleast_1d(np.asarray(misalignment, dtype=object)).tolist()
     if len(values) not in (1, loads):
         raise InputError("misalignment", values, f"one number, or {loads}, one for each torque")
     ends, remedy = (-LARGEST_DEVIATION, LARGEST_DEVIATION), SiNote("In m: 10 µm is 1e-5.")
-    names = [f"misalignment[{i}]" for i in range(len(values))] if np.ndim(given) else ["misalignment"]
-    return np.array([within(*each, *ends, remedy) for each in zip(names, values, strict=True)])
+    names = [f"misalignment[{i}]" for i in range(len(values))] if np.ndim(misalignment) else ["misalignment"]
+    return np.array([within(*item, *ends, remedy) for item in zip(names, values, strict=True)])

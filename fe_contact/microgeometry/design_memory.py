@@ -19,11 +19,11 @@ from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 
-KEPT_FILES = 200
+MAX_FILES = 200
 """Newest files that a directory keeps: about 0.1 MB for a thousand designs each."""
 
 
-_FOUND = struct.Struct("<ddQ")  # objective, violation, checksum
+_RECORD = struct.Struct("<ddQ")  # objective, violation, checksum
 
 
 _POSITIONS = 8  # bytes of their digest
@@ -62,7 +62,7 @@ class DesignMemory:
         with contextlib.suppress(OSError):
             directory.mkdir(parents=True, exist_ok=True)
             files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
-            for file in files[:-KEPT_FILES]:
+            for file in files[:-MAX_FILES]:
                 file.unlink(missing_ok=True)
             memory._read(_POSITIONS + 8 * len(request.variables))
         return memory
@@ -82,17 +82,17 @@ class DesignMemory:
 
     def _read(self, name_size: int) -> None:
         """Read whole records, and cut off what a killed writer left of one."""
-        size, text = name_size + _FOUND.size, self.file.read_bytes() if self.file.exists() else b""
-        whole = 0
+        size, text = name_size + _RECORD.size, self.file.read_bytes() if self.file.exists() else b""
+        intact = 0
         for begin in range(0, len(text) - size + 1, size):
             record = text[begin : begin + size]
-            objective, violation, checksum = _FOUND.unpack(record[name_size:])
+            objective, violation, checksum = _RECORD.unpack(record[name_size:])
             if zlib.crc32(record[: name_size + 16]) != checksum:
                 break
             self.known[record[:name_size]] = objective, violation
-            whole = begin + size
-        if whole < len(text):
-            os.truncate(self.file, whole)
+            intact = begin + size
+        if intact < len(text):
+            os.truncate(self.file, intact)
 
 
 def _name(values: FloatArray, position: FloatArray) -> bytes:

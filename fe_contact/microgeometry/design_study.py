@@ -78,7 +78,7 @@ class DesignSpace:
         loads = DesignLoads.of(torques, self.misalignment)
         scattered = self.scatter.modification
         present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
-        acting = {name: own + _toward(name) * scattered.get(name, 0.0) for name, own in present.items()}
+        acting = {name: amount + _toward(name) * scattered.get(name, 0.0) for name, amount in present.items()}
         skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
         axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews)
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
@@ -134,8 +134,8 @@ def design_study(
     limits : Limits
         One of the root stress has its unit loads solved.
     """
-    own = DesignLoads.of(torques, space.misalignment)
-    loads, counted = own.with_torques(further_torques)
+    design_loads = DesignLoads.of(torques, space.misalignment)
+    loads, counted = design_loads.with_torques(further_torques)
     with clock.stage("planning"):
         decision = _on_one_mesh(checked or space.check(torques, further_torques), run.cache)
     run.progress("compliance", 0.0)
@@ -151,7 +151,7 @@ def design_study(
     if limits.root_stress is not None:
         with clock.stage("root stress"):
             roots = RootInfluence.of(contact, run.cache)
-    evaluator = Evaluator(varied, choices, position, force[counted], own.misalignment, nodes, roots)
+    evaluator = Evaluator(varied, choices, position, force[counted], design_loads.misalignment, nodes, roots)
     return DesignStudy(decision, loads, force, counted, evaluator)
 
 
@@ -167,10 +167,10 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decision:
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
     """Refuse to vary what an effect that is off would hide."""
     request = checked.request
-    shown = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
+    effects = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:
-        shown[MISALIGNMENT] = request.named(MISALIGNMENT)
-    for name, effect in shown.items():
+        effects[MISALIGNMENT] = request.named(MISALIGNMENT)
+    for name, effect in effects.items():
         if checked.decision[effect] == "off":
             bound = f'"on" or "auto" where {name} is varied'
             raise InputError(f"effects.{effect}", "off", bound, "Or leave it out of the variables.")

@@ -92,7 +92,7 @@ class DrawnRipple:
             bound = "left out where effects of the flanks are off"
             raise InputError("tolerance_class", "a class", bound, "Leave them at auto.")
         skew, position = np.array([misalignment]), nodes.position[::2]
-        evaluator = Evaluator(contacts.own, checked.request.choices, position, plan.load, skew, ONE_NODE)
+        evaluator = Evaluator(contacts.fine, checked.request.choices, position, plan.load, skew, ONE_NODE)
         return cls(evaluator, tuple(tolerances.widths), tolerances.sample(DRAWN, seed))
 
     @property
@@ -114,9 +114,9 @@ class DrawnRipple:
         if self.model is not None or by is None:
             return replace(self, ste=np.concatenate([self.ste, ste]))
         design = linearized(self.evaluator, {}, self.names, NO_LIMITS)
-        here, own = np.zeros((1, len(self.names))), (self.evaluator, self.names)
-        about = tangents_about(*own, here, design.evaluation.ste, design.curves)
-        return replace(self, ste=ste, model=about.with_further(tangents_about(*own, part, ste, by)))
+        nominal, variables = np.zeros((1, len(self.names))), (self.evaluator, self.names)
+        about = tangents_about(*variables, nominal, design.evaluation.ste, design.curves)
+        return replace(self, ste=ste, model=about.with_further(tangents_about(*variables, part, ste, by)))
 
     def band(self) -> RippleBand:
         """Return the band of all pairs, once `SOLVED` are solved; tangents are held against the later ones.
@@ -125,10 +125,10 @@ class DrawnRipple:
         square.
         """
         assert self.model is not None
-        held = self.deviation[IN_A_PART : self.solved]
+        known = self.deviation[IN_A_PART : self.solved]
         solved = self.ste[IN_A_PART:]
-        model = self.model.corrected(held, solved)
-        curves, missed = (np.concatenate(list(model.curves(each))) for each in (self.deviation, held))
+        model = self.model.corrected(known, solved)
+        curves, predicted = (np.concatenate(list(model.curves(values))) for values in (self.deviation, known))
         level = curves[..., 0] - curves[..., 0].mean(axis=1, keepdims=True)
         low, high = quantiles(level, FRACTIONS)
 
@@ -138,6 +138,6 @@ class DrawnRipple:
             off = float(np.sqrt(np.mean((by_model - by_contact) ** 2)))
             return Spread(float(ends[0][0][0]), float(ends[1][0][0]), float(np.hypot(bounds, off)))
 
-        ripple = (np.ptp(each, axis=1) for each in (curves, missed, solved))
-        tone = (order_amplitude(each, 1, 1) for each in (curves, missed, solved))
+        ripple = (np.ptp(values, axis=1) for values in (curves, predicted, solved))
+        tone = (order_amplitude(values, 1, 1) for values in (curves, predicted, solved))
         return RippleBand(self.evaluator.position, low, high, spread(*ripple), spread(*tone))

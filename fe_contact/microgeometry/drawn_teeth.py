@@ -62,29 +62,29 @@ class PitchBounds:
         largest = min(0.5 * run_out_tolerance(gear, tolerance_class), by_pitches)
         return cls(single, cumulative, largest, cosine, accumulated)
 
-    def places(self, own: FloatArray) -> FloatArray:
+    def places(self, deviation: FloatArray) -> FloatArray:
         """Return places of teeth (..., z), m, of what each of them is out of its place by itself.
 
         Harmonic j of the teeth grows by the root of 1 - a + a / (2 sin^2(pi j / z)), a the part accumulated:
         the mean square of a single pitch stays, and that of neighbors' difference is the same at every tooth.
         """
         if not self.accumulated:
-            return own
-        teeth = own.shape[-1]
+            return deviation
+        teeth = deviation.shape[-1]
         pitch = 2.0 * np.sin(math.pi * np.arange(1, teeth // 2 + 1) / teeth) ** 2
         gain = np.sqrt(1.0 - self.accumulated + self.accumulated / pitch)
-        lines = np.fft.rfft(own, axis=-1) * np.concatenate([[1.0], gain])
+        lines = np.fft.rfft(deviation, axis=-1) * np.concatenate([[1.0], gain])
         return np.asarray(np.fft.irfft(lines, teeth, axis=-1))
 
-    def kept(self, eccentricity: float | FloatArray, place: FloatArray) -> FloatArray:
+    def bounded(self, eccentricity: float | FloatArray, deviation: FloatArray) -> FloatArray:
         """Return places of teeth (..., z), m, scaled where they and the eccentricity pass a bound."""
         arc = 2.0 * np.asarray(eccentricity)[..., None] / self.cosine
-        step = np.abs(place - np.roll(place, 1, axis=-1)).max(axis=-1, keepdims=True)
-        left = self.single - arc * math.sin(math.pi / place.shape[-1])
-        whole = np.ptp(place, axis=-1, keepdims=True)
+        step = np.abs(deviation - np.roll(deviation, 1, axis=-1)).max(axis=-1, keepdims=True)
+        left = self.single - arc * math.sin(math.pi / deviation.shape[-1])
+        total = np.ptp(deviation, axis=-1, keepdims=True)
         tiny = np.finfo(float).tiny
-        share = np.minimum(left / np.maximum(step, tiny), (self.cumulative - arc) / np.maximum(whole, tiny))
-        return np.asarray(place * np.clip(share, 0.0, 1.0))
+        share = np.minimum(left / np.maximum(step, tiny), (self.cumulative - arc) / np.maximum(total, tiny))
+        return np.asarray(deviation * np.clip(share, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -126,13 +126,13 @@ class ToothTolerances:
         of_both = 2 * len(of_axis)
         sequence = qmc.Sobol(after + self.dimensions, rng=seed)
         uniform = sequence.random_base2(max(count - 1, 1).bit_length())[:count, after:]
-        each = uniform[:, of_both:].reshape(count, len(of_teeth), self.teeth)
+        of_tooth = uniform[:, of_both:].reshape(count, len(of_teeth), self.teeth)
         by_axis = {
             name: self._amounts(name, uniform[:, 2 * k]) * np.exp(2j * math.pi * uniform[:, 2 * k + 1])
             for k, name in enumerate(of_axis)
         }
         by_tooth = {
-            name: spread_within(self.widths[name], each[:, k], self.distribution)
+            name: spread_within(self.widths[name], of_tooth[:, k], self.distribution)
             for k, name in enumerate(of_teeth)
         }
         return DrawnTeeth(by_axis, by_tooth, self.pitches)
@@ -165,8 +165,10 @@ class DrawnTeeth:
         """`by_tooth` with pitches accumulated, scaled to what the class allows beside the eccentricity."""
         if self.pitches is None:
             return self.by_tooth
-        place = self.pitches.kept(np.abs(self.by_axis[RUN_OUT]), self.pitches.places(self.by_tooth[PITCH]))
-        return {**self.by_tooth, PITCH: place}
+        pitch_deviation = self.pitches.bounded(
+            np.abs(self.by_axis[RUN_OUT]), self.pitches.places(self.by_tooth[PITCH])
+        )
+        return {**self.by_tooth, PITCH: pitch_deviation}
 
     def amount(self, name: str) -> Any:
         """Return one deviation of all gears, as drawn."""
@@ -178,7 +180,7 @@ class DrawnTeeth:
             return replace(self, by_axis={**self.by_axis, name: amount})
         return replace(self, by_tooth={**self.by_tooth, name: amount})
 
-    def some(self, rows: slice) -> DrawnTeeth:
+    def subset(self, rows: slice) -> DrawnTeeth:
         """Return some of the gears."""
         by_axis = {name: values[rows] for name, values in self.by_axis.items()}
         return replace(self, by_axis=by_axis, by_tooth={n: v[rows] for n, v in self.by_tooth.items()})
@@ -187,9 +189,9 @@ class DrawnTeeth:
         """Return the fields of one of the gears."""
         turning = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)
         axis = [figure for amount in turning for figure in cmath.polar(amount)]
-        own = {name: values[index].tolist() for name, values in self.made.items()}
-        pitch = own.pop(PITCH, ())
-        figures = {name.removeprefix(FLANK): values for name, values in own.items()}
+        by_name = {name: values[index].tolist() for name, values in self.made.items()}
+        pitch = by_name.pop(PITCH, ())
+        figures = {name.removeprefix(FLANK): values for name, values in by_name.items()}
         flanks = tuple(
             ToothFlank(tooth, **dict(zip(figures, amounts, strict=True)))
             for tooth, amounts in enumerate(zip(*figures.values(), strict=True), start=1)
@@ -219,16 +221,16 @@ def iso1328_tooth_tolerances(
     (`COMMON`). Wobble is a helix slope once per revolution: of the square of this rest it has the part
     `WOBBLE_SHARE`, single flanks have the others.
     """
-    own: Toothing = getattr(pair, gear)
+    toothing: Toothing = getattr(pair, gear)
     flanks = {
-        FLANK + quantity: math.sqrt(1.0 - part**2) * tolerance(own, tolerance_class)
+        FLANK + quantity: math.sqrt(1.0 - part**2) * tolerance(toothing, tolerance_class)
         for (quantity, tolerance), part in zip(OF_A_CLASS.items(), COMMON[finishing], strict=True)
         if part < 1.0 and (across_face or quantity not in ACROSS_FACE)
     }
-    pitches = PitchBounds.of(own, tolerance_class, ACCUMULATED[finishing])
+    pitches = PitchBounds.of(toothing, tolerance_class, ACCUMULATED[finishing])
     widths = {RUN_OUT: pitches.eccentricity}
     if (slope := FLANK + "helix_slope") in flanks:
         widths[WOBBLE] = math.sqrt(WOBBLE_SHARE) * flanks[slope]
         flanks[slope] *= math.sqrt(1.0 - WOBBLE_SHARE)
     widths |= {PITCH: 0.5 * pitches.single, **flanks}
-    return ToothTolerances(gear, own.teeth, widths, distribution, pitches)
+    return ToothTolerances(gear, toothing.teeth, widths, distribution, pitches)

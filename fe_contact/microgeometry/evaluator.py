@@ -61,9 +61,9 @@ class Evaluation:
     not estimated. Shape (S, L) each.
     """
 
-    def at_loads(self, some: BoolArray | IntArray) -> Evaluation:
+    def at_loads(self, loads: BoolArray | IntArray) -> Evaluation:
         """Return the same at some of the loads."""
-        return Evaluation(**{name: values[..., some] for name, values in vars(self).items()})
+        return Evaluation(**{name: values[..., loads] for name, values in vars(self).items()})
 
     @property
     def peak_to_peak(self) -> FloatArray:
@@ -154,14 +154,14 @@ class Evaluator:
             )
             for f in solved
         ]
-        parts = [self.gathered(each) for each in zip(*figures, strict=True)]
+        parts = [self.gathered(figure) for figure in zip(*figures, strict=True)]
         return Evaluation(*parts, *[np.full(parts[-1].shape, np.nan)] * 3)
 
     def gathered(self, solved: Sequence[FloatArray]) -> FloatArray:
         """Return arrays (..., l) of all that was `solved`, each at its loads, as one (S, ..., L)."""
         count, order = len(self.groups), np.argsort(np.concatenate(self.groups))
         nodes = [solved[k : k + count] for k in range(0, len(solved), count)]
-        return np.stack([np.concatenate(each, axis=-1)[..., order] for each in nodes])
+        return np.stack([np.concatenate(parts, axis=-1)[..., order] for parts in nodes])
 
     def at(self, position: FloatArray) -> Evaluator:
         """Return the same at other positions (P,), of which those in the first base pitch count."""
@@ -188,8 +188,10 @@ class Evaluator:
         key = tuple(self.nodes.modification(node).values())
         face = bodies.candidates.face_position
         if key not in touches:
-            moved = modified_touch(pair, bodies.candidates.touch, face, moving)
-            touches[key] = bodies.candidates.following(moved).touch if bodies.tilt.size else moved
+            profile_touch = modified_touch(pair, bodies.candidates.touch, face, moving)
+            touches[key] = (
+                bodies.candidates.following(profile_touch).touch if bodies.tilt.size else profile_touch
+            )
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(pair, bodies.touching(bodies.candidates.touching(touch)), model)
         return pair, problem, solve_contact(problem, load)

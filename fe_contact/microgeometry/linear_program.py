@@ -91,7 +91,7 @@ class LinearProgram:
         """Return the step of least merit and the merit; no step where none is found."""
         cost = np.zeros(len(self._minimum))
         cost[objective], cost[exceeded] = 1.0, penalty
-        value, row, column = (np.concatenate(each) for each in (self._value, self._row, self._column))
+        value, row, column = (np.concatenate(parts) for parts in (self._value, self._row, self._column))
         matrix = coo_array((value, (row, column)), shape=(self._rows, cost.size)).tocsr()
         minimum, maximum = np.array(self._minimum), np.full(cost.size, np.inf)
         minimum[: low.size], maximum[: high.size] = low, high

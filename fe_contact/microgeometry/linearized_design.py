@@ -61,14 +61,14 @@ class _Solved:
     @cached_property
     def ste(self) -> FloatArray:
         """Derivatives of the transmission error (d, P, L), m/m."""
-        return np.stack([self.strips.change(each) for each in self.opened])
+        return np.stack([self.strips.change(gap) for gap in self.opened])
 
     @cached_property
     def force(self) -> FloatArray:
         """Derivatives of the forces (d, P, L, m), N/m; solved only where a limit asks."""
-        apart = np.zeros((len(self.steps), *self.strips.shape))
-        apart.reshape(len(self.steps), -1)[:, self.strips.index] = self.opened
-        return force_changes(self.problem, self.solution, apart)
+        separation = np.zeros((len(self.steps), *self.strips.shape))
+        separation.reshape(len(self.steps), -1)[:, self.strips.index] = self.opened
+        return force_changes(self.problem, self.solution, separation)
 
 
 @dataclass(frozen=True)
@@ -95,8 +95,8 @@ def linearized_nodes(
 def joined(evaluator: Evaluator, parts: Sequence[LinearizedNode]) -> _LinearizedDesign:
     """Return the design that was linearized at every node, in their order."""
     limits = tuple(
-        (np.concatenate([part[0] for part in each]), np.concatenate([part[1] for part in each]))
-        for each in zip(*(part.limits for part in parts), strict=True)
+        (np.concatenate([part[0] for part in rows]), np.concatenate([part[1] for part in rows]))
+        for rows in zip(*(part.limits for part in parts), strict=True)
     )
     curves = np.ascontiguousarray(np.moveaxis(evaluator.gathered([part.ste for part in parts]), 1, -1))
     return _LinearizedDesign(evaluator.evaluation(part.figures for part in parts), curves, limits)
@@ -157,13 +157,13 @@ def _pressure(solved: _Solved, limit: float) -> Rows:
     pressure = solved.figures.pressure
     near = pressure >= NEAR * pressure.max()
     part = pressure[near] / limit
-    by = [0.5 * part * each[near] / solved.solution.force[near] for each in solved.force]
+    by = [0.5 * part * force[near] / solved.solution.force[near] for force in solved.force]
     return part - 1.0, np.stack(by, axis=-1)
 
 
 def _face_load(solved: _Solved, limit: float) -> Rows:
     mean = over_face(solved.problem, solved.solution.force).mean(axis=1, keepdims=True) * limit
-    by = [(over_face(solved.problem, each) / mean).ravel() for each in solved.force]
+    by = [(over_face(solved.problem, force) / mean).ravel() for force in solved.force]
     return solved.figures.face_load.ravel() / limit - 1.0, np.stack(by, axis=-1)
 
 
@@ -176,7 +176,7 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     problem, solution, c = solved.problem, solved.solution, solved.problem.candidates
     load = carried(problem, solution.force).sum(axis=2)
     share = solved.figures.edge_load_share.copy()
-    by = [on_edges(problem, each) / load for each in solved.force]
+    by = [on_edges(problem, force) / load for force in solved.force]
     clear = c.motion_arm[:, None] * (c.gap[:, None] - solution.deflection[..., None])
     clear = np.where(edges(problem)[:, None], clear + problem.displacement(solution.force), np.inf)
     nearest = clear.argmin(axis=2)
@@ -186,6 +186,6 @@ def _edge_load(solved: _Solved, limit: float) -> Rows:
     share[p, k] = -clear[p, k, m] * per_gap
     points = solved.strips.at_edges(c, (p, k, m), _POINT)
     for a, step in enumerate(solved.steps):
-        moved = problem.displacement(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
-        by[a][p, k] = -(step.opened(points) + moved) * per_gap
-    return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)
+        closing = problem.displacement(solved.force[a])[p, k, m] - c.motion_arm[p, m] * solved.ste[a, p, k]
+        by[a][p, k] = -(step.opened(points) + closing) * per_gap
+    return share.ravel() - limit, np.stack([force.ravel() for force in by], axis=-1)

@@ -20,7 +20,7 @@ from fe_contact.ste.table_repair import AXIS
 from fe_contact.types import FloatArray, IntArray
 
 LOAD = "force"
-APART = 1e-9
+SPACING = 1e-9
 """Between the misalignments by which moved tables are told apart, m: any number would do."""
 
 
@@ -40,11 +40,11 @@ class TabledLoads:
     def at_loads(self, loads: IntArray) -> TabledLoads:
         """Return the table of some of the loads, by their rising indices; figures and limits are of all."""
         along = {name: axes.index(LOAD) for name, axes in self.table.stored.items() if LOAD in axes}
-        own = {name: getattr(self.table, name).take(loads, axis) for name, axis in along.items()}
-        by = {name: each[:, :, loads] for name, each in self.by.items()}
-        return replace(self, table=replace(self.table, **own), by=by)
+        arrays = {name: getattr(self.table, name).take(loads, axis) for name, axis in along.items()}
+        by = {name: derivatives[:, :, loads] for name, derivatives in self.by.items()}
+        return replace(self, table=replace(self.table, **arrays), by=by)
 
-    def moved(self, steps: FloatArray) -> list[ForceTable]:
+    def force_tables(self, steps: FloatArray) -> list[ForceTable]:
         """Return the mesh forces, to first order, of designs that differ by steps (K, d), m.
 
         They are made at once, as a table over as many misalignments: at levels that all of them share.
@@ -54,8 +54,8 @@ class TabledLoads:
         stacked = {name: np.repeat(getattr(table, name), count, axis) for name, axis in along.items()}
         for name, by in self.by.items():
             stacked[name] = stacked[name] + np.moveaxis(np.tensordot(steps, by, 1), 0, 2)[..., None]
-        whole = force_table(replace(table, **stacked | {AXIS: APART * np.arange(count)}))
-        return [whole.at_misalignment(k, table.misalignment) for k in range(count)]
+        stacked_table = force_table(replace(table, **stacked | {AXIS: SPACING * np.arange(count)}))
+        return [stacked_table.at_misalignment(k, table.misalignment) for k in range(count)]
 
 
 def tabled_loads(
@@ -89,7 +89,7 @@ def _tabled(
     if not names:
         return TabledLoads(LoadFigures.of(problem, solution, roots), table, {}, ())
     design = differentiated(pair, problem, solution, names, roots)
-    arm = np.stack([design.strips.arm_change(each) for each in design.opened])
+    arm = np.stack([design.strips.arm_change(gap) for gap in design.opened])
     by = {
         "static_transmission_error": design.ste,
         "tangent_compliance": np.gradient(design.ste, solution.load, axis=2),

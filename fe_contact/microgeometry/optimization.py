@@ -62,7 +62,7 @@ class OptimizationRequest:
     """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
 
     @property
-    def own(self) -> tuple[float, ...]:
+    def start_design(self) -> tuple[float, ...]:
         """The start design: the variables as they are in the pair, m; they may lie outside their bounds."""
         return tuple(figure(self.pair, variable.name) for variable in self.variables)
 
@@ -77,7 +77,7 @@ class OptimizationRequest:
     @property
     def outside(self) -> tuple[str, ...]:
         """Variables that start beyond their bounds; a length without a relief is ignored."""
-        begun = zip(self.variables, self.own, strict=True)
+        begun = zip(self.variables, self.start_design, strict=True)
         return tuple(
             v.name
             for v, value in begun
@@ -121,7 +121,7 @@ class Outcome(StrEnum):
     IMPROVED = "improved"  # by more than the errors of both designs
     WITHIN_ERROR = "within_error"  # lower, but no more than the errors
     NOT_IMPROVED = "not_improved"  # the full analysis does not find it lower
-    LIMITS_KEPT = "limits_kept"  # no lower beyond the errors, but the start exceeds the limits
+    LIMITS_MET = "limits_kept"  # no lower beyond the errors, but the start exceeds the limits
     LIMITS_EXCEEDED = "limits_exceeded"  # no design was found that keeps the limits
 
 
@@ -148,7 +148,7 @@ def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:
     if gain.value > gain.error:
         return Outcome.IMPROVED
     if start.violation > SLACK:
-        return Outcome.LIMITS_KEPT
+        return Outcome.LIMITS_MET
     return Outcome.WITHIN_ERROR if gain.value > 0.0 else Outcome.NOT_IMPROVED
 
 

@@ -25,28 +25,28 @@ from model_studies.workers import InProcess, divided
 def search_all(
     problem: SearchProblem,
     search: Search,
-    own: tuple[float, ...],
+    start_design: tuple[float, ...],
     run: Run,
     cancel: Cancel,
 ) -> tuple[SearchRun, ...]:
-    """Search from every start; `own` is the design to begin with, m.
+    """Search from every start; `start_design` is the design to begin with, m.
 
     At least one run: where the search is cancelled before any has ended, that of the design to begin with.
     """
     from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
-    first = problem.place(own)
+    first = problem.place(start_design)
     others = qmc.Sobol(first.size, rng=search.seed).random_base2((search.starts - 1).bit_length())[
         1 : search.starts
     ]
     begins = list(enumerate([first, *others]))
     alone = search.starts == 1 or isinstance(run.workers, InProcess)
-    search_from_each = _here if alone else _remotely
-    runs = search_from_each(problem, search, begins, run, cancel)
+    search_starts = _locally if alone else _remotely
+    runs = search_starts(problem, search, begins, run, cancel)
     return tuple(runs) or (SearchRun(first, problem.assess(first), 1, Ended.CANCELLED, 0.0),)
 
 
-def _here(
+def _locally(
     problem: SearchProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
@@ -129,13 +129,13 @@ def optimize(
     study = design_study(request.space, *torques, clock, run, request.checked, request.limits)
     with clock.stage("search"):
         problem = posed(study, request, memory)
-        runs = search_all(problem, request.search, request.own, run, cancel)
+        runs = search_all(problem, request.search, request.start_design, run, cancel)
     choice = choose(problem, runs, request, study, clock, run, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        place = choice.problem, choice.run, request.scatter
+        best = choice.problem, choice.run, request.scatter
         workers = to_the_end(run.workers, cancel)
-        aside = tuple(divided(workers, perturbation, place, request.variables))
+        aside = tuple(divided(workers, perturbation, best, request.variables))
     return _result(request, study, choice, aside, clock)
 
 

@@ -70,8 +70,8 @@ class OrderLimit:
             bound = f"from 1 to {maximum} turns of the {self.gear}, upwards where the mesh order is 0"
             raise InputError("limit.turns", self.turns, bound, "Half its teeth lead to the next mesh order.")
         for name in ("pinion", "wheel"):
-            own: Toothing = getattr(pair, name)
-            if own.deviates or not own.pitch_deviation.neutral:
+            toothing: Toothing = getattr(pair, name)
+            if toothing.deviates or not toothing.pitch_deviation.neutral:
                 remedy = "The teeth are drawn: leave run-out, waves, pitches and flanks of teeth out."
                 raise InputError(
                     "limit.gear", self.name, f"a mesh order where teeth of the {name} differ", remedy
@@ -131,7 +131,7 @@ class DrawnPairs:
     """The deviations."""
     deviation: FloatArray
     ste: FloatArray
-    held: int
+    first_unknown: int
     """From which of the solved pairs on the model does not know them."""
     model: TangentModel
     of_pair: Sequence[Any]
@@ -162,18 +162,21 @@ class ModeledPairs:
     """As designed, m. Shape (L,)."""
     solved: FloatArray
     modeled: FloatArray
-    held: int = 0
+    first_unknown: int = 0
     """From which of the solved pairs on the model does not know them."""
 
     def above(self, limit: OrderLimit, confidence: float, causes: Callable[[int], Causes]) -> PairsAbove:
         """Count the pairs above a limit; `causes` says why at one of the loads."""
-        known, told = self.solved[self.held :], self.modeled[self.held : len(self.solved)]
-        held = as_spread(told, told, known)
-        further = as_spread(self.modeled[len(self.solved) :], told, known)
+        known, predicted = (
+            self.solved[self.first_unknown :],
+            self.modeled[self.first_unknown : len(self.solved)],
+        )
+        scaled = as_spread(predicted, predicted, known)
+        further = as_spread(self.modeled[len(self.solved) :], predicted, known)
         amplitude = np.concatenate([self.solved, further])
         share, low, high = _shares(limit, amplitude, confidence)
-        beyond = (held > limit.amplitude) != (known > limit.amplitude)
-        wider = len(further) / len(amplitude) * _missed_share(beyond, confidence)
+        beyond = (scaled > limit.amplitude) != (known > limit.amplitude)
+        wider = len(further) / len(amplitude) * _share_error(beyond, confidence)
         load = int(len(share) - 1 - np.argmax(share[::-1]))
         why = causes(load)
         return PairsAbove(
@@ -188,12 +191,12 @@ class ModeledPairs:
             why.first_order,
             why.total,
             np.clip(share[load] + (why.tightened - why.share), 0.0, 1.0),
-            np.sqrt(np.mean((held - known) ** 2, axis=0)),
+            np.sqrt(np.mean((scaled - known) ** 2, axis=0)),
             beyond.mean(axis=0),
         )
 
 
-def _missed_share(beyond: BoolArray, confidence: float) -> FloatArray:
+def _share_error(beyond: BoolArray, confidence: float) -> FloatArray:
     """Return by how much the share of a model may be off (L,), by which of n pairs it puts on the other side.
 
     The difference of two shares has at most the variance of a part of the pairs, by the rule of succession.
@@ -218,14 +221,16 @@ def mesh_order_above(
         share = float((modeled[:, load] > limit.amplitude).mean())
         return Causes(*_indices(limit, drawn, load), share, _tightened(limit, drawn, load))
 
-    return ModeledPairs(drawn.names, designed, solved, modeled, drawn.held).above(limit, confidence, causes)
+    return ModeledPairs(drawn.names, designed, solved, modeled, drawn.first_unknown).above(
+        limit, confidence, causes
+    )
 
 
-def as_spread(values: FloatArray, told: FloatArray, known: FloatArray) -> FloatArray:
+def as_spread(values: FloatArray, predicted: FloatArray, known: FloatArray) -> FloatArray:
     """Return values (N, L) as those told (n, L) become in mean and standard deviation those known, >= 0."""
-    spread = told.std(axis=0)
+    spread = predicted.std(axis=0)
     scale = np.where(spread > 0.0, known.std(axis=0) / np.where(spread > 0.0, spread, 1.0), 1.0)
-    return np.asarray(np.maximum(known.mean(axis=0) + scale * (values - told.mean(axis=0)), 0.0))
+    return np.asarray(np.maximum(known.mean(axis=0) + scale * (values - predicted.mean(axis=0)), 0.0))
 
 
 def _shares(
@@ -239,7 +244,7 @@ def _shares(
         binomtest(int(count), len(above)).proportion_ci(confidence, method="wilson")
         for count in above.sum(axis=0)
     ]
-    low, high = (np.array([getattr(each, end) for each in bounds]) for end in ("low", "high"))
+    low, high = (np.array([getattr(interval, end) for interval in bounds]) for end in ("low", "high"))
     return above.mean(axis=0), low, high
 
 

@@ -108,7 +108,7 @@ class _GearRoots:
         teeth = np.unique(slices.pair)
         shape = len(slices.present), teeth.size, -1
         present = slices.present.reshape(shape)
-        center, half = (each.reshape(*present.shape, -1) for each in (patches.center, patches.half_width))
+        center, half = (values.reshape(*present.shape, -1) for values in (patches.center, patches.half_width))
         lowest = np.where(present[..., None], center - 2.0 * half, np.inf).min()
         below = max(int(np.searchsorted(unit.station_s, lowest)), FEWEST)
         factor = lever.reshape(shape) * present / (1.0 if unit.across_face else slices.width)
@@ -144,16 +144,16 @@ class _GearRoots:
         """Return the largest stresses of teeth near the largest of all (R,), and their changes (R, d)."""
         crest, (along, across, shear), at = self.crests(pressed)
         p, load, tooth = near = np.nonzero(crest >= NEAR * crest.max())
-        apart, shear = 0.5 * (along[near] - across[near]), shear[near]
-        radius = np.maximum(np.hypot(apart, shear), 1e-300)
-        turn = 0.5 * apart / radius
+        half_difference, shear = 0.5 * (along[near] - across[near]), shear[near]
+        radius = np.maximum(np.hypot(half_difference, shear), 1e-300)
+        turn = 0.5 * half_difference / radius
         weight = np.stack([0.5 + turn, 0.5 - turn, shear / radius], axis=-1)  # of the components
         row = self.row[tooth]
         unit = self.influence[np.maximum(row, 0), :, :, :, at[near][:, None]]  # R, T, Z, K, 3
         by_force = np.einsum("rtzkc,rc,rtzk->rtz", unit, weight, self.on_nodes[p % len(self.on_nodes)])
         by_force *= (row >= 0)[..., None]
-        moved = changed[:, p, load].reshape(len(changed), p.size, -1)
-        return crest[near], np.einsum("rn,arn->ra", by_force.reshape(p.size, -1), moved)
+        force_change = changed[:, p, load].reshape(len(changed), p.size, -1)
+        return crest[near], np.einsum("rn,arn->ra", by_force.reshape(p.size, -1), force_change)
 
     def _at_rows(self, pressed: FloatArray) -> FloatArray:
         """Return the forces at the nodes, (P, L, T, Z, K), N."""
@@ -180,4 +180,4 @@ def _under_slices(unit: UnitRootStress, along: FloatArray, below: int) -> FloatA
     part = np.clip((along - unit.z[layer]) / (unit.z[layer + 1] - unit.z[layer]), 0.0, 1.0)
     ends = (stress[:, unit.index[2 * plane]] for plane in (layer, layer + 1))
     share = (1.0 - part, part)
-    return np.asarray(sum(each * w[:, None, None, None] for each, w in zip(ends, share, strict=True)))
+    return np.asarray(sum(values * w[:, None, None, None] for values, w in zip(ends, share, strict=True)))

@@ -156,8 +156,8 @@ def search_from(
         ended = Ended.CANCELLED
     assessed, point = _best(problem, merit, rough, start)
     seconds = spent(workers) - begun
-    found = len(rough.designs), merit.spread, rough.levels
-    return SearchRun(point, assessed, budget.used, ended, seconds, *found)
+    exploration = len(rough.designs), merit.spread, rough.levels
+    return SearchRun(point, assessed, budget.used, ended, seconds, *exploration)
 
 
 def _best(

@@ -141,8 +141,8 @@ class SequentialLinearProgramming:
             for point in _screened(rough, self.sample, self.trials, start.size, seed)
         ]
         if len(walks) > 1:
-            walks = list(_each_followed(merit, walks, TRIED))
-        _beside(merit, _followed(merit, min(walks, key=lambda walk: walk.value)), seed)
+            walks = list(_following_walks(merit, walks, TRIED))
+        _try_neighbors(merit, _followed(merit, min(walks, key=lambda walk: walk.value)), seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -168,17 +168,17 @@ class StagedLinearProgramming:
         merit(start)
         with suppress(BudgetUsed):
             points = [start, *_screened(rough, self.sample, self.trials, start.size, seed)]
-            for walk in _each_followed(rough, [_Walk(point) for point in points]):
-                rough.end(walk.place)
-            assessed, place = min(rough.ends, key=lambda design: design[0].merit)
-            _beside(rough, _Walk(place, value=assessed.merit), seed)
+            for walk in _following_walks(rough, [_Walk(point) for point in points]):
+                rough.end(walk.position)
+            assessed, position = min(rough.ends, key=lambda design: design[0].merit)
+            _try_neighbors(rough, _Walk(position, value=assessed.merit), seed)
         known = sorted([*rough.ends, *filter(None, (rough.best,))], key=lambda design: design[0].order)
         places: list[FloatArray] = []
-        for _, place in known:
-            if all(np.abs(place - other).max() > ASIDE for other in places):
-                places.append(place)
-        ranked = sorted(zip(merit.each(places), range(len(places)), strict=True))
-        for _ in _each_followed(merit, [_Walk(places[index]) for _, index in ranked[:FINISHED]]):
+        for _, position in known:
+            if all(np.abs(position - other).max() > ASIDE for other in places):
+                places.append(position)
+        ranked = sorted(zip(merit.assessed_in_turn(places), range(len(places)), strict=True))
+        for _ in _following_walks(merit, [_Walk(places[index]) for _, index in ranked[:FINISHED]]):
             pass  # the merit remembers the best
 
     def to_json(self) -> Json:
@@ -196,21 +196,21 @@ def _screened(
     with suppress(BudgetUsed):
         sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
         points = list(sequence.random_base2((sample - 1).bit_length())[:sample])
-        for value, point in zip(rough.each(points), points, strict=True):
+        for value, point in zip(rough.assessed_in_turn(points), points, strict=True):
             explored.append((value, point))
     explored.sort(key=lambda trial: trial[0])
     return [point for value, point in explored[:trials] if np.isfinite(value)]
 
 
-def _beside(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> None:
+def _try_neighbors(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> None:
     """Take a walk up again beside its end, until that gains too little so often."""
     random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
     draws: list[FloatArray] = []
     while misses < MISSES and np.isfinite(best.value):
         fresh = MISSES - misses - len(draws)
-        draws += [random.uniform(-1.0, 1.0, best.place.size) for _ in range(fresh)]
-        asides = [np.clip(best.place + ASIDE * draw, 0.0, 1.0) for draw in draws]
-        for other in _each_followed(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
+        draws += [random.uniform(-1.0, 1.0, best.position.size) for _ in range(fresh)]
+        asides = [np.clip(best.position + ASIDE * draw, 0.0, 1.0) for draw in draws]
+        for other in _following_walks(merit, [_Walk(aside, 2.0 * ASIDE) for aside in asides]):
             draws.pop(0)
             misses = 0 if other.value < (1.0 - MIN_GAIN) * best.value else misses + 1
             if other.value < best.value:
@@ -220,9 +220,9 @@ def _beside(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> N
 
 @dataclass(frozen=True)
 class _Walk:
-    """Where steps of linear programmes have come to: `place` (d,) is the best so far, `value` its merit."""
+    """Where linear programmes have come to: `position` (d,) is the best so far, `value` its merit."""
 
-    place: FloatArray
+    position: FloatArray
     region: float = FIRST_REGION
     value: float = np.inf
     linear: Merit | None = None
@@ -230,7 +230,7 @@ class _Walk:
 
 def _begun(merit: CountedMerit, walk: _Walk) -> _Walk:
     """Assess the design that a walk starts from."""
-    value, linear = merit.linearize(walk.place)
+    value, linear = merit.linearize(walk.position)
     return replace(walk, value=value, linear=linear)
 
 
@@ -249,22 +249,22 @@ def _followed(merit: CountedMerit, walk: _Walk, maximum: int | None = None) -> _
 
 def _stepped(merit: CountedMerit, walk: _Walk) -> _Walk | None:
     """Take a step if one promises anything; shorten the region where it keeps too little of it."""
-    ends = np.maximum(-walk.region, -walk.place), np.minimum(walk.region, 1.0 - walk.place)
+    ends = np.maximum(-walk.region, -walk.position), np.minimum(walk.region, 1.0 - walk.position)
     assert walk.linear is not None
     step, promised = walk.linear.minimum(*ends)
     if walk.value - promised <= SIMPLEX_MERIT * walk.value:
         return None
-    point = np.clip(walk.place + step, 0.0, 1.0)
+    point = np.clip(walk.position + step, 0.0, 1.0)
     value, linear = merit.linearize(point)
-    kept, region = (walk.value - value) / (walk.value - promised), walk.region
-    if kept < POOR:
+    fulfilled, region = (walk.value - value) / (walk.value - promised), walk.region
+    if fulfilled < POOR:
         region = POORER * float(np.abs(step).max())
-    elif kept > GOOD:
+    elif fulfilled > GOOD:
         region = min(2.0 * region, 1.0)
     return _Walk(point, region, value, linear) if value < walk.value else replace(walk, region=region)
 
 
-def _each_followed(
+def _following_walks(
     merit: CountedMerit, walks: Sequence[_Walk], maximum: int | None = None
 ) -> Iterator[_Walk]:
     """Follow walks that do not wait for each other, to their ends or so far at most, and yield each."""

@@ -107,14 +107,14 @@ class ToothPassing:
 
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
     """Return what a unit of each deviation of a tooth is at the candidates, (P, m)."""
-    own: Toothing = getattr(pair, gear)
+    toothing: Toothing = getattr(pair, gear)
     there = np.isfinite(c.gap)
-    rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, own.sign))
+    rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, toothing.sign))
     wheel = gear == "wheel"
     face = c.face_position - (pair.axial_offset if wheel else 0.0)
-    shapes = {FLANK + name: shape for name, shape in tooth_shapes(own, rolls[int(wheel)], face).items()}
-    shapes[WOBBLE] = face / own.face_width + np.zeros(there.shape)
-    shapes[PITCH] = np.full(there.shape, math.cos(own.transverse_pressure_angle))
+    shapes = {FLANK + name: shape for name, shape in tooth_shapes(toothing, rolls[int(wheel)], face).items()}
+    shapes[WOBBLE] = face / toothing.face_width + np.zeros(there.shape)
+    shapes[PITCH] = np.full(there.shape, math.cos(toothing.transverse_pressure_angle))
     return {name: np.where(there, shape, 0.0) for name, shape in shapes.items()}
 
 
@@ -142,9 +142,9 @@ class MadePairs:
 
 def lines_of_pairs(made: MadePairs, task: tuple[int, Sequence[int]]) -> ComplexArray:
     """Return the complex amplitude of one line of some pairs (n, L), m: one task."""
-    line, some = task
+    line, pairs = task
     lines = []
-    for index in some:
+    for index in pairs:
         ((_, problem, solution),) = made.evaluator_of(index).solved({}, range(1))
         if not solution.converged:
             raise SolveError(f"the contact of pair {index} cannot be solved", solution)

@@ -112,7 +112,12 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
     grids = np.meshgrid(*(axis.values for axis in request.axes), indexing="ij")
     point = np.stack([grid.ravel() for grid in grids], axis=1)
     return Sweep(
-        tuple(axis.name for axis in request.axes), point, quantities, reason, _held(request), clock.to_json()
+        tuple(axis.name for axis in request.axes),
+        point,
+        quantities,
+        reason,
+        _fixed_values(request),
+        clock.to_json(),
     )
 
 
@@ -137,10 +142,10 @@ def _swept_design(shared: _SweptPair, design: tuple[tuple[str, float], ...]) -> 
     """Return values and errors (2, L, Q) in SI of all quantities at all torques of a design: one task."""
     request, bodies, values = shared.request, shared.bodies, dict(design)
     question = request.flanks(values), request.torques, *request.alignment(values)
-    table, own = bodies.solve_table(*question)
-    curves = np.array(list(_of_curves(table, own.solution.status == Status.CONVERGED)))
-    at_half = _on_flanks(own, 2)
-    flanks = _on_flanks(own)
+    table, solved_point = bodies.solve_table(*question)
+    curves = np.array(list(_of_curves(table, solved_point.solution.status == Status.CONVERGED)))
+    at_half = _on_flanks(solved_point, 2)
+    flanks = _on_flanks(solved_point)
     others = [at_half, *(_on_flanks(rougher) for rougher in bodies.solve_rougher(*question))]
     errors = np.sum([np.abs(flanks - other) for other in others], axis=0)
     of_flanks = np.stack([flanks, errors])
@@ -159,7 +164,7 @@ def _of_curves(table: SteDatabase, solved: BoolArray) -> Iterator[FloatArray]:
             force=float(force), misalignment=skew, center_distance_change=change, allow_failed=True
         )
         figures = (curve.peak_to_peak, *curve.harmonics[:HARMONICS])
-        yield np.array([[each.value for each in figures], [each.error for each in figures]])
+        yield np.array([[figure.value for figure in figures], [figure.error for figure in figures]])
 
 
 def _on_flanks(solved: SolvedOperatingPoint, every: int = 1) -> FloatArray:
@@ -179,10 +184,13 @@ def _on_grid(request: SweepRequest, rows: FloatArray) -> FloatArray:
     return ordered.reshape(2, -1, len(SWEPT))
 
 
-def _held(request: SweepRequest) -> Json:
+def _fixed_values(request: SweepRequest) -> Json:
     swept = {axis.name for axis in request.axes}
     point = request.point
-    held: Json = {"misalignment": point.misalignment, "center_distance_change": point.center_distance_change}
+    values: Json = {
+        "misalignment": point.misalignment,
+        "center_distance_change": point.center_distance_change,
+    }
     if TORQUE not in swept:
-        held[TORQUE] = float(request.torques[0])
-    return {name: value for name, value in held.items() if name not in swept}
+        values[TORQUE] = float(request.torques[0])
+    return {name: value for name, value in values.items() if name not in swept}

@@ -74,8 +74,8 @@ class SweepRequest:
         """Torques (L,) at which every design is solved at once, N m."""
         axis = next((axis for axis in self.axes if axis.name == TORQUE), None)
         point = self.point
-        own = point.torque if point.torque is not None else self.pair.torque(point.normal_force or 0.0)
-        return np.array([own] if axis is None else axis.values, dtype=np.float64)
+        torque = point.torque if point.torque is not None else self.pair.torque(point.normal_force or 0.0)
+        return np.array([torque] if axis is None else axis.values, dtype=np.float64)
 
     @property
     def designs(self) -> tuple[dict[str, float], ...]:
@@ -126,7 +126,7 @@ class SweepRequest:
             center_distance_changes=over.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
         )
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
-        return check_request(self.flanks(acting), axes, options, whole_table=False, neglect=False)
+        return check_request(self.flanks(acting), axes, options, check_size=False, neglect=False)
 
     def _check_axes(self) -> None:
         names = [axis.name for axis in self.axes]

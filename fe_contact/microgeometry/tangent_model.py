@@ -49,23 +49,23 @@ class TangentModel:
 
     def corrected(self, deviation: FloatArray, ste: FloatArray) -> TangentModel:
         """Take off what it misses in the mean over pairs (n, d) whose curves (n, P, L) were solved."""
-        missed = np.concatenate(list(self.curves(deviation))) - ste
-        return replace(self, correction=self.correction + missed.mean(axis=0))
+        error = np.concatenate(list(self.curves(deviation))) - ste
+        return replace(self, correction=self.correction + error.mean(axis=0))
 
     def at_load(self, load: int) -> TangentModel:
         """Return the same at one of the loads."""
-        some = slice(load, load + 1)
-        own = self.value[..., some], self.by[:, :, some], self.correction[:, some]
-        return TangentModel(self.minimum, self.state, *own)
+        one_load = slice(load, load + 1)
+        arrays = self.value[..., one_load], self.by[:, :, one_load], self.correction[:, one_load]
+        return TangentModel(self.minimum, self.state, *arrays)
 
     def curves(self, deviation: FloatArray) -> Iterator[FloatArray]:
         """Yield the transmission error of pairs (n, d), some at a time, (m, P, L) in m."""
-        held = np.maximum(deviation, self.minimum)
+        bounded = np.maximum(deviation, self.minimum)
         shape = self.value.shape[1:]
         slopes = self.by.reshape(len(self.state), -1, self.state.shape[1])
         at_zero = self.value.reshape(len(self.state), -1) - np.einsum("tqd,td->tq", slopes, self.state)
-        some = max(1, AT_ONCE // self.correction.size)
-        for part in (held[k : k + some] for k in range(0, len(held), some)):
+        batch = max(1, AT_ONCE // self.correction.size)
+        for part in (bounded[k : k + batch] for k in range(0, len(bounded), batch)):
             ste = part @ slopes[0].T + at_zero[0]
             for value, by in zip(at_zero[1:], slopes[1:], strict=True):
                 np.minimum(ste, part @ by.T + value, out=ste)

@@ -239,9 +239,9 @@ class ToleranceRequest:
         curve = 8 * period * sampling.positions * len(self.torques)
         needed = curve * (3 * sampling.solved + 2 * (sampling.tangents + 1) * deviating)
         if needed > MAX_BYTES:
-            words = f"{sampling.solved} pairs over {period} base pitches, {needed / 1e9:.1f} GB"
+            size = f"{sampling.solved} pairs over {period} base pitches, {needed / 1e9:.1f} GB"
             remedy = "Analyze fewer pairs whole, fewer torques, or a shorter period."
-            raise InputError("exact", words, at_most(MAX_BYTES / 1e9, "GB"), remedy)
+            raise InputError("exact", size, at_most(MAX_BYTES / 1e9, "GB"), remedy)
 
 
 def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
@@ -259,23 +259,25 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
     with clock.stage("samples"):
         ste, tangents = _solved(study.evaluator, names, deviation[: sampling.solved], sampling, run)
         model = about_design.with_further(tangents)
-        held = slice(sampling.tangents, sampling.solved)
-        model = model.corrected(deviation[held], ste[held])
+        unknown = slice(sampling.tangents, sampling.solved)
+        model = model.corrected(deviation[unknown], ste[unknown])
     with clock.stage("model"):
-        ripple, missed = _ripple(model, deviation, ste, held)
+        ripple, model_error = _ripple(model, deviation, ste, unknown)
     above = None
     if request.teeth is not None and request.limit is not None:
         with clock.stage("sidebands"):
             drawn = request.teeth.drawn(sampling.samples, sampling.seed, after=deviation.shape[1])
-            some = deviation[: sampling.solved]
-            made = MadePairs(study.evaluator, names, some, request.teeth.gear, drawn)
+            solved_deviation = deviation[: sampling.solved]
+            made = MadePairs(study.evaluator, names, solved_deviation, request.teeth.gear, drawn)
             seed, confidence = sampling.seed, sampling.confidence
             above = sidebands_above(request.limit, made, nominal, request.teeth, seed, confidence, run)
     elif request.limit is not None:
         with clock.stage("model"):
             period = design.evaluation.ste.shape[1] // nominal.position.size
             distributions = tolerances.distributions
-            pairs = DrawnPairs(names, deviation, ste, held.start, model, distributions, period, sampling.seed)
+            pairs = DrawnPairs(
+                names, deviation, ste, unknown.start, model, distributions, period, sampling.seed
+            )
             above = mesh_order_above(request.limit, pairs, design.evaluation.ste[0], sampling.confidence)
     with clock.stage("confirmation"):
         table = full_table(nominal, {}, study.decision, run.cache)
@@ -292,16 +294,16 @@ def sampled(request: ToleranceRequest, run: Run) -> ToleranceStudy:
         at_once,
         sampling.confidence,
         clock.to_json(),
-        _asked(request),
+        _request_json(request),
         sampling.solved,
-        len(missed),
-        np.sqrt(np.mean(missed**2, axis=0)),
-        np.abs(missed).max(axis=0),
+        len(model_error),
+        np.sqrt(np.mean(model_error**2, axis=0)),
+        np.abs(model_error).max(axis=0),
         above,
     )
 
 
-def _asked(request: ToleranceRequest) -> Json:
+def _request_json(request: ToleranceRequest) -> Json:
     sampling = request.sampling
     return {
         "tolerances": request.tolerances.to_json(),
@@ -317,12 +319,12 @@ def tangents_about(
     """Return the tangents about pairs that deviate by (n, d); nothing is removed below zero."""
     pair = evaluator.contact.pair
     designed = [0.0 if name == MISALIGNMENT else figure(pair, name) for name in names]
-    minimum = np.array([least_deviation(*each) for each in zip(designed, names, strict=True)])
+    minimum = np.array([least_deviation(*item) for item in zip(designed, names, strict=True)])
     return TangentModel.of(minimum, deviation, ste, by)
 
 
 def _ripple(
-    model: TangentModel, deviation: FloatArray, ste: FloatArray, held: slice
+    model: TangentModel, deviation: FloatArray, ste: FloatArray, unknown: slice
 ) -> tuple[FloatArray, FloatArray]:
     """Return peak-to-peak of all pairs (N, L), of the first as solved, and what the model misses, m.
 
@@ -330,12 +332,12 @@ def _ripple(
     those of the solved pairs that it is held against.
     """
     solved = np.ptp(ste, axis=1)
-    known, told = solved[held], model.peak_to_peak(deviation[held])
+    known, predicted = solved[unknown], model.peak_to_peak(deviation[unknown])
     further = deviation[len(solved) :]
     ripple = solved
     if len(further):
-        ripple = np.concatenate([solved, as_spread(model.peak_to_peak(further), told, known)])
-    return ripple, as_spread(told, told, known) - known
+        ripple = np.concatenate([solved, as_spread(model.peak_to_peak(further), predicted, known)])
+    return ripple, as_spread(predicted, predicted, known) - known
 
 
 def _solved(
@@ -344,7 +346,7 @@ def _solved(
     """Solve pairs that deviate by (n, d): transmission error (n, P, L) in m, and tangents of the first."""
     ends = sampling.tangents, len(deviation)
     parts = ((True, deviation[: ends[0]]), (False, deviation[ends[0] :]))
-    tasks = [(by, own[k : k + IN_A_TASK]) for by, own in parts for k in range(0, len(own), IN_A_TASK)]
+    tasks = [(by, part[k : k + IN_A_TASK]) for by, part in parts for k in range(0, len(part), IN_A_TASK)]
     ste, slopes = [], []
     for count, (values, by) in enumerate(run.workers.run(curves_of_samples, (evaluator, names), tasks)):
         ste.append(values)

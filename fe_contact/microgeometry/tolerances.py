@@ -89,8 +89,8 @@ class Tolerances:
     @property
     def widths(self) -> dict[str, float]:
         """Half width of every deviation, m, in a fixed order."""
-        own = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
-        return own | dict(sorted(self.modification.items()))
+        misaligned = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
+        return misaligned | dict(sorted(self.modification.items()))
 
     def sample(self, count: int, seed: int) -> FloatArray:
         """Draw deviations (count, d) in m from a scrambled Sobol' sequence.

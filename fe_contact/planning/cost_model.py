@@ -15,7 +15,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from fe_contact.compliance import PlaneHypothesis, free_ends_kept, predict_cost, section_kept, solid_kept
+from fe_contact.compliance import (
+    PlaneHypothesis,
+    free_ends_cached,
+    predict_cost,
+    section_cached,
+    solid_cached,
+)
 from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import ParallelAxes, Toothing
@@ -23,7 +29,7 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.cost_of_derivatives import ContactWork, CycleSeconds, solved_pitches
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 from fe_contact.planning.plan import Plan
-from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
+from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, sampled_positions
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
 from model_studies.run_log import corrections
@@ -65,7 +71,7 @@ _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
 """CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
-_HELD_POSITIONS, _HELD_PART = 320, 2.5
+_STORED_POSITIONS, _STORED_PART = 320, 2.5
 """Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
 _POINT_NUMBERS = 25
 """Numbers that are kept of a touching point."""
@@ -143,7 +149,7 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
         rougher.append(unit_work(pair, plan, made.coarse_slices))
     if plan.coarse_patch != plan.patch:
         rougher.append(work)
-    sampled_loads, rows = min(loads, LOADS), some_positions(nodes).size
+    sampled_loads, rows = min(loads, LOADS), sampled_positions(nodes).size
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(
         w.of(rows * distances, 0) + w.in_pitches(rows * skews * distances, (sampled_loads,), solved)
@@ -164,7 +170,7 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
 
 def memory_of_contact(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """Return the bytes of compliance, touching points and table that are held at once."""
-    stored = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
+    stored = _STORED_POSITIONS if plan.positions is None else _STORED_PART * plan.positions
     count = _candidates(pair, plan.discretization.slices)
     points = count * (POINTS if plan.discretization.slices > 1 else 1)
     blocks = 2 if _with_tilt(pair, plan) else 1
@@ -249,14 +255,14 @@ class _Cost(NamedTuple):
 
     seconds: float
     working: float
-    held: float
+    stored: float
 
     @classmethod
     def of(cls, parts: Iterable[_Cost]) -> _Cost:
         """One after the other."""
         costs = list(parts)
         working = max((cost.working for cost in costs), default=0.0)
-        return cls(sum(cost.seconds for cost in costs), working, sum(cost.held for cost in costs))
+        return cls(sum(cost.seconds for cost in costs), working, sum(cost.stored for cost in costs))
 
 
 @dataclass(frozen=True)
@@ -344,7 +350,9 @@ def predict_run(
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
     positions = expected_positions(pair, plan, model.period, alignments[0] * alignments[1])
-    memory = PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments) + fine.held + coarse.held
+    memory = (
+        PROCESS_BYTES + memory_of_contact(pair, plan, model.period, alignments) + fine.stored + coarse.stored
+    )
     memory += max(fine.working, coarse.working)
     return Prediction(parts, correction, int(memory), positions, kind)
 
@@ -367,7 +375,7 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
 
 
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> _Cost:
-    if size := solid_kept(gear, recipe, cache):
+    if size := solid_cached(gear, recipe, cache):
         return _Cost(_READ_SOLID[gear.helix_angle != 0.0], _READING * size, size)
     predicted = predict_cost(gear, recipe, cache=cache)
     return _Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
@@ -384,7 +392,7 @@ def _free_ends(
         return
     teeth = condensed_teeth(pair)
     for gear, recipe in dict.fromkeys(zip(bodies, made.finite_width, strict=True)):
-        if size := free_ends_kept(gear, recipe, teeth, cache):
+        if size := free_ends_cached(gear, recipe, teeth, cache):
             yield _Cost(_READ_PLANE, 0.0, size)
         else:
             predicted = predict_cost(gear, recipe, cache=cache)
@@ -394,7 +402,7 @@ def _free_ends(
 def _section(
     pair: ParallelAxes, gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, cache: Path | None
 ) -> _Cost:
-    if size := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
+    if size := section_cached(gear, recipe, hypothesis, condensed_teeth(pair), cache):
         return _Cost(_READ_PLANE, 0.0, size)
     return _Cost(*_section_cost(gear, recipe), 0.0)
 
@@ -410,7 +418,7 @@ def _section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
     """CPU seconds and bytes of one gear in the plane on the reference host."""
     fineness = 0.05 * gear.normal_module / recipe.flank_size
     sector = 5000.0 * fineness**1.73
-    depth = abs(gear.root_radius - gear.held_radius) / gear.normal_module
+    depth = abs(gear.root_radius - gear.seat_radius) / gear.normal_module
     if gear.web is not None or depth > _DEEP_RING:
         hub = gear.teeth * 235.0 * fineness**1.45 * min(1.0, gear.teeth / 60.0) ** 0.7
         seconds = _MESHER + _HUB + _HUB_FREEDOM * hub

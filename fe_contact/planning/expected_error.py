@@ -71,7 +71,7 @@ class ExpectedError:
         return self.numerical if self.chosen else float(np.hypot(self.numerical, self.plane))
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """What a tolerance applies to."""
         plane = f", with the plane {percent(self.bought)} %" if self.bought > self.numerical else ""
         return f"{percent(self.numerical)} %{plane}"

@@ -15,7 +15,7 @@ import numpy as np
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
-from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, MEAN, QUANTITIES
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, QUANTITIES
 from fe_contact.types import FloatArray
 
 _ALIKE, _UNLIKE = 0.1, 0.35
@@ -138,4 +138,4 @@ def point_error(
 def _by_quantity(part: tuple[float, float, float], values: FloatArray) -> FloatArray:
     """Return the parts of the quantities (Q,) that there are."""
     mean, ripple, harmonic = part
-    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - BESIDE_MESH)])[: len(values)]
+    return np.array([mean, ripple, *[harmonic] * (QUANTITIES - OFF_MESH)])[: len(values)]

@@ -73,7 +73,7 @@ class NodeRule:
     least_ripple: float = 0.0
     """Peak-to-peak STE in m that smaller ones count as."""
 
-    def reached_beside(self, position: FloatArray) -> BoolArray:
+    def reached_by_neighbor(self, position: FloatArray) -> BoolArray:
         """Whether positions (P,) of a base pitch are nodes of interpolants in the pitches beside it."""
         return np.minimum(position, 1.0 - position) * self.start < _REACH
 

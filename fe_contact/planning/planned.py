@@ -76,13 +76,13 @@ def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -
     within = [option for option in options if option.error.bought <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
-        return MeshChoice(best, True, f"expected error {best.error.words}")
+        return MeshChoice(best, True, f"expected error {best.error.text}")
     enough = [option for option in options if option.error.numerical <= tolerance.relative]
     beyond = min(option.error.plane for option in options) > tolerance.relative
     best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.bought)
     error = best.error
     parts = f"mesh {percent(error.numerical)} %, plane {percent(error.plane)} %"
-    return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
+    return MeshChoice(best, False, f"no mesh is expected within {tolerance.text} ({parts})")
 
 
 def mesh_for_time(

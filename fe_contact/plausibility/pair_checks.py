@@ -155,13 +155,13 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     intensity = float(pair.transverse_force(force)) / (pair.face_width * module)
     pressure, stress = pitch_point_pressure(pair, force), max(nominal_root_stresses(pair, force))
     deflection = nominal_deflection(pair, force) / module
-    words = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
+    text = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
     lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf
     field = f"{loads_as}[{load.size - 1}]"
     low, high = _RATED * lightest * value / intensity, 0.5 * heaviest * value / intensity
     for check, amount, reason in (
-        ("light_load", intensity, f"the largest load of the table is negligible, {words}"),
-        ("line_load", intensity, f"no gear carries {words}"),
+        ("light_load", intensity, f"the largest load of the table is negligible, {text}"),
+        ("line_load", intensity, f"no gear carries {text}"),
         ("hertz_pressure", pressure, f"a nominal contact pressure of {pressure / 1e9:.3g} GPa"),
         ("root_stress", stress, f"a nominal root stress of {stress / 1e9:.3g} GPa"),
         ("transmission_error", deflection, f"tooth deflections of {engineering(deflection, 2)} modules"),
@@ -180,15 +180,15 @@ def _findings(pair: ParallelAxes) -> Iterator[Finding]:
     for name, gear, clearance in zip(
         ("pinion", "wheel"), (pair.pinion, pair.wheel), pair.tip_clearances, strict=True
     ):
-        field, words = (
+        field, text = (
             f"{name} tip clearance over module",
             "the tip comes near the root of the mating gear",
         )
-        yield from assessed("tip_clearance", field, clearance / module, "1", reason=words)
-        field, words = f"{name} tip thickness over module", "the tooth is nearly pointed"
+        yield from assessed("tip_clearance", field, clearance / module, "1", reason=text)
+        field, text = f"{name} tip thickness over module", "the tooth is nearly pointed"
         helix = atan(tan(gear.helix_angle) * gear.tip_radius / gear.reference_radius)
         thickness = gear.tip_tooth_thickness * cos(helix)
-        yield from assessed("tip_thickness", field, thickness / module, "1", reason=words)
-    words = "the teeth hardly take over from each other"
+        yield from assessed("tip_thickness", field, thickness / module, "1", reason=text)
+    text = "the teeth hardly take over from each other"
     ratio = pair.active_contact_ratio
-    yield from assessed("contact_ratio", "transverse contact ratio", ratio, "1", reason=words)
+    yield from assessed("contact_ratio", "transverse contact ratio", ratio, "1", reason=text)

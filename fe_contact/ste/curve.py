@@ -12,7 +12,7 @@ from bounds import Text, from_to
 from bounds.brief import brief
 from fe_contact.errors import InputError
 from fe_contact.ste.curve_errors import all_sources, errors_by_source, source_places
-from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES
+from fe_contact.ste.curve_quantities import OFF_MESH, QUANTITIES
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.ste.mesh_force import MeshForce
@@ -222,7 +222,7 @@ def _errors(
     left = below if stored else band + below
     ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
     mean = float(np.mean(left[:even]))
-    bounds = np.array([mean, ends, *[2.0 * mean] * (QUANTITIES - BESIDE_MESH)])
+    bounds = np.array([mean, ends, *[2.0 * mean] * (QUANTITIES - OFF_MESH)])
     total = bounds + all_sources(errors_by_source(database, point)) if stored else bounds
     return [float(error) for error in total]
 

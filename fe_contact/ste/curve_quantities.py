@@ -10,7 +10,7 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import ComplexArray, FloatArray
 
 HARMONICS = 20
-MEAN, PEAK_TO_PEAK, BESIDE_MESH, FIRST_HARMONIC = range(4)
+MEAN, PEAK_TO_PEAK, OFF_MESH, FIRST_HARMONIC = range(4)
 """Mean, peak-to-peak, the largest order beside the mesh orders, and the harmonics, in this order.
 
 What repeats at every pitch is in mesh orders alone: other orders have the error of what pitches differ by."""
@@ -63,7 +63,7 @@ def quantity_changes(
             return _changes(_quantities(position, curves, period), _quantities(knots, other, period))
         ripple, lines, _ = _quantities(position, np.concatenate([curves, other], axis=1), period)
         parts = zip(np.split(ripple, 2), np.split(lines, 2, axis=1), strict=True)
-        return _with_bend(_changes(*(Quantities(*each, period) for each in parts)), curves - other)
+        return _with_bend(_changes(*(Quantities(*part, period) for part in parts)), curves - other)
     changes = np.full((QUANTITIES, curves.shape[1]), np.nan)
     for c in range(curves.shape[1]):
         rows, others = good[:, c], finite[:, c]
@@ -107,16 +107,16 @@ def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
     return np.concatenate([changes[:1], np.maximum(changes[1:2], minimum), changes[2:]])
 
 
-def missed_peaks(position: FloatArray, values: FloatArray, period: int) -> FloatArray:
+def peak_excess(position: FloatArray, values: FloatArray, period: int) -> FloatArray:
     """Return by how much corners between the knots may stand out of the range of curves (P, C), (C,) in m.
 
     A corner is where the chords before and after an interval meet inside it; tops and bottoms are added.
     """
     step = Axis(position, float(period)).spacing[:, None]
-    return _missed_tops(step, values) + _missed_tops(step, -values)
+    return _crest_excess(step, values) + _crest_excess(step, -values)
 
 
-def _missed_tops(step: FloatArray, values: FloatArray) -> FloatArray:
+def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
     """Height of the highest corner above the highest knot, >= 0."""
     following = np.roll(values, -1, axis=0)
     chord = (following - values) / step
@@ -136,7 +136,7 @@ def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, peri
     mean = mean_of_curves(position, np.nan_to_num(band), period)
     known = np.nan_to_num(values)
     ends = [np.take_along_axis(band, pick(known, axis=0)[None], 0)[0] for pick in (np.argmax, np.argmin)]
-    return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * (QUANTITIES - BESIDE_MESH)])
+    return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * (QUANTITIES - OFF_MESH)])
 
 
 def mean_of_curves(position: FloatArray, values: FloatArray, period: int) -> FloatArray:

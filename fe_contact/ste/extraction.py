@@ -23,11 +23,11 @@ def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:
     The sign is y/sqrt(y^2 + h^2), h `SMOOTHING` base pitches. On helical teeth the load of a pair lies
     uniformly on its line of contact over the whole face, which spans b tan(beta_b) of the path.
     """
-    facts = database.facts
+    gears = database.facts
     phase = database.position - np.floor(database.position)
-    y = (phase[:, None] + database.pair) * facts.base_pitch
-    half = 0.5 * facts.face_width * math.tan(facts.base_helix_angle)
-    direction, arm = _averages(y, half, SMOOTHING * facts.base_pitch)
+    y = (phase[:, None] + database.pair) * gears.base_pitch
+    half = 0.5 * gears.face_width * math.tan(gears.base_helix_angle)
+    direction, arm = _averages(y, half, SMOOTHING * gears.base_pitch)
     total = database.load_share.sum(axis=-1)
     share = database.load_share / np.where(total > 0.0, total, 1.0)[..., None]
     return np.einsum("pfmdn,pn->pfmd", share, direction), np.einsum("pfmdn,pn->pfmd", share, arm)

@@ -122,8 +122,8 @@ class PairFacts:
             return cls(**content)
         except (TypeError, ValueError, IndexError) as error:
             missing = sorted({fact.name for fact in fields(cls) if fact.default is MISSING} - set(content))
-            words = f"without {', '.join(missing)}" if missing else "of other kinds"
-            raise DatabaseError(f"the pair facts are not readable: {words}") from error
+            text = f"without {', '.join(missing)}" if missing else "of other kinds"
+            raise DatabaseError(f"the pair facts are not readable: {text}") from error
 
 
 @dataclass(frozen=True)

@@ -316,8 +316,8 @@ def _check_axes(table: SteFields) -> None:
     )
     _refuse(bool(np.any(np.diff(table.support_force) <= 0.0)), "support_force", "be strictly increasing")
     _refuse(not np.all(table.support_force > 0.0), "support_force", "be above 0 N")
-    whole = isinstance(table.period, int) and not isinstance(table.period, bool)
-    _refuse(not whole or table.period < 1, "period", "be a whole number of base pitches, 1 or more")
+    is_integer = isinstance(table.period, int) and not isinstance(table.period, bool)
+    _refuse(not is_integer or table.period < 1, "period", "be a whole number of base pitches, 1 or more")
     beyond = table.position[0] < 0.0 or table.position[-1] >= table.period
     _refuse(beyond, "position", f"lie in [0, {table.period})")
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")

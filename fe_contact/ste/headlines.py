@@ -23,14 +23,14 @@ LONGEST_PERIOD = 32
 
 def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, list[Row]]:
     """Return the title of a database and its rows; `curve_at` gives its curves, as `SteDatabase.curve`."""
-    facts = table.facts
-    ring = " (ring)" if facts.internal else ""
+    gears = table.facts
+    ring = " (ring)" if gears.internal else ""
     helix = (
-        f", base helix angle {math.degrees(facts.base_helix_angle):.3g}°" if facts.base_helix_angle else ""
+        f", base helix angle {math.degrees(gears.base_helix_angle):.3g}°" if gears.base_helix_angle else ""
     )
     title = (
-        f"SteDatabase {facts.teeth[0]}/{facts.teeth[1]}{ring}, "
-        f"center distance {1e3 * facts.center_distance:.6g} mm{helix}"
+        f"SteDatabase {gears.teeth[0]}/{gears.teeth[1]}{ring}, "
+        f"center distance {1e3 * gears.center_distance:.6g} mm{helix}"
     )
     rows = [("loads", f"{_numbers(table.torque)} N m"), ("positions", _positions(table))]
     rows += [

@@ -23,7 +23,7 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 
 # between two knots the gap of neighboring curves keeps at least this part of each end's gap in its
 # Bernstein form, so the curves cannot touch
-_GAP_KEPT = 1.0 / 3.0
+_MIN_GAP_SHARE = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -179,6 +179,6 @@ def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Bounds on the slope of the gap to the next curve at every knot, down and up."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
     before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
-    allowed = 3.0 * (1.0 - _GAP_KEPT) * gaps
+    allowed = 3.0 * (1.0 - _MIN_GAP_SHARE) * gaps
     with np.errstate(divide="ignore"):
         return np.asarray(allowed / after), np.asarray(allowed / before)

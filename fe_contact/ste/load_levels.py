@@ -63,13 +63,13 @@ class LoadLevels:
     stiffness: FloatArray
 
 
-def gradual_contact(facts: PairFacts) -> float:
+def gradual_contact(gears: PairFacts) -> float:
     """Return how gradually a further pair comes into contact: 0 along a whole line at once, 1 from a corner.
 
     Along a line the stiffness jumps; from a corner the line of contact grows from nothing, and so does the
     stiffness.
     """
-    overlap = facts.face_width * math.tan(facts.base_helix_angle) / facts.base_pitch
+    overlap = gears.face_width * math.tan(gears.base_helix_angle) / gears.base_pitch
     return min(overlap / _GRADUAL_OVERLAP, 1.0)
 
 

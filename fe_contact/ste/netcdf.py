@@ -13,7 +13,7 @@ import numpy as np
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
-from fe_contact.ste.curve_quantities import BESIDE_MESH
+from fe_contact.ste.curve_quantities import OFF_MESH
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
 from fe_contact.types import Json, Status
@@ -21,7 +21,7 @@ from model_studies.netcdf import UnreadableFile, opened
 from model_studies.netcdf_content import NetcdfContent, Variable
 
 FORMAT = "lineofaction STE database"
-_BESIDE_MESH_SINCE = 4
+_OFF_MESH_SINCE = 4
 WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 # units and long names; "1" is CF's dimensionless
@@ -176,13 +176,13 @@ def read(path: Path) -> dict[str, Any]:
     if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
         content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index(METHOD), 0.0, axis=0)
     for name in ("curve_error", "load_arm_error"):
-        if attributes["schema_version"] < _BESIDE_MESH_SINCE and content.get(name, np.empty(0)).size:
-            content[name] = np.insert(content[name], BESIDE_MESH, np.nan, axis=1)
+        if attributes["schema_version"] < _OFF_MESH_SINCE and content.get(name, np.empty(0)).size:
+            content[name] = np.insert(content[name], OFF_MESH, np.nan, axis=1)
     documents = {name: json_attribute(path, attributes, name) for name in _JSON_ATTRIBUTES}
     if part := (documents["receipt"].get("bias") or {}).get("stated"):
         content |= _without_bias(content, part)
     return content | {
-        "facts": _facts(path, attributes),
+        "facts": _gear_pair(path, attributes),
         "metadata": Metadata(
             content_hash=str(attributes.get("content_hash", "")),
             schema_version=int(attributes["schema_version"]),
@@ -243,7 +243,7 @@ def _before(period: int) -> str:
     return f"period {period};" if period != 1 else ""
 
 
-def _facts(path: Path, attributes: Json) -> PairFacts:
+def _gear_pair(path: Path, attributes: Json) -> PairFacts:
     content = json_attribute(path, attributes, "facts")
     if not isinstance(content, dict):
         raise DatabaseError(f"{path.name}: damaged, its facts are no JSON object")

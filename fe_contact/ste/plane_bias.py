@@ -59,7 +59,7 @@ class PlaneBias:
         return replace(self, hidden=float(np.max(error[1], where=hidden, initial=0.0)))
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """In one sentence."""
         ripple = _percent(self.peak_to_peak)
         if self.hidden:
@@ -79,7 +79,7 @@ class PlaneBias:
             "bending_ripple": self.bending_ripple,
             "either_way_m": self.hidden,
             "error": BIAS_ERROR,
-            "words": self.words,
+            "words": self.text,
         }
 
     @classmethod

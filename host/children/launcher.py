@@ -173,8 +173,8 @@ class WarmProcess:
     def ready(self) -> bool:
         """Whether it has said that it is warm, and may fork once more."""
         if not self._ready and self.usable:
-            heard, _, _ = select.select([self._channel], [], [], 0.0)
-            self._ready = bool(heard) and self._channel.recv(MESSAGE_BYTES) == READY
+            readable, _, _ = select.select([self._channel], [], [], 0.0)
+            self._ready = bool(readable) and self._channel.recv(MESSAGE_BYTES) == READY
         return self._ready and self.usable
 
     def await_word(self, seconds: float) -> None:

@@ -12,7 +12,7 @@ from rich.console import Console
 from bounds import engineering
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
-from lineofaction.cli.kept_tables import KeptTables
+from lineofaction.cli.cached_tables import CachedTables
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -32,7 +32,7 @@ from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
     assumption_lines,
     by_size,
-    influence_place,
+    influence_point,
     ledger_table,
     trifles_title,
 )
@@ -44,7 +44,7 @@ from lineofaction.gearbox.units import UM
 from lineofaction.report.ste.page import static_headlines
 from model_studies.workers import InProcess, Workers
 
-_SHOWN_HARMONICS = 2
+_MAX_HARMONICS = 2
 
 
 def run_analyze(
@@ -56,7 +56,7 @@ def run_analyze(
     check_netcdf_output(output)
     with open_executor(*executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
-    KeptTables(lambda _: database).table(case.case)  # for verbs that take it
+    CachedTables(lambda _: database).table(case.case)  # for verbs that take it
     warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
@@ -88,7 +88,7 @@ def analyzed(
 
 def _show(summary: dict[str, Any]) -> None:
     out = console()
-    names = [f"harm. {n} µm" for n in range(1, _SHOWN_HARMONICS + 1)]
+    names = [f"harm. {n} µm" for n in range(1, _MAX_HARMONICS + 1)]
     rows = [_row(load) for load in summary["loads"]]
     out.print(table(["torque N m", "force N", "mean µm", "p-p µm", *names], rows, "Transmission error"))
     receipt, load = summary["receipt"], summary["loads"][-1]
@@ -121,9 +121,9 @@ def _over_face(load: dict[str, Any]) -> str:
 def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
     """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
     columns, rows = ledger_table(ledger)
-    title = f"Effects: estimated change without each, {influence_place(ledger)}".removesuffix(", ")
+    title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
-    out.print(table(columns, rows, title, words=(columns[0], columns[-1])))
+    out.print(table(columns, rows, title, text_columns=(columns[0], columns[-1])))
     if trifles := by_size(ledger)[1]:
         names = ", ".join(entry["name"].replace("_", " ") for entry in trifles)
         out.print(f"{trifles_title(trifles)}: {names}")
@@ -160,8 +160,8 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\n{_of_cycle(cycle)}"
     for line in _inserted(receipt.get("held_out", {}), newton_metre):
         text += f"\n{line}"
-    if held_out := _held_out(receipt.get("held_out", {})):
-        text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    if held_out_text := _held_out_errors(receipt.get("held_out", {})):
+        text += f"\nlargest error at held-out points between the nodes: {held_out_text} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
     for line in tolerance_lines(receipt, newton_metre):
@@ -182,18 +182,18 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
             yield f"{name} inserted for interpolation: {values} {word}"
 
 
-def _held_out(axes: dict[str, Any]) -> str:
-    words = []
+def _held_out_errors(axes: dict[str, Any]) -> str:
+    texts = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]
         worst = "unknown" if None in errors else f"{engineering(max(errors) / UM, 2)} µm"
-        words.append(f"{name.replace('_', ' ')} {worst}")
-    return ", ".join(words)
+        texts.append(f"{name.replace('_', ' ')} {worst}")
+    return ", ".join(texts)
 
 
 def _row(load: dict[str, Any]) -> list[str]:
     """One load of the table, each figure with its error."""
-    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _SHOWN_HARMONICS]
+    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _MAX_HARMONICS]
     figures = [f"{value:.4g}" for value in values]
     if "mean_error_um" in load:
         errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]

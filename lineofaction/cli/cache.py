@@ -28,10 +28,11 @@ _GB = 1e9
 
 def run_list(*, as_json: bool) -> None:
     """Print what the cache holds."""
-    held = {kind: files_in(cache_home() / kind) for kind in KINDS}
+    by_kind = {kind: files_in(cache_home() / kind) for kind in KINDS}
     if as_json:
         kinds = {
-            kind: {"files": len(files), "bytes": sum(f.size for f in files)} for kind, files in held.items()
+            kind: {"files": len(files), "bytes": sum(f.size for f in files)}
+            for kind, files in by_kind.items()
         }
         print_json({"folder": str(cache_home()), "limit_bytes": _limit_bytes(), "kinds": kinds})
         return
@@ -40,11 +41,11 @@ def run_list(*, as_json: bool) -> None:
             *(kind, KINDS[kind], str(len(files)), _size(files)),
             f"{(time.time() - files[0].used) / _DAY:.1f}" if files else "",
         ]
-        for kind, files in held.items()
+        for kind, files in by_kind.items()
     ]
     out = console()
-    out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, words=["kind", "what"]))
-    every = [file for files in held.values() for file in files]
+    out.print(table(["kind", "what", "files", "MB", "oldest use, days"], rows, text_columns=["kind", "what"]))
+    every = [file for files in by_kind.values() for file in files]
     line = f"{_size(every)} MB of {engineering(1e3 * _limit_bytes() / _GB, 4)} MB in {cache_home()}"
     out.print(line, soft_wrap=True)
 

@@ -43,7 +43,7 @@ def _wheel_fields(pair: PairSketch) -> str:
     return f"""internal = true # a ring gear
 teeth = {wheel.teeth}
 face_width_mm = {pair.width:g}
-rim_diameter_mm = {wheel.held:g} # outside of the rim, which is held
+rim_diameter_mm = {wheel.bore:g} # outside of the rim, which is held
 addendum_coefficient = {pair.ring_addendum:g} # the full addendum would meet the pinion below its involute
 thickness_allowance_um = {wheel.allowance:g} # is backlash
 """
@@ -59,7 +59,7 @@ def _external_gear(pair: PairSketch, gear: GearSketch) -> str:
     allowance = f"thickness_allowance_um = {gear.allowance:g} # is backlash\n" if gear.allowance else ""
     return f"""teeth = {gear.teeth}
 face_width_mm = {pair.width:g}
-bore_diameter_mm = {gear.held:g}
+bore_diameter_mm = {gear.bore:g}
 {shift}{allowance}tip_relief_um = {relief:g}
 tip_relief_length_mm = {length:g} # along the radius
 helix_crowning_um = {pair.crowning:g} # at both ends of the face

@@ -69,11 +69,11 @@ def main() -> None:
     warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
     foreign = warnings.showwarning
 
-    def show(message: Warning | str, category: type[Warning], *place: Any, **stream: Any) -> None:
+    def show(message: Warning | str, category: type[Warning], *location: Any, **stream: Any) -> None:
         if category.__module__.startswith(("lineofaction.", "service.")):
             typer.echo(f"note: {message}", err=True)
         else:
-            foreign(message, category, *place, **stream)
+            foreign(message, category, *location, **stream)
 
     warnings.showwarning = show  # what our own say is for people, without a line of code
     try:

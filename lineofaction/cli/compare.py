@@ -17,7 +17,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.report.comparison.compare import compare
 from lineofaction.report.comparison.recorded import Measurement
-from lineofaction.report.document import write_whole
+from lineofaction.report.document import write_page
 from lineofaction.report.run.view import RunView
 
 
@@ -78,10 +78,12 @@ def run_compare(
     """Write the page; print what differs and what is not shown to; `of` are the torque and the recording."""
     check_writable(output)
     page = compare(files, view, *of)
-    write_whole(page, output)
+    write_page(page, output)
     if as_json:
-        found = {line.name: {"difference": line.value, "finding": line.remark} for line in page.headlines}
-        print_json({"file": str(output), "differences": found})
+        differences = {
+            line.name: {"difference": line.value, "finding": line.remark} for line in page.headlines
+        }
+        print_json({"file": str(output), "differences": differences})
         return
     said = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
     for line in (*said, page.lead, f"written to {output}"):

@@ -21,7 +21,7 @@ from service.routes.problem_answers import problem_of
 MAX_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0
 _STOPPING_S = 2
-_KEPT_S = 75
+_KEEP_ALIVE_S = 75
 """How long an idle connection is kept: longer than by clients (5 s) and proxies (60 s). If the server closed
 first, a request that is on its way just then would be answered with a reset."""
 
@@ -131,7 +131,7 @@ def http_server(app: FastAPI) -> Server:
         log_config=None,
         access_log=False,
         timeout_graceful_shutdown=_STOPPING_S,
-        timeout_keep_alive=_KEPT_S,
+        timeout_keep_alive=_KEEP_ALIVE_S,
         lifespan="on",
     )
     return Server(config, app.state.context, app.state.metrics.text)

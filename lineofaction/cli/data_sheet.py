@@ -6,13 +6,13 @@ from pathlib import Path
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
-from lineofaction.cli.output import FOUND, check_writable, console, print_json, table
+from lineofaction.cli.output import EMPHASIS, check_writable, console, print_json, table
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.verb_warnings import messages, warn
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import UM
-from lineofaction.report.document import write_whole
+from lineofaction.report.document import write_page
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.image import png, svg
 from lineofaction.report.drawing.page import Page
@@ -27,7 +27,7 @@ from lineofaction.report.pair import (
 )
 
 _ENDINGS = (".html", ".png", ".svg")
-_WORDS = ("quantity", "symbol", "unit", "point")
+_TEXT_COLUMNS = ("quantity", "symbol", "unit", "point")
 
 
 def run_geometry(file: InputFile, output: Path | None, *, as_json: bool) -> None:
@@ -52,9 +52,11 @@ def _write_sheet(
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
     check_writable(output)
     if output.suffix == ".html":
-        facts = PairFacts.of(pair)
-        page = Page(pair_title(facts), pair_lead(facts), (), (data_sheet_section(pair, tolerance_class),))
-        write_whole(page, output, warnings=implausible)
+        geometry = PairFacts.of(pair)
+        page = Page(
+            pair_title(geometry), pair_lead(geometry), (), (data_sheet_section(pair, tolerance_class),)
+        )
+        write_page(page, output, warnings=implausible)
     else:
         output.write_bytes({".png": png, ".svg": svg}[output.suffix](pair_drawing(pair, tolerance_class)))
 
@@ -62,18 +64,18 @@ def _write_sheet(
 def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
     out = console()
     title, ratios = _summary(pair)
-    out.print(title, soft_wrap=True, style=FOUND)
+    out.print(title, soft_wrap=True, style=EMPHASIS)
     out.print(ratios, soft_wrap=True)
     for part in data_sheet(pair):
         out.print()
-        out.print(table(part.head, part.rows, part.caption, words=_WORDS))
+        out.print(table(part.head, part.rows, part.caption, text_columns=_TEXT_COLUMNS))
     if output is not None:
         out.print(f"written to {output}", soft_wrap=True)
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
-    facts = PairFacts.of(pair)
+    geometry = PairFacts.of(pair)
     transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
     ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
     backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} µm"
-    return f"{pair_title(facts)}: {pair_lead(facts)}", f"{ratios}; {backlash}"
+    return f"{pair_title(geometry)}: {pair_lead(geometry)}", f"{ratios}; {backlash}"

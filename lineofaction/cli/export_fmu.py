@@ -39,7 +39,7 @@ def export_mesh_fmu(
     database = open_ste(file)
     element = _element(database, damping, _nominal_force(database, point), backlash_um)
     export_fmu(element, output)
-    facts: dict[str, Any] = {
+    answer: dict[str, Any] = {
         "file": str(output),
         "positions": int(element.table.position.size),
         "levels": int(element.table.level.size),
@@ -51,9 +51,9 @@ def export_mesh_fmu(
         **({} if backlash_um is None else {"backlash_um": backlash_um}),
     }
     if as_json:
-        print_json(facts)
+        print_json(answer)
     else:
-        _show_fmu(facts)
+        _show_fmu(answer)
 
 
 def _nominal_force(database: SteDatabase, point: Point) -> float:
@@ -72,26 +72,28 @@ def _nominal_force(database: SteDatabase, point: Point) -> float:
 
 def _element(database: SteDatabase, damping: float, nominal: float, backlash_um: float | None) -> MeshElement:
     """Return the mesh of the database, gear 1 driving; both gears' teeth are equally thick."""
-    facts = database.facts
+    geometry = database.facts
     backlash = None if backlash_um is None else backlash_um * UM
     return MeshElement(
         database.force_table(),
-        facts.teeth,
-        facts.base_radius,
-        facts.helix_hand * facts.base_helix_angle,
+        geometry.teeth,
+        geometry.base_radius,
+        geometry.helix_hand * geometry.base_helix_angle,
         damping,
         DAMPING_REACH * nominal,
-        coast=None if backlash is None else CoastFlank(backlash, 0.5 * (1.0 - backlash / facts.base_pitch)),
+        coast=None
+        if backlash is None
+        else CoastFlank(backlash, 0.5 * (1.0 - backlash / geometry.base_pitch)),
     )
 
 
-def _show_fmu(facts: dict[str, Any]) -> None:
+def _show_fmu(answer: dict[str, Any]) -> None:
     out = console()
     out.print(
-        f"{facts['positions']} positions x {facts['levels']} levels to {facts['largest_force_n']:.4g} N, "
-        f"{facts['misalignments']} misalignments x {facts['center_distances']} center distances"
+        f"{answer['positions']} positions x {answer['levels']} levels to {answer['largest_force_n']:.4g} N, "
+        f"{answer['misalignments']} misalignments x {answer['center_distances']} center distances"
     )
     out.print(
-        f"damping {facts['damping_n_s_per_m']:.4g} N s/m, in full from {facts['damping_reach_n']:.4g} N on"
+        f"damping {answer['damping_n_s_per_m']:.4g} N s/m, in full from {answer['damping_reach_n']:.4g} N on"
     )
-    print_written([Path(facts["file"])])
+    print_written([Path(answer["file"])])

@@ -29,26 +29,26 @@ def export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json: 
     document = read_rexs(rexs)
     unit = OpenedUnit.of(document)
     warn(left_out_warnings(unit.left_out))
-    facts: dict[str, Any] = {"file": str(output)}
+    answer: dict[str, Any] = {"file": str(output)}
     readable = file.is_file() and file.suffix not in (".toml", ".json")
     study = stored_study(file_attributes(file)) if readable else None
     if study is not None and study.name == "deflect":
         _refuse_point(point, tuple(point))
         result = read_stored(study, file)
         written = deflected(document, unit, result)
-        facts["left_out"] = left_out(unit, result)
+        answer["left_out"] = left_out(unit, result)
     else:
         _refuse_point(point, _ONLY_TORQUE)
         written = exported(document, unit.cases, [open_ste(file)], point["torque_n_m"])
     output.write_bytes(serialized(written, output.name))
-    facts["calculated"] = _calculated(written)
+    answer["calculated"] = _calculated(written)
     if as_json:
-        print_json(facts)
+        print_json(answer)
         return
-    for line in _lines(facts["calculated"]):
+    for line in _lines(answer["calculated"]):
         console().print(line, soft_wrap=True)
-    if facts.get("left_out"):
-        console().print(f"left out, no component of their own: {', '.join(facts['left_out'])}")
+    if answer.get("left_out"):
+        console().print(f"left out, no component of their own: {', '.join(answer['left_out'])}")
     print_written([output])
 
 
@@ -78,4 +78,4 @@ def _calculated(document: Document) -> dict[str, list[str]]:
         for entry in component.attributes:
             if entry.origin == CALCULATED:
                 names.setdefault(str(component.id), {})[entry.id] = None
-    return {number: list(found) for number, found in names.items()}
+    return {number: list(ids) for number, ids in names.items()}

@@ -23,14 +23,14 @@ def export_run(
         raise BadInput.of("--function", function, f"one of {allowed}")
     check_writable(output)
     run = read_run(file, "file")
-    facts: dict[str, object] = {"written": [str(output)]}
+    answer: dict[str, object] = {"written": [str(output)]}
     if output.suffix == TABLE:
         run.to_csv(output)
     else:
-        facts["functions"] = write_universal_file(run, output, function, *window)
+        answer["functions"] = write_universal_file(run, output, function, *window)
     if as_json:
-        print_json(facts)
+        print_json(answer)
         return
-    if "functions" in facts:
-        console().print(f"{facts['functions']} functions of dataset 58")
+    if "functions" in answer:
+        console().print(f"{answer['functions']} functions of dataset 58")
     print_written([output])

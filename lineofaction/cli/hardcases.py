@@ -11,7 +11,7 @@ from lineofaction.cli.output import check_writable, console, print_json, print_w
 from lineofaction.gearbox.problems import EXIT_FAILED, BadInput
 from lineofaction.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
 from lineofaction.hardcases.page import hardcases_page
-from lineofaction.report.document import write_whole
+from lineofaction.report.document import write_page
 
 
 def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) -> None:
@@ -25,7 +25,7 @@ def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) ->
             outcomes.append(outcome)
             report("hard scenes", len(outcomes) / len(scenes))
     if output is not None:
-        write_whole(hardcases_page(outcomes), output)
+        write_page(hardcases_page(outcomes), output)
     if as_json:
         print_json({"scenes": [outcome.to_json() for outcome in outcomes]})
     else:
@@ -49,13 +49,15 @@ def _chosen_scenes(only: Sequence[str]) -> list[HardScene]:
 
 def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     out, rows = console(), []
-    for each in outcomes:
-        bounded = [figure for figure in each.figures if figure.use is not None]
+    for outcome in outcomes:
+        bounded = [figure for figure in outcome.figures if figure.use is not None]
         closest = str(max(bounded, key=lambda figure: figure.use or 0.0)) if bounded else ""
-        facts = (each.scene.family, each.scene.name, "passed" if each.passed else "FAILED")
-        rows.append((*facts, f"{each.seconds:.2f}", f"{each.cpu_seconds:.2f}", closest))
-    words = ("family", "scene", "figure closest to its bound")
-    out.print(table((*words[:2], "", "time, s", "CPU, s", words[2]), rows, words=words))
+        cells = (outcome.scene.family, outcome.scene.name, "passed" if outcome.passed else "FAILED")
+        rows.append((*cells, f"{outcome.seconds:.2f}", f"{outcome.cpu_seconds:.2f}", closest))
+    text_columns = ("family", "scene", "figure closest to its bound")
+    out.print(
+        table((*text_columns[:2], "", "time, s", "CPU, s", text_columns[2]), rows, text_columns=text_columns)
+    )
     for outcome in outcomes:
         if not outcome.passed:
             out.print(f"{outcome.scene.name}: {outcome.failure}")

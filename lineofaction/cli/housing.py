@@ -15,7 +15,7 @@ from bounds import engineering
 from dynamics.errors import InputError, SolveError
 from dynamics.housings import step_solid
 from dynamics.solid_housing import MATERIALS
-from host.directories import whole_file
+from host.directories import atomic_file
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.placement import Placement
@@ -25,7 +25,7 @@ from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.housing_solid import PERPENDICULAR
-from lineofaction.gearbox.schemas.named_files import beside, read_text
+from lineofaction.gearbox.schemas.named_files import in_folder, read_text
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -87,16 +87,16 @@ def _check_known(name: str, value: str, known: Collection[str]) -> None:
 
 def _placement(placed: dict[str, str | None]) -> Placement | None:
     """Return where the file is said to stand; None: nothing is said."""
-    given = {field: _vector(NAMES[field], text) for field, text in placed.items() if text is not None}
-    if not given:
+    vectors = {field: _vector(NAMES[field], text) for field, text in placed.items() if text is not None}
+    if not vectors:
         return None
-    x, z = (given.get(f"{name}_axis", axis) for name, axis in (("x", np.eye(3)[0]), ("z", np.eye(3)[2])))
+    x, z = (vectors.get(f"{name}_axis", axis) for name, axis in (("x", np.eye(3)[0]), ("z", np.eye(3)[2])))
     for name, axis in (("x", x), ("z", z)):
         if not axis.any():
             raise BadInput.of(NAMES[f"{name}_axis"], axis.tolist(), "a direction: not all zero")
     if abs(x @ z) > PERPENDICULAR * np.linalg.norm(x) * np.linalg.norm(z):
         raise BadInput.of(NAMES["x_axis"], x.tolist(), f"perpendicular to the z axis, {z.tolist()}")
-    return Placement.of(x, z, given.get("origin_mm", np.zeros(3)))
+    return Placement.of(x, z, vectors.get("origin_mm", np.zeros(3)))
 
 
 def _vector(option: str, text: str) -> Any:
@@ -112,29 +112,31 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     A file of another content under its name is replaced where the housing that is replaced is alone of it.
     """
     target = output.parent / step.name
-    beside_it = target.exists() and target.samefile(step)
+    in_place = target.exists() and target.samefile(step)
     base = read_table(file)
     there = base.get("housings", [])
     others = [part for part in there if part.get("name") not in made.replaced]
     of_file = [part for part in there if part.get("step_file") == step.name]
     revised = output == file.path and of_file and not any(part in others for part in of_file)
-    free = beside_it or revised or not target.exists()
+    free = in_place or revised or not target.exists()
     if not free and target.read_bytes() != step.read_bytes():
         raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
     taken = {part.get("name") for part in others}
-    unused = (own for own in ("housing", *(f"housing {k}" for k in range(2, 102))) if own not in taken)
+    unused = (name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in taken)
     housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
-    find = beside(output.parent)
-    content = written_out(table, lambda own, field: step if own == step.name else find(own, field), READERS)
+    find = in_folder(output.parent)
+    content = written_out(
+        table, lambda name, field: step if name == step.name else find(name, field), READERS
+    )
     validated(SceneInput, content)
     text = _text(file, output, table, housing)
-    if not beside_it:  # first: a scene names no file that is missing
-        with whole_file(target) as draft:
+    if not in_place:  # first: a scene names no file that is missing
+        with atomic_file(target) as draft:
             shutil.copyfile(step, draft)
-    with whole_file(output) as draft:
+    with atomic_file(output) as draft:
         draft.write_text(text, encoding="utf-8")
-    return [output] if beside_it else [output, target]
+    return [output] if in_place else [output, target]
 
 
 def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[str, Any]) -> str:
@@ -144,9 +146,9 @@ def _text(file: InputFile, output: Path, table: dict[str, Any], housing: dict[st
     """
     if output.suffix == ".json":
         return json.dumps(table, indent=1) + "\n"
-    whole = read_text(file.path, str(file.path))
-    for kept in (whole, whole.rpartition("[[housings]]")[0]):
-        text = f"{kept.rstrip()}\n\n{toml_text({'housings': [housing]})}"
+    text_of_file = read_text(file.path, str(file.path))
+    for base in (text_of_file, text_of_file.rpartition("[[housings]]")[0]):
+        text = f"{base.rstrip()}\n\n{toml_text({'housings': [housing]})}"
         with suppress(BadInput):
             if toml_table(text, str(file.path)) == table:
                 return text
@@ -183,5 +185,7 @@ def _row(name: str, made: StepHousing) -> tuple[str, ...]:
 
 def _as_json(made: StepHousing) -> dict[str, Any]:
     stand = made.stand
-    found = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.left_out)}
-    return {"housing": made.fields} | found | {"foot_faces": stand.faces, "foot_area_mm2": stand.area / MM**2}
+    figures = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.left_out)}
+    return (
+        {"housing": made.fields} | figures | {"foot_faces": stand.faces, "foot_area_mm2": stand.area / MM**2}
+    )

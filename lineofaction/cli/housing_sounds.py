@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.listen.run import (
     HeardRun,
     Receiver,
     SceneHousings,
-    heard_run,
+    received_run,
 )
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.run.view import RunView
@@ -38,9 +38,9 @@ def receiver_of(scene: Path | None, point: str, microphone: str) -> Receiver | N
     if scene is None and not point and not microphone:
         return None
     if scene is None or (point and microphone):
-        given = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
+        options = [name for name, value in (("--point", point), ("--microphone", microphone)) if value]
         bound = "given with --scene, one of --point and --microphone"
-        raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {given}.")
+        raise BadInput.of("--scene", None if scene is None else str(scene), bound, f"Given: {options}.")
     return Receiver(_position(microphone) if microphone else (), point)
 
 
@@ -65,27 +65,27 @@ def housing_sounds(
     if receiver.microphone_mm and announced:
         sounding = sum(part.has_surface for part in scene.housings)
         durations = (float(run.time[-1] - run.time[0]) for run in runs.values())
-        announce_cost("listen", [listening_cost(each, housings=sounding) for each in durations])
+        announce_cost("listen", [listening_cost(duration, housings=sounding) for duration in durations])
     sounds: list[RunSound] = []
     remarks: list[str] = []
     with progress_bar() as report:
         bodies = housings_in(scene, cache_home(), folder, report)
         housings = SceneHousings.of(HousedScene(scene, bodies), Means(cache_home(), report))
-        by_name = {name: _heard(name, run, housings, receiver) for name, run in runs.items()}
-    for name, heard in by_name.items():
-        warn(heard.warnings)
-        sound = RunSound(name, heard.recording)
-        if heard.figures is not None:  # of a sound pressure, not of a velocity
-            facts = {"sound": figures_of(SoundPressure, heard.figures)}
-            sound = replace(sound, facts=facts, cells=_cells(heard.figures))
+        by_name = {name: _run_sound(name, run, housings, receiver) for name, run in runs.items()}
+    for name, audio in by_name.items():
+        warn(audio.warnings)
+        sound = RunSound(name, audio.recording)
+        if audio.figures is not None:  # of a sound pressure, not of a velocity
+            figures = {"sound": figures_of(SoundPressure, audio.figures)}
+            sound = replace(sound, figures=figures, cells=_cells(audio.figures))
         sounds.append(sound)
-        remarks += heard.remarks
+        remarks += audio.remarks
     return sounds, "; ".join(dict.fromkeys(remarks))
 
 
-def _heard(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
+def _run_sound(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
     try:
-        return heard_run(name, run, housings, receiver)
+        return received_run(name, run, housings, receiver)
     except BadInput as error:
         raise error.within(name) from None
 

@@ -33,22 +33,22 @@ class JobTables:
         """Upgrade, and tell from which schema to which."""
         before = self._schema.revision()
         self._schema.upgrade()
-        facts: Json = {"database": self._name, "before": before, "schema": REVISIONS[-1]}
-        self._tell(facts, f"{before or 'no tables'} -> {REVISIONS[-1]}")
+        answer: Json = {"database": self._name, "before": before, "schema": REVISIONS[-1]}
+        self._tell(answer, f"{before or 'no tables'} -> {REVISIONS[-1]}")
 
     def status(self) -> None:
         """Tell both schemas; fail if this program cannot use that of the database."""
         numbers, current = self._schema.numbers(), REVISIONS[-1]
-        facts: Json = {"database": self._name, "schema": numbers.newest, "program": current}
-        facts |= {"up_to_date": numbers.ours, "usable": numbers.usable}
+        answer: Json = {"database": self._name, "schema": numbers.newest, "program": current}
+        answer |= {"up_to_date": numbers.ours, "usable": numbers.usable}
         newer = f"newer, but this program ({current}) can use it"
         needed = newer if numbers.usable else f"this program needs {current}"
-        self._tell(facts, f"{numbers.newest or 'no tables'}, {'up to date' if numbers.ours else needed}")
+        self._tell(answer, f"{numbers.newest or 'no tables'}, {'up to date' if numbers.ours else needed}")
         if not numbers.usable:
             raise typer.Exit(EXIT_FAILED)
 
-    def _tell(self, facts: Json, state: str) -> None:
+    def _tell(self, answer: Json, state: str) -> None:
         if self._as_json:
-            print_json(facts)
+            print_json(answer)
         else:
             typer.echo(f"{self._name}: {state}")

@@ -41,8 +41,8 @@ class Keys:
         """Print names, rights, limits and ends."""
         keys = self._file.read()
         if self._as_json:
-            facts = [{k: v for k, v in asdict(key).items() if k != "sha256"} for key in keys]
-            print_json({"file": str(self._file.path), "keys": facts})
+            rows = [{k: v for k, v in asdict(key).items() if k != "sha256"} for key in keys]
+            print_json({"file": str(self._file.path), "keys": rows})
             return
         titles = ["name", "project", "scopes", "created", "expires", "limits"]
         console().print(table(titles, [_row(key) for key in keys], f"Keys in {self._file.path}"))

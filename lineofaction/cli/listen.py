@@ -13,7 +13,7 @@ from lineofaction.cli.run_sounds import RunSound, bearing_sounds
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import SOUND, run_in
 from lineofaction.gearbox.studies.listen.run import (
-    recording_facts,
+    recording_metadata,
 )
 from lineofaction.report.comparison.compare import named_files
 from lineofaction.report.document import read_run
@@ -49,7 +49,7 @@ def run_listen(
         path.write_bytes(wav_file(sound.recording, scale))
     if as_json:
         listed = [
-            {"file": str(path), **recording_facts(sound.recording), **sound.facts}
+            {"file": str(path), **recording_metadata(sound.recording), **sound.figures}
             for path, sound in zip(paths, sounds, strict=True)
         ]
         print_json({"full_scale": scale, "remark": remark, "files": listed})
@@ -93,7 +93,7 @@ def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
         for sound in sounds
     ]
     columns = ["run", f"rms, {unit}", "s", *more]
-    out.print(table(columns, rows, words=("run", *more[-1:])))
+    out.print(table(columns, rows, text_columns=("run", *more[-1:])))
     for quantity in dict.fromkeys(sound.recording.quantity for sound in sounds):
         out.print(quantity, soft_wrap=True)
     out.print(f"full scale: {number(scale)} {unit}; {remark}", soft_wrap=True)

@@ -45,15 +45,15 @@ def run_measured(
         text = read_text(sheet, str(sheet))
     except BadInput as error:
         raise error.within(FIELD) from None
-    changed, found = measured_case(case, text, str(sheet), of)
-    warn(left_out_warnings(found.left_out, "case"))
+    changed, gear = measured_case(case, text, str(sheet), of)
+    warn(left_out_warnings(gear.left_out, "case"))
     written = [] if output is None else [output]
     if output is not None:
         output.write_text(toml_text(case_json(changed)), encoding="utf-8")
     if as_json:
-        print_json(_as_json(found, written))
+        print_json(_as_json(gear, written))
         return
-    _show(found)
+    _show(gear)
     print_written(written)
 
 
@@ -65,34 +65,39 @@ def _write(output: Path | None, text: str) -> None:
         print_written([output])
 
 
-def _show(found: MeasuredGear) -> None:
+def _show(gear: MeasuredGear) -> None:
     out = console()
-    if found.splits:
+    if gear.splits:
         head = ("tooth", "trace", "f_H, µm", "f_f, µm", "over, mm", "cut-off, mm")
         rows = [
-            (str(tooth), trace, *_figures(split)) for (tooth, trace), split in sorted(found.splits.items())
+            (str(tooth), trace, *_figures(split)) for (tooth, trace), split in sorted(gear.splits.items())
         ]
         out.print(table(head, rows, "Slope and form, Gaussian filter (ISO 16610-21)", ("trace",)))
-    lines = [(fate, str(count)) for fate, count in found.account.items() if count]
+    lines = [(fate, str(count)) for fate, count in gear.account.items() if count]
     out.print(table(("lines", "number"), lines, "Every line of the sheet", ("lines",)))
 
 
 def _figures(split: Split) -> tuple[str, ...]:
-    values = split.slope / UM, split.form / UM, (split.place[-1] - split.place[0]) / MM, split.cutoff / MM
+    values = (
+        split.slope / UM,
+        split.form / UM,
+        (split.coordinate[-1] - split.coordinate[0]) / MM,
+        split.cutoff / MM,
+    )
     return tuple(engineering(float(value), 3) for value in values)
 
 
-def _as_json(found: MeasuredGear, written: list[Path]) -> Json:
+def _as_json(gear: MeasuredGear, written: list[Path]) -> Json:
     traces = [
         {
             "tooth": tooth,
             "trace": trace,
             "slope_um": split.slope / UM,
             "form_um": split.form / UM,
-            "length_mm": float(split.place[-1] - split.place[0]) / MM,
+            "length_mm": float(split.coordinate[-1] - split.coordinate[0]) / MM,
             "cutoff_mm": split.cutoff / MM,
         }
-        for (tooth, trace), split in sorted(found.splits.items())
+        for (tooth, trace), split in sorted(gear.splits.items())
     ]
     files = [str(path) for path in written]
-    return {"lines": dict(found.account), "traces": traces, "fields": dict(found.fields), "written": files}
+    return {"lines": dict(gear.account), "traces": traces, "fields": dict(gear.fields), "written": files}

@@ -40,8 +40,10 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
     """Write or print the file of the one kind that was named; a helical pair if none was."""
     named = [kind for kind, chosen in kinds.items() if chosen]
     if len(named) > 1:
-        given = " ".join(f"--{kind}" for kind in named)
-        raise BadInput.of("kind", given, f"one of {', '.join(f'--{kind}' for kind in KINDS)}", "Choose one.")
+        options = " ".join(f"--{kind}" for kind in named)
+        raise BadInput.of(
+            "kind", options, f"one of {', '.join(f'--{kind}' for kind in KINDS)}", "Choose one."
+        )
     if output is not None:
         if output.suffix != ".toml":
             raise BadInput.of("output", str(output), "a file ending in .toml")

@@ -70,10 +70,10 @@ def _show_unit(unit: OpenedUnit, counts: Counter[str], written: list[Path]) -> N
         gears = f"gears {case.driver} and {case.driven}, {case.center_distance * 1e3:.6g} mm"
         out.print(f"stage {case.stage}{others}: {case.name}.toml, {gears}")
     for load in unit.load_cases:
-        words = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
+        point = f"{load.torque_n_m:g} N m at {load.speed_rpm:g} rpm, {load.direction}, share {load.share:g}"
         others = "".join(
             f", {force['name']} {force['force_n']} N and {force['moment_n_m']} N m in x, y, z"
             for force in load.forces
         )
-        out.print(f"{load.name}: {words}{others}", soft_wrap=True)
+        out.print(f"{load.name}: {point}{others}", soft_wrap=True)
     print_written(written)

@@ -32,13 +32,13 @@ from lineofaction.gearbox.problems import BadInput
 from model_studies.progress import silent, stage_name
 
 if TYPE_CHECKING:
-    from lineofaction.report.drawing.figure import Table as Shown
+    from lineofaction.report.drawing.figure import Table as Drawn
     from lineofaction.report.drawing.page import Headline
 
 Report = Callable[[str, float], None]
 
 _MAX_HEADLINES = 2
-FOUND = "bold"
+EMPHASIS = "bold"
 """Style of the line that says what was found."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
 _WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
@@ -50,9 +50,9 @@ _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
 """A number: what is before its decimal point, its decimals with its unit, and its error."""
 
 
-def print_json(facts: dict[str, Any]) -> None:
+def print_json(answer: dict[str, Any]) -> None:
     """Print one JSON object, with what the verb warns of; a number that is none is an error, never null."""
-    sys.stdout.write(json.dumps({**facts, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
+    sys.stdout.write(json.dumps({**answer, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
@@ -70,7 +70,7 @@ class _Terminal(Console):
     """Breaks sentences between words."""
 
     def print(self, *objects: Any, soft_wrap: bool | None = None, **options: Any) -> None:
-        broken = (in_lines(words, self.file) for words in objects) if soft_wrap else objects
+        broken = (in_lines(text, self.file) for text in objects) if soft_wrap else objects
         super().print(*broken, soft_wrap=soft_wrap, **options)
 
 
@@ -98,7 +98,7 @@ class _Column:
     text: bool
 
     @property
-    def whole(self) -> int:
+    def full_width(self) -> int:
         """Width in which nothing wraps."""
         return max(len(line) for part in (self.head, *self.cells) for line in part.split("\n"))
 
@@ -106,8 +106,8 @@ class _Column:
         """Return the width in which no word of the head and no cell is cut; a wider text may wrap."""
         parts = (self.head, *self.cells) if self.text else (self.head,)
         longest = max(len(word) for part in parts for word in in_lines(part, 1).split("\n"))
-        own = replace(self, head="").whole
-        return max(longest, min(own, widest) if self.text else own)
+        content = replace(self, head="").full_width
+        return max(longest, min(content, widest) if self.text else content)
 
     def lines(self, part: str, width: int) -> list[str]:
         """Return the head or a cell as lines of a width."""
@@ -120,44 +120,44 @@ _Block = list[tuple[_Column, int]]
 
 
 def table(
-    columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
+    columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", text_columns: Sequence[str] = ()
 ) -> Group:
-    """Return a table of numbers, one decimal point below another; columns of `words` are aligned left.
+    """Return a table of numbers, one decimal point below another; columns of `text_columns` are aligned left.
 
     One that is wider than the terminal stands in blocks, each with the first columns of words, or the first
     one: nothing is cut within a word or a number. A long text in the last column stands below its row.
     """
-    width, shown = console().width, list[_Column]()
+    width, laid_out = console().width, list[_Column]()
     for k, name in enumerate(columns):
-        cells, text = [row[k] for row in rows], name in words
-        shown.append(_Column(name, cells if text else aligned(cells), text))
-    below = shown.pop() if _is_long(shown, width) else None
+        cells, text = [row[k] for row in rows], name in text_columns
+        laid_out.append(_Column(name, cells if text else aligned(cells), text))
+    below = laid_out.pop() if _is_long(laid_out, width) else None
     lines: list[Text | str] = [Text(title, "italic")] if title else []
-    for block in (blocks := _blocks(shown, width)):
+    for block in (blocks := _blocks(laid_out, width)):
         foot = below if block is blocks[-1] else None
-        head = _beside([own.lines(own.head, wide)[::-1] for own, wide in block])[::-1]
+        head = _side_by_side([column.lines(column.head, wide)[::-1] for column, wide in block])[::-1]
         head += [] if foot is None else [f"{_INDENT}{foot.head}"]
         lines += [*([] if block is blocks[0] else [""]), *(Text(line, "bold") for line in head)]
         for row in range(len(rows)):
-            lines += _beside([own.lines(own.cells[row], wide) for own, wide in block])
+            lines += _side_by_side([column.lines(column.cells[row], wide) for column, wide in block])
             if foot is not None:
-                told = in_lines(foot.cells[row], width - len(_INDENT))
-                lines += (f"{_INDENT}{line}" for line in told.split("\n"))
+                wrapped = in_lines(foot.cells[row], width - len(_INDENT))
+                lines += (f"{_INDENT}{line}" for line in wrapped.split("\n"))
     return Group(*lines)
 
 
-def _beside(cells: Sequence[list[str]]) -> list[str]:
+def _side_by_side(cells: Sequence[list[str]]) -> list[str]:
     """Return cells, each its lines, beside each other."""
     high = max(map(len, cells))
     filled = [[*lines, *[" " * len(lines[0])] * (high - len(lines))] for lines in cells]
     return [(" " * _GAP).join(parts).rstrip() for parts in zip(*filled, strict=True)]
 
 
-def _is_long(shown: Sequence[_Column], width: int) -> bool:
+def _is_long(columns: Sequence[_Column], width: int) -> bool:
     """Whether the last column is a text that would wrap into many lines beside the others."""
-    *others, last = shown
-    left = width - sum(own.whole + _GAP for own in others)
-    return bool(others) and last.text and last.whole > max(_WIDEST, _MAX_LINES * left)
+    *others, last = columns
+    left = width - sum(column.full_width + _GAP for column in others)
+    return bool(others) and last.text and last.full_width > max(_WIDEST, _MAX_LINES * left)
 
 
 def aligned(cells: Sequence[str]) -> list[str]:
@@ -171,14 +171,15 @@ def aligned(cells: Sequence[str]) -> list[str]:
     ]
 
 
-def _blocks(shown: Sequence[_Column], width: int) -> list[_Block]:
+def _blocks(columns: Sequence[_Column], width: int) -> list[_Block]:
     """Return the columns of each block: the keys, and as many others as there is room for.
 
     A text wraps where that saves a block, or where nothing else fits.
     """
-    keys = max(1, next((k for k, own in enumerate(shown) if not own.text), 1))
+    keys = max(1, next((k for k, column in enumerate(columns) if not column.text), 1))
     tried = [
-        _divided([(own, own.minimum(widest)) for own in shown], keys, width) for widest in (width, _WIDEST)
+        _divided([(column, column.minimum(widest)) for column in columns], keys, width)
+        for widest in (width, _WIDEST)
     ]
     blocks = min(tried, key=lambda blocks: (max(0, *(_wide(block) - width for block in blocks)), len(blocks)))
     return [_grown(block, width) for block in blocks]
@@ -201,9 +202,9 @@ def _grown(block: _Block, width: int) -> _Block:
     """Return the columns as wide as they are whole, as far as there is room."""
     room = max(width - _wide(block), 0)
     grown = []
-    for own, wide in block:
-        more = min(max(own.whole - wide, 0), room)
-        grown.append((own, wide + more))
+    for column, wide in block:
+        more = min(max(column.full_width - wide, 0), room)
+        grown.append((column, wide + more))
         room -= more
     return grown
 
@@ -214,10 +215,10 @@ def print_headlines(headlines: Sequence[Headline]) -> None:
     for headline in headlines[:_MAX_HEADLINES]:
         band = headline.remark if headline.remark.startswith("±") else f"({headline.remark})"
         line = f"{headline.name}: {headline.value} {band}".removesuffix(" ()")
-        out.print(line, soft_wrap=True, style=FOUND)
+        out.print(line, soft_wrap=True, style=EMPHASIS)
 
 
-def print_parts(parts: Iterable[Shown | str]) -> None:
+def print_parts(parts: Iterable[Drawn | str]) -> None:
     """Print tables, their columns of words to the left, and lines."""
     from lineofaction.report.drawing.page import numeric_columns  # noqa: PLC0415 (start-up time)
 
@@ -226,8 +227,10 @@ def print_parts(parts: Iterable[Shown | str]) -> None:
         if isinstance(part, str):
             out.print(part, soft_wrap=True)
         else:
-            words = [name for name, right in zip(part.head, numeric_columns(part), strict=True) if not right]
-            out.print(table(part.head, part.rows, part.caption, words))
+            text_columns = [
+                name for name, right in zip(part.head, numeric_columns(part), strict=True) if not right
+            ]
+            out.print(table(part.head, part.rows, part.caption, text_columns))
 
 
 def print_written(files: Sequence[Path]) -> None:

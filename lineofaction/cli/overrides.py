@@ -45,14 +45,14 @@ SceneFile = Annotated[InputFile, file_argument("Scene file", "SCENE")]
 
 def _options(subject: str) -> list[inspect.Parameter]:
     option = typer.Option("--set", metavar="PATH=VALUE", help=_SET)
-    shown = [keyword("overrides", Annotated[list[str] | None, option], None)]
+    options = [keyword("overrides", Annotated[list[str] | None, option], None)]
     if subject != "scene":
-        shown += [
+        options += [
             keyword("level", Annotated[str | None, typer.Option(help=_LEVEL)], None),
             keyword("tolerance", Annotated[float | None, typer.Option(help=_TOLERANCE)], None),
             keyword("torque", Annotated[str | None, typer.Option(help=_TORQUE)], None),
         ]
-    return shown
+    return options
 
 
 def overridable(argument: str, subject: str = "case") -> Callable[[Callable[..., R]], Callable[..., R]]:
@@ -62,19 +62,23 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
     """
 
     def decorate(verb: Callable[..., R]) -> Callable[..., R]:
-        own = parameters_of(verb)
-        taken = {spelling for option in own for spelling in _spellings(option)}
+        parameters = parameters_of(verb)
+        taken = {spelling for option in parameters for spelling in _spellings(option)}
         added = [option for option in _options(subject) if not taken & set(_spellings(option))]
 
         @functools.wraps(verb)
         def run(**options: Any) -> R:
             typed = {option.name: options.pop(option.name, None) for option in added}
-            from lineofaction.cli.output import FOUND, console  # noqa: PLC0415 (start-up time)
+            from lineofaction.cli.output import EMPHASIS, console  # noqa: PLC0415 (start-up time)
             from lineofaction.gearbox.project import files_of, only  # noqa: PLC0415 (start-up time)
 
             named, overrides = options[argument], _overrides(typed)
             several = isinstance(named, list)
-            files = [own for file in (named if several else [named]) for own in files_of(file, subject)]
+            files = [
+                parameters
+                for file in (named if several else [named])
+                for parameters in files_of(file, subject)
+            ]
             read = [replace(file, overrides=overrides) for file in files]
             if several:
                 return verb(**options | {argument: read})
@@ -82,19 +86,21 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
                 only(read, named.path, subject)
             for file in read:  # of a folder each of its cases
                 if file.part:
-                    console().print(f"\n{file.part}", style=FOUND)
+                    console().print(f"\n{file.part}", style=EMPHASIS)
                 answer = verb(**options | {argument: file})
             return answer
 
-        return with_parameters(run, [*own, *added])
+        return with_parameters(run, [*parameters, *added])
 
     return decorate
 
 
 def _spellings(option: inspect.Parameter) -> list[str]:
     """Return how an option is typed; the first of its names stands where a default would."""
-    facts = [fact for fact in getattr(option.annotation, "__metadata__", ()) if isinstance(fact, OptionInfo)]
-    names = [name for fact in facts for name in (fact.default, *(fact.param_decls or ()))]
+    declared = [
+        info for info in getattr(option.annotation, "__metadata__", ()) if isinstance(info, OptionInfo)
+    ]
+    names = [name for info in declared for name in (info.default, *(info.param_decls or ()))]
     spelled = [name for name in names if isinstance(name, str) and name.startswith("-")]
     return spelled or [f"--{option.name.replace('_', '-')}"]
 

@@ -27,10 +27,10 @@ from lineofaction.report.binding import bound
 from lineofaction.report.document import (
     Inputs,
     nominal_force,
-    page_beside,
     page_of,
+    page_with_database,
     read_inputs,
-    write_whole,
+    write_page,
 )
 from lineofaction.report.run.view import RunView
 from lineofaction.report.ste.curves import aligned, headline_load
@@ -61,7 +61,7 @@ def run_report(
     """Write page and pictures; of a folder with several cases what each says stands side by side."""
     projects = [name for name in named if name.is_dir()]
     block = options.about or next(filter(None, map(about, projects)), None)
-    told = None if block is None else about_of(block)
+    title_block = None if block is None else about_of(block)
     by_part = _by_part(named)
     output = page or next(iter(projects), Path()) / "report.html"
     for file in (file for files in by_part.values() for file in files):
@@ -74,13 +74,13 @@ def run_report(
         warn(warning for file in files for warning in stamped(file))
         with_table = flank and (read.database is not None or len(by_part) == 1)
         pages[part] = page_of(_with_flanks(read, quiet=as_json) if with_table else read)
-    whole = titled(bound(pages), told)
-    written = write_whole(whole, output, options.images, still_only=options.still)
+    report = titled(bound(pages), title_block)
+    written = write_page(report, output, options.images, still_only=options.still)
     if as_json:
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
-    for words in (*whole.alarms, *(whole.block.verdicts if whole.block else ())):
-        console().print(words, soft_wrap=True)
+    for line in (*report.alarms, *(report.block.verdicts if report.block else ())):
+        console().print(line, soft_wrap=True)
     for path in written:
         console().print(f"written to {path}", soft_wrap=True)
 
@@ -95,10 +95,10 @@ def _by_part(named: Sequence[Path]) -> dict[str, list[Path]]:
 def _with_flanks(read: Inputs, *, quiet: bool) -> Inputs:
     """Return inputs with the flank results that belong to their table."""
     with progress_bar() as report:
-        found = _flanks(read, report)
+        flank_result = _flanks(read, report)
     if not quiet:
-        console().print(f"flank results {engineering(found.metadata.receipt['cpu_seconds'], 3)} CPU s")
-    flanks = page_beside(STUDIES["flank"], found, read.database)
+        console().print(f"flank results {engineering(flank_result.metadata.receipt['cpu_seconds'], 3)} CPU s")
+    flanks = page_with_database(STUDIES["flank"], flank_result, read.database)
     return replace(read, pages={**read.pages, "flanks": flanks})
 
 
@@ -126,7 +126,7 @@ def _flanks(read: Inputs, report: Report) -> LoadDistribution:
         misalignment_um=1e6 * misalignment,
         center_distance_change_mm=1e3 * change,
     )
-    found: LoadDistribution = STUDIES["flank"].run.compute(
+    result: LoadDistribution = STUDIES["flank"].run.compute(
         CheckedCase(case_at(case, point)), point, Means(cache_home(), report)
     )
-    return found
+    return result

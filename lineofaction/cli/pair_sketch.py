@@ -24,11 +24,11 @@ _RIM = 3.0
 
 @dataclass(frozen=True)
 class GearSketch:
-    """A gear, in mm and um; `held` is the bore, of a ring gear the outside of the rim."""
+    """A gear, in mm and um; `bore` is the diameter of the bore, of a ring gear that of the rim."""
 
     teeth: int
     shift: float
-    held: float
+    bore: float
     allowance: float
 
 

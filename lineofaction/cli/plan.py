@@ -7,7 +7,7 @@ from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from host.directories import cache_home
 from lineofaction.cli.analyze import show_effects
 from lineofaction.cli.output import (
-    FOUND,
+    EMPHASIS,
     console,
     print_json,
     table,
@@ -35,12 +35,12 @@ def _show_plan(plan: RunPlan) -> None:
     memory = max(entry.cost.memory_bytes for entry in plan.passes)
     size = f"{engineering(seconds, 2)} CPU s, {engineering(memory / 2**30, 2)} GiB"
     meshes = ", then ".join(_mesh(entry, plan.chosen) for entry in plan.passes)
-    out.print(f"{meshes}: {size}; nothing is computed yet", style=FOUND)
+    out.print(f"{meshes}: {size}; nothing is computed yet", style=EMPHASIS)
     out.print(f"model {model}; positions {positions}; mesh {plan.choice.option.name}: {plan.choice.reason}")
     if plan.conflict or not plan.choice.met:
         out.print(plan.conflict or f"cannot be had: {plan.choice.reason}")
     if bias := plan.chosen.error.bias:
-        out.print(bias.words, soft_wrap=True)
+        out.print(bias.text, soft_wrap=True)
     out.print()
     head = ["mesh", "CPU s", "GiB", "numerical", "plane", "method", "mean µm", "p-p µm"]
     rows = [

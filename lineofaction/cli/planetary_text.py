@@ -75,7 +75,7 @@ inertia = {carrier}
 name = "sun"
 frame = "carrier"
 length_mm = {length:g}
-diameter_mm = {stage.sun.pinion.held:g}
+diameter_mm = {stage.sun.pinion.bore:g}
 
 [[shafts]]
 name = "ring"
@@ -87,7 +87,7 @@ inertia = {none}
 name = "planet"
 frame = "carrier"
 length_mm = {length:g}
-diameter_mm = {stage.sun.wheel.held:g}
+diameter_mm = {stage.sun.wheel.bore:g}
 origin_mm = [{stage.sun.center_distance:.10g}, 0.0, 0.0]
 """
 
@@ -99,13 +99,13 @@ def _gears(stage: StageSketch, middle: float) -> str:
 name = "sun gear"
 shaft = "sun"
 position_mm = {middle:g}
-bore_diameter_mm = {stage.sun.pinion.held:g}
+bore_diameter_mm = {stage.sun.pinion.bore:g}
 
 [[gears]]
 name = "planet gear"
 shaft = "planet"
 position_mm = {middle:g}
-bore_diameter_mm = {stage.sun.wheel.held:g}
+bore_diameter_mm = {stage.sun.wheel.bore:g}
 
 [[gears]]
 name = "ring gear"

@@ -25,12 +25,12 @@ def run_jobs(
     head = ("job", "process", "state", "%", "left", "created (UTC)", "about")
     rows = [
         (
-            *(job.id, job.process, job.words, f"{job.progress}", job.time_left),
+            *(job.id, job.process, job.activity, f"{job.progress}", job.time_left),
             *(job.created[:19].replace("T", " "), job.title or job.subject),
         )
         for job in jobs
     ]
-    console().print(table(head, rows, words=("job", "process", "state", "created (UTC)", "about")))
+    console().print(table(head, rows, text_columns=("job", "process", "state", "created (UTC)", "about")))
 
 
 def run_dismiss(job: str, service: str, *, as_json: bool) -> None:

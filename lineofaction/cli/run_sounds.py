@@ -14,7 +14,7 @@ from lineofaction.gearbox.studies.listen.run import (
 )
 from lineofaction.report.drawing.figure import number, unit_of
 from lineofaction.report.run.levels import Loudest, loudest
-from lineofaction.report.run.sound import heard_runs
+from lineofaction.report.run.sound import run_signals
 from lineofaction.report.run.view import RunView
 
 FAINT = 1e-3
@@ -27,7 +27,7 @@ class RunSound:
 
     name: str
     recording: Recording
-    facts: Json = field(default_factory=dict)
+    figures: Json = field(default_factory=dict)
     """Plain JSON beside the recording's own."""
     cells: dict[str, str] = field(default_factory=dict)
     """What is printed in the columns of these names."""
@@ -36,13 +36,13 @@ class RunSound:
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
     """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
     sounds = []
-    for one in tuple(heard_runs(dict(runs), view)):
+    for one in tuple(run_signals(dict(runs), view)):
         recording, moment = one.recording(), loudest(one.run, one.signal)
-        facts: Json = {"loudest": None}
+        figures: Json = {"loudest": None}
         if moment is not None:
             orders = {str(order): value for order, value in moment.orders.items()}
-            facts = {"loudest": {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}}
-        sounds.append(RunSound(one.name, recording, facts, _moment_cells(moment, recording.unit)))
+            figures = {"loudest": {"time_s": moment.time, "rms": moment.overall, "orders_rms": orders}}
+        sounds.append(RunSound(one.name, recording, figures, _moment_cells(moment, recording.unit)))
     return sounds, NO_LOUDNESS
 
 

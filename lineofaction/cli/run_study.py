@@ -14,8 +14,8 @@ from bounds import engineering
 from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
+from lineofaction.cli.cached_tables import tabled_scene
 from lineofaction.cli.interrupts import until_interrupted
-from lineofaction.cli.kept_tables import tabled_scene
 from lineofaction.cli.output import (
     Report,
     check_writable,
@@ -49,7 +49,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import item_type, spelling_of
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
-from lineofaction.report.document import read_run, write_whole
+from lineofaction.report.document import read_run, write_page
 from lineofaction.report.document import write as write_result
 from lineofaction.report.drawing.marks import marked_page_of_case
 from lineofaction.report.presentation import presentation_of
@@ -100,8 +100,8 @@ def run_study(study: Study, options: Json) -> None:
     if study.several:
         result = study.run.joined(dict(zip(_names(study, files), results, strict=True)))
     warn(study.run.warnings(result) or ())
-    asked = read[0][0]
-    about = (asked.case if isinstance(asked, CheckedCase) else asked).report
+    source = read[0][0]
+    about = (source.case if isinstance(source, CheckedCase) else source).report
     _tell(study, (subjects[0][0], about), result, targets, options, remote_seconds)
     if interrupted:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
@@ -115,7 +115,7 @@ def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options:
     if not options["json"]:
         costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
         if study.run.tables and options.get("service") is None:
-            costs += [tables_cost(*each) for each in subjects if isinstance(each[0], SceneInput)]
+            costs += [tables_cost(*case) for case in subjects if isinstance(case[0], SceneInput)]
         announce_cost(study.name, costs)
     yield
 
@@ -163,8 +163,8 @@ def _fields(study: Study, options: Json) -> Json:
                 value = hashlib.file_digest(content, "sha256").hexdigest()
         elif value is not None and (kind := item_type(field)):
             option = spelling.option if spelling else f"--{name.replace('_', '-')}"
-            words = [part.strip() for part in value.split(",")]
-            value = number_list(option, value) if kind is float else words
+            parts = [part.strip() for part in value.split(",")]
+            value = number_list(option, value) if kind is float else parts
         if value is not None:
             fields[name] = value
     return fields
@@ -226,11 +226,11 @@ def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str,
     """Return what writes a result, by the ending of the file; `subject` is what was studied."""
     run, page = study.run, presentation_of(study)
 
-    def write_page(result: Any, file: Path) -> None:
+    def write_result_page(result: Any, file: Path) -> None:
         records = {f"{study.name}.json": run.figures(result)}
-        marks, shown = _marks(subject), replace(page.page(result), records=records)
-        whole = titled(shown if marks is None else marked_page_of_case(shown, marks), about)
-        write_whole(whole, file, warnings=messages())
+        marks, drawn = _marks(subject), replace(page.page(result), records=records)
+        complete = titled(drawn if marks is None else marked_page_of_case(drawn, marks), about)
+        write_page(complete, file, warnings=messages())
 
     further = {
         ending: lambda result, file, write=write: write(result, subject, file)
@@ -238,7 +238,7 @@ def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str,
     }
     return {
         **dict.fromkeys((".nc", ".json", ".png"), write_result),
-        **dict.fromkeys((".html", ".pdf"), write_page),
+        **dict.fromkeys((".html", ".pdf"), write_result_page),
         ".csv": lambda result, file: file.write_text(_csv(study, result), encoding="utf-8"),
         **further,
     }
@@ -258,10 +258,10 @@ def _csv(study: Study, result: Any) -> str:
 
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
     """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
-    shown = presentation_of(study)
-    parts = list(shown.text(result))
+    presentation = presentation_of(study)
+    parts = list(presentation.text(result))
     said = {part for part in parts[:_MAX_SAID] if isinstance(part, str)}
-    headlines = shown.page(result).headlines
+    headlines = presentation.page(result).headlines
     print_headlines(
         [line for line in headlines if said.isdisjoint((line.value, f"{line.name}: {line.value}"))]
     )

@@ -21,8 +21,8 @@ def pair_scene_text(pair: PairSketch, head: str) -> str:
     length = 4.0 * pair.width
     sides = (("input", "pinion", pair.pinion, 0.0), ("output", "wheel", pair.wheel, pair.center_distance))
     shafts = "".join(
-        _shaft(name, length, gear.held, origin)
-        + _gear(tooth, name, 0.5 * length, gear.held)
+        _shaft(name, length, gear.bore, origin)
+        + _gear(tooth, name, 0.5 * length, gear.bore)
         + _bearings(name, length)
         for name, tooth, gear, origin in sides
     )

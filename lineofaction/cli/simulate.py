@@ -9,8 +9,8 @@ from typing import Any
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
+from lineofaction.cli.cached_tables import tabled_scene
 from lineofaction.cli.interrupts import until_interrupted
-from lineofaction.cli.kept_tables import tabled_scene
 from lineofaction.cli.output import (
     Report,
     check_netcdf_output,
@@ -32,7 +32,7 @@ from lineofaction.gearbox.project import RUN
 from lineofaction.gearbox.result_figures import run_json
 from lineofaction.gearbox.result_files import stamp, stamp_scene
 from lineofaction.gearbox.stages import staged
-from lineofaction.gearbox.studies.excitations import facts_of_scene
+from lineofaction.gearbox.studies.excitations import scene_metadata
 from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import effect_text
@@ -61,12 +61,12 @@ def run_simulate(
         tabled = tabled_scene(scene, folder, service, report, workers)
         _run(tabled.scene, output, report, resume=resume)
     stamp(output, warnings_so_far())
-    stamp_scene(output, facts_of_scene(tabled))
-    facts = {"file": str(output), **run_json(output)}
+    stamp_scene(output, scene_metadata(tabled))
+    answer = {"file": str(output), **run_json(output)}
     if as_json:
-        print_json(facts)
+        print_json(answer)
     else:
-        _show(facts)
+        _show(answer)
 
 
 def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
@@ -91,18 +91,18 @@ def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
     with until_interrupted() as cancel:
         status = simulate_to_file(scene, output, resume=resume, progress=staged(report), cancel=cancel)
     if status is RunStatus.CANCELLED:
-        kept = f"What was computed is in {output}; --resume continues it."
-        raise KeyboardInterrupt(f"interrupted. {kept}")
+        remedy = f"What was computed is in {output}; --resume continues it."
+        raise KeyboardInterrupt(f"interrupted. {remedy}")
     if not status.usable:
         ended = status.name.lower().replace("_", " ")
         raise JobFailed(f"The run ended early: {ended}. What was computed is in {output}.")
 
 
-def _show(facts: dict[str, Any]) -> None:
+def _show(answer: dict[str, Any]) -> None:
     out = console()
-    attributes, sizes = facts["attributes"], facts["dimensions"]
+    attributes, sizes = answer["attributes"], answer["dimensions"]
     status = str(attributes["status"]).lower().replace("_", " ")
     out.print(f"run {status}: {sizes['time']} samples")
     print_headlines(_run_headlines(attributes["receipt"].get("peaks", {})))
     print_parts((*effect_text(attributes.get("effect_ledger", {})), *run_lines(attributes)))
-    print_written([Path(str(facts["file"]))])
+    print_written([Path(str(answer["file"]))])

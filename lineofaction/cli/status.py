@@ -41,13 +41,13 @@ def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, Stud
     costs: dict[str, StudyCost | BadInput] = {}
     for state in states:
         try:
-            own = None if state.source is None else _result_cost(state.verb, state.source, project)
+            cost = None if state.source is None else _result_cost(state.verb, state.source, project)
         except BadInput as refused:
             if state.state != "fresh":
                 costs[state.name] = refused
             continue
-        if own is not None:
-            costs[state.name] = own
+        if cost is not None:
+            costs[state.name] = cost
     return costs
 
 
@@ -88,19 +88,24 @@ def run_status(folder: Path, *, as_json: bool) -> None:
     tables, costs = scene_tables_cost(folder).seconds, result_costs(states, folder)
     seconds = {name: cost.seconds for name, cost in costs.items() if isinstance(cost, StudyCost)}
     refused = {name: _reason(cost) for name, cost in costs.items() if isinstance(cost, BadInput)}
-    due = [own.name for own in states if own.state != "fresh"]
-    whole = tables + sum(seconds.get(name, 0.0) for name in due)
+    due = [result.name for result in states if result.state != "fresh"]
+    total = tables + sum(seconds.get(name, 0.0) for name in due)
     if as_json:
-        facts = [
-            {"name": own.name, "verb": own.verb, "state": own.state, "cpu_seconds": seconds.get(own.name)}
-            | ({"refused": refused[own.name]} if own.name in refused else {})
-            for own in states
+        entries = [
+            {
+                "name": result.name,
+                "verb": result.verb,
+                "state": result.state,
+                "cpu_seconds": seconds.get(result.name),
+            }
+            | ({"refused": refused[result.name]} if result.name in refused else {})
+            for result in states
         ]
-        known = {"tables_cpu_seconds": tables, "due_cpu_seconds": whole}
+        known = {"tables_cpu_seconds": tables, "due_cpu_seconds": total}
         known["not_predicted"] = sum(name not in seconds for name in due)
-        print_json({"results": facts, **known, "unread": unread})
+        print_json({"results": entries, **known, "unread": unread})
         return
-    counts = Counter[str](own.state for own in states)
+    counts = Counter[str](result.state for result in states)
     out = console()
     out.print(", ".join(f"{counts[state]} {state}" for state in _STATES))
     if due:
@@ -108,19 +113,19 @@ def run_status(folder: Path, *, as_json: bool) -> None:
         kinds["refused"] = sum(name in refused for name in due)
         beyond = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
         rest = f", without {beyond}" if beyond else ""
-        out.print(f"stale or missing: about {engineering(whole, 2)} CPU s{rest}")
+        out.print(f"stale or missing: about {engineering(total, 2)} CPU s{rest}")
     if tables:
-        words = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
-        out.print(words)
-    shown = {name: engineering(cost, 2) for name, cost in seconds.items()}
-    shown |= dict.fromkeys(refused, "refused")
+        line = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
+        out.print(line)
+    predictions = {name: engineering(cost, 2) for name, cost in seconds.items()}
+    predictions |= dict.fromkeys(refused, "refused")
     rows = [
-        [own.state, own.name, f"loa {own.verb}", shown.get(own.name, "-")]
-        for own in sorted(states, key=lambda own: _STATES.index(own.state))
+        [result.state, result.name, f"loa {result.verb}", predictions.get(result.name, "-")]
+        for result in sorted(states, key=lambda result: _STATES.index(result.state))
     ]
-    out.print(table([*_HEAD, "CPU s"], rows, words=_HEAD))
+    out.print(table([*_HEAD, "CPU s"], rows, text_columns=_HEAD))
     out.print("CPU s as predicted for the verb without options; - not predicted")
-    verbs = {own.name: own.verb for own in states}
+    verbs = {result.name: result.verb for result in states}
     for line in [*_refusals({name: verbs[name] for name in refused}, refused), *unread]:
         out.print(line)
 
@@ -133,6 +138,6 @@ def _reason(error: BadInput) -> str:
 def _refusals(verbs: Mapping[str, str], reasons: Mapping[str, str]) -> Iterator[str]:
     """Yield each reason once, after the verbs that refuse for it."""
     for reason in dict.fromkeys(reasons.values()):
-        own = list(dict.fromkeys(verbs[name] for name in reasons if reasons[name] == reason))
-        named = ", ".join(own) if len(own) <= _NAMED else f"{own[0]} and {len(own) - 1} more"
+        names = list(dict.fromkeys(verbs[name] for name in reasons if reasons[name] == reason))
+        named = ", ".join(names) if len(names) <= _NAMED else f"{names[0]} and {len(names) - 1} more"
         yield f"refused by loa {named}: {reason}"

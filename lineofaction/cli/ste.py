@@ -12,15 +12,15 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
-from lineofaction.cli.output import FOUND, aligned, console, csv_text, print_json, table
+from lineofaction.cli.output import EMPHASIS, aligned, console, csv_text, print_json, table
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.answers import curve_json, teeth_words
+from lineofaction.gearbox.convert.answers import curve_json, teeth_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import only, tables_in
 from lineofaction.gearbox.schemas import Case, read_model
 
 _FARTHEST = 1e6
-_SHOWN_ORDERS = 8
+_MAX_ORDERS = 8
 _NAME, _DECIMALS, _BAR, _SPARKS = 17, 4, 16, 24
 _BLOCKS = "▁▂▃▄▅▆▇█"
 _Line = tuple[str, float, float | None]
@@ -36,12 +36,12 @@ def run_ste(
     as_json: bool,
 ) -> None:
     """Read, evaluate, print each table; `point` holds the options of load and alignment by their names."""
-    tables = tables_in(named, _kept_table)
+    tables = tables_in(named, _cached_table)
     if as_csv or as_json:
         tables = {"": only([*filter(None, tables.values())], named, "table")}
     for name, file in tables.items():
         if len(tables) > 1:
-            console().print(f"\n{name}", style=FOUND)
+            console().print(f"\n{name}", style=EMPHASIS)
         if file is None:
             console().print(f"no table: make it with loa analyze {named}", soft_wrap=True)
             continue
@@ -49,10 +49,10 @@ def run_ste(
         _show(file, point, at, following, as_table=as_table, as_csv=as_csv, as_json=as_json)
 
 
-def _kept_table(case: Path) -> Path:
-    from lineofaction.cli.kept_tables import KeptTables  # noqa: PLC0415 (the base reads tables)
+def _cached_table(case: Path) -> Path:
+    from lineofaction.cli.cached_tables import CachedTables  # noqa: PLC0415 (the base reads tables)
 
-    return KeptTables.file(read_model(Case, case))
+    return CachedTables.file(read_model(Case, case))
 
 
 def _show(
@@ -76,7 +76,7 @@ def _show(
         console().print(table(_columns(curve), [_typed(row) for row in _rows(curve)]))
     else:
         for number, line in enumerate(_answer(database, following, curve)):
-            console().print(line, soft_wrap=True, style=None if number else FOUND)
+            console().print(line, soft_wrap=True, style=None if number else EMPHASIS)
 
 
 def open_ste(file: Path) -> SteDatabase:
@@ -100,8 +100,8 @@ def _arguments(point: dict[str, float | None], database: SteDatabase) -> dict[st
     for name, value in point.items():
         if value is not None and not math.isfinite(value):
             raise BadInput.of(f"--{name.replace('_', '-')}", value, "a finite number")
-    place = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
-    return {"torque_n_m": torque, "force_n": force, **place}
+    alignment = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
+    return {"torque_n_m": torque, "force_n": force, **alignment}
 
 
 def positions(text: str) -> list[float]:
@@ -142,18 +142,18 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
         ("peak to peak", *_with_error(curve, "peak_to_peak_um")),
     ]
     known, unknown = _orders(curve)
-    shown = (*figures, *known)
-    cells = aligned([_figure(value, error) for _, value, error in shown])
+    lines = (*figures, *known)
+    cells = aligned([_figure(value, error) for _, value, error in lines])
     width = max(map(len, cells))
     mean, ripple, *levels = (
-        f"  {name:<{_NAME}} {cell:>{width}}" for (name, *_), cell in zip(shown, cells, strict=True)
+        f"  {name:<{_NAME}} {cell:>{width}}" for (name, *_), cell in zip(lines, cells, strict=True)
     )
     largest = max((amplitude for _, amplitude, _ in known), default=1.0)
     yield mean.rstrip()
     yield f"{ripple}  {_sparkline(curve['ste_um'])}  two periods"
-    for words, line in zip(levels, known, strict=True):
+    for label, line in zip(levels, known, strict=True):
         level, bar = 20.0 * math.log10(line[1]), "█" * round(_BAR * line[1] / largest)
-        yield f"{words}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
+        yield f"{label}   {level:6.1f} dB re 1 µm  {bar}".rstrip()
     if unknown:
         orders = ", ".join(name for name, _, _ in unknown)
         below = max(error for _, _, error in unknown if error)
@@ -163,12 +163,12 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
     carrying = (shares > 0.0).sum(axis=1)
     pairs = " to ".join(f"{number}" for number in dict.fromkeys([carrying.min(), carrying.max()]))
     yield f"  load sharing: {pairs} pairs carry; most on one {100.0 * shares.max():.0f} %"
-    for gear, own in curve.get("tooth_loads", {}).items():
-        if worst := own["most_loaded"]:
-            times = f"{own['over_mean']:.3f} times the mean tooth"
-            yield f"  {gear}: most on {teeth_words(worst)}, {own['force_n']:.0f} N, {times}"
-        if worst := own["most_pressed"]:
-            yield f"  {gear}: largest pressure on {teeth_words(worst)}, {own['pressure_mpa']:.0f} MPa"
+    for gear, loads in curve.get("tooth_loads", {}).items():
+        if worst := loads["most_loaded"]:
+            times = f"{loads['over_mean']:.3f} times the mean tooth"
+            yield f"  {gear}: most on {teeth_text(worst)}, {loads['force_n']:.0f} N, {times}"
+        if worst := loads["most_pressed"]:
+            yield f"  {gear}: largest pressure on {teeth_text(worst)}, {loads['pressure_mpa']:.0f} MPa"
     yield ""
     yield f"next: loa {following}     all positions: --table, --csv"
 
@@ -178,10 +178,10 @@ def _bands(curve: dict[str, Any]) -> Iterator[str]:
     if "error_um" not in curve:
         yield "  error of a point: not estimated"
         return
-    words = f"  error of a point: up to {engineering(max(curve['error_um']), 2)} µm"
+    text = f"  error of a point: up to {engineering(max(curve['error_um']), 2)} µm"
     if interpolated := curve["interval_error_um"]:
-        words += f", {engineering(interpolated, 2)} µm of it by interpolation between the nodes"
-    yield words
+        text += f", {engineering(interpolated, 2)} µm of it by interpolation between the nodes"
+    yield text
 
 
 def _with_error(curve: dict[str, Any], name: str) -> tuple[Any, Any]:
@@ -201,17 +201,17 @@ def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
     if curve["period"] > 1:
         sizes, errors = _with_error(curve, "amplitude_um")
         lines = zip(curve["order_name"], sizes, errors or [None] * len(sizes), strict=True)
-        own = sorted(lines, key=lambda line: -line[1])
-        return [line for line in own if line[1] > (line[2] or 0.0)][:_SHOWN_ORDERS], []
+        ordered = sorted(lines, key=lambda line: -line[1])
+        return [line for line in ordered if line[1] > (line[2] or 0.0)][:_MAX_ORDERS], []
     sizes, errors = _with_error(curve, "harmonics_um")
     named = [(f"harmonic {k}", size, errors[k - 1] if errors else None) for k, size in enumerate(sizes, 1)]
-    known = [line for line in named[:_SHOWN_ORDERS] if line[1] > (line[2] or 0.0)]
-    return known, [line for line in named[:_SHOWN_ORDERS] if line not in known]
+    known = [line for line in named[:_MAX_ORDERS] if line[1] > (line[2] or 0.0)]
+    return known, [line for line in named[:_MAX_ORDERS] if line not in known]
 
 
 def _sparkline(values: list[float]) -> str:
     """Return two periods of a curve as one line of blocks, from its least to its largest value."""
-    shown = np.array(values)[np.arange(_SPARKS) * len(values) // (_SPARKS // 2) % len(values)]
+    samples = np.array(values)[np.arange(_SPARKS) * len(values) // (_SPARKS // 2) % len(values)]
     span = np.ptp(values)
-    steps = (len(_BLOCKS) - 1) * (shown - min(values)) / span if span > 0.0 else np.zeros(_SPARKS)
+    steps = (len(_BLOCKS) - 1) * (samples - min(values)) / span if span > 0.0 else np.zeros(_SPARKS)
     return "".join(_BLOCKS[round(step)] for step in steps)

@@ -53,14 +53,14 @@ class Results:
         settings = self._settings
         days = settings.retention_days if older_than is None else older_than
         with closing(job_machinery(settings, Registry(), works=False)) as parts:
-            kept = (settings.data_directory, settings.quarantine_days)
-            retention = Retention(parts.engine, parts.store, *kept)
+            terms = (settings.data_directory, settings.quarantine_days)
+            retention = Retention(parts.engine, parts.store, *terms)
             items = list(retention.collect(days, dry_run=dry_run))
         if self._as_json:
-            facts: dict[str, Any] = {"dry_run": dry_run, "older_than_days": days}
-            facts["quarantine_days"] = settings.quarantine_days
-            facts |= {"bytes": sum(item.size for item in items), "removed": [asdict(o) for o in items]}
-            print_json(facts)
+            answer: dict[str, Any] = {"dry_run": dry_run, "older_than_days": days}
+            answer["quarantine_days"] = settings.quarantine_days
+            answer |= {"bytes": sum(item.size for item in items), "removed": [asdict(o) for o in items]}
+            print_json(answer)
         else:
             _show_leftovers(items, settings.quarantine_days, dry_run=dry_run)
 
@@ -103,5 +103,5 @@ def _show_leftovers(items: Sequence[Leftover], quarantine_days: float, *, dry_ru
     if rows:
         console().print(table(("left over", "number", "MB"), rows))
     typer.echo(f"{len(items)} {'to remove' if dry_run else 'removed'}")
-    if held := sum(item.quarantined for item in items):
-        typer.echo(f"of these {held} to quarantine for {quarantine_days:g} days")
+    if quarantined := sum(item.quarantined for item in items):
+        typer.echo(f"of these {quarantined} to quarantine for {quarantine_days:g} days")

@@ -9,7 +9,7 @@ from typing import Any
 
 from bounds.types import Json
 from host.directories import cache_home
-from lineofaction.cli.kept_tables import KeptTables
+from lineofaction.cli.cached_tables import CachedTables
 from lineofaction.cli.verb_warnings import in_lines, warn
 from lineofaction.gearbox.convert.case import case_at
 from lineofaction.gearbox.convert.checked_case import CheckedCase
@@ -29,10 +29,10 @@ from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
 from lineofaction.gearbox.studies.run_cost import run_cost
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.subjects import scene_of, with_own_cases
+from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from model_studies.progress import ANNOUNCED
 
-_READING, _HEARD, _BY_EAR = 0.5, 0.06, 2.9
+_READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
 """CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
 counts."""
 
@@ -93,40 +93,40 @@ def study_cost(
     study: Study, subject: CheckedCase | SceneInput, folder: Path, inputs: Any
 ) -> StudyCost | None:
     """Return the predicted cost of a study, without the tables of a scene; None: not predicted."""
-    written = with_own_cases(subject, folder) if isinstance(subject, SceneInput) else subject
+    written = with_inline_cases(subject, folder) if isinstance(subject, SceneInput) else subject
     return study.run.predicted(written, inputs, cache_home() / "compliance")
 
 
 def table_cost(case: Case) -> StudyCost:
     """Return the predicted cost of the table of a case, in all passes that are expected."""
     passes = costs_of(CASES.of(case), cache_home() / "compliance")
-    seconds = sum(each.cpu_seconds for each in passes)
-    return StudyCost((Work("tables", seconds),), max(each.memory_bytes for each in passes))
+    seconds = sum(cost.cpu_seconds for cost in passes)
+    return StudyCost((Work("tables", seconds),), max(cost.memory_bytes for cost in passes))
 
 
 def tables_cost(scene: SceneInput, folder: Path) -> StudyCost:
     """Return the predicted cost of the tables of a scene that are not kept."""
-    written = (mesh.case for mesh in with_own_cases(scene, folder).meshes if isinstance(mesh.case, Case))
+    written = (mesh.case for mesh in with_inline_cases(scene, folder).meshes if isinstance(mesh.case, Case))
     cases = {case.model_dump_json(): case for case in written}
     return sum(
-        (table_cost(case) for case in cases.values() if not KeptTables.file(case).is_file()), StudyCost(())
+        (table_cost(case) for case in cases.values() if not CachedTables.file(case).is_file()), StudyCost(())
     )
 
 
 def simulation_cost(scene: SceneInput, folder: Path) -> StudyCost | None:
     """Return the predicted cost of a run, without the tables of its scene; None: not predicted."""
-    return run_cost(with_own_cases(scene, folder))
+    return run_cost(with_inline_cases(scene, folder))
 
 
 def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
     """Return the predicted cost of a run of so many seconds as a sound: through so many housings by ear."""
-    each = _BY_EAR if housings else _HEARD
-    sound = Work("runs", _READING), Work("seconds of sound", each, seconds)
+    rate = _BY_EAR if housings else _PLAYED
+    sound = Work("runs", _READING), Work("seconds of sound", rate, seconds)
     return StudyCost((panels_work(housings), *sound) if housings else sound)
 
 
 def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
     """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
-    whole = sum(filter(None, costs), StudyCost(()))
-    if None not in costs and whole.seconds > ANNOUNCED:
-        sys.stderr.write(in_lines(f"loa {verb}: {whole.words}", sys.stderr) + "\n")
+    total = sum(filter(None, costs), StudyCost(()))
+    if None not in costs and total.seconds > ANNOUNCED:
+        sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")

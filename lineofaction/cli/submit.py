@@ -64,8 +64,8 @@ def _bar(screen: Console) -> Iterator[Watch]:
 
         def see(state: JobState) -> None:
             name = escape(f"{state.process} {state.title}".rstrip())
-            words = f"[{_COLORS.get(state.status, 'none')}]{name}: {escape(state.words)}[/]"
-            bar.update(task, completed=state.progress, description=words, left=state.time_left)
+            description = f"[{_COLORS.get(state.status, 'none')}]{name}: {escape(state.activity)}[/]"
+            bar.update(task, completed=state.progress, description=description, left=state.time_left)
             if state.ended:
                 bar.stop_task(task)
 
@@ -90,20 +90,20 @@ def run_submit(
     with LineOfActionClient(service).with_terms(**terms) as client:
         state = _submitted(client, file, process, further)
         warn(state.warnings)
-        facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
+        answer: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
             result = _waited(client, state.id)
-            facts |= {"status": "successful", "hash": result.key, "kind": result.kind}
+            answer |= {"status": "successful", "hash": result.key, "kind": result.kind}
         if output is not None:
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
-            facts["file"] = str(output)
+            answer["file"] = str(output)
             warn(stamped(output))
     if as_json:
-        print_json(facts)
+        print_json(answer)
         return
-    _tell(f"job {facts['job']}, {facts['process']}: {facts['status']}")
-    if "hash" in facts:
-        _show_result(str(facts["hash"]), str(facts["kind"]), output)
+    _tell(f"job {answer['job']}, {answer['process']}: {answer['status']}")
+    if "hash" in answer:
+        _show_result(str(answer["hash"]), str(answer["kind"]), output)
     else:
         _tell(f"Its result, once it has ended: loa fetch {state.id} --service {service} -o FILE")
 
@@ -159,8 +159,8 @@ def run_fetch(name: str, output: Path, service: str | None, *, wait: bool, as_js
             file, key, kind = client.fetch_file(result.key, result.kind), result.key, result.kind
     shutil.copyfile(file, output)
     if page is not None and page.differing:
-        words = f"At this address {page.differing} since the result; -o FILE.toml writes the design."
-        warn([{"check": "address", "message": words}])
+        text = f"At this address {page.differing} since the result; -o FILE.toml writes the design."
+        warn([{"check": "address", "message": text}])
     warn(stamped(output))
     if as_json:
         print_json({"hash": key, "kind": kind, "file": str(output)})

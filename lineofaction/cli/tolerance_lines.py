@@ -16,15 +16,15 @@ NODES = {
 
 def tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
     """Yield whether the tolerance is met as measured, why not, and passes; `newton_metre`: its force, N."""
-    kept = receipt.get("tolerance")
-    if not kept:
+    goal = receipt.get("tolerance")
+    if not goal:
         return
-    yield _verdict(kept)
+    yield _verdict(goal)
     passes = receipt.get("passes", ())
     if len(passes) > 1:
         yield from (_pass(number, entry) for number, entry in enumerate(passes, 1))
     axes = NODES | {"force": ("torques", newton_metre, "N m")}
-    for beyond in kept.get("between_nodes", ()):
+    for beyond in goal.get("between_nodes", ()):
         name, unit, symbol = axes[beyond["axis"]]
         low, high = (f"{value / unit:.6g}" for value in beyond["between"])
         yield (
@@ -35,24 +35,24 @@ def tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
 
 def tolerance_warnings(receipt: Json) -> Iterable[Json]:
     """Return one warning where errors were measured and the tolerance is not met."""
-    kept = receipt.get("tolerance")
-    if not kept or kept["met"] is not False:
+    goal = receipt.get("tolerance")
+    if not goal or goal["met"] is not False:
         return []
-    reason = f" ({kept['reason']})" if kept.get("reason") else ""
-    return [{"check": "tolerance", "message": f"{_verdict(kept)}{reason}"}]
+    reason = f" ({goal['reason']})" if goal.get("reason") else ""
+    return [{"check": "tolerance", "message": f"{_verdict(goal)}{reason}"}]
 
 
-def _verdict(kept: Json) -> str:
+def _verdict(goal: Json) -> str:
     tolerance = (
-        f"tolerance {engineering(100 * kept['relative'], 3)} % or {engineering(kept['floor_m'] / NM, 3)} nm"
+        f"tolerance {engineering(100 * goal['relative'], 3)} % or {engineering(goal['floor_m'] / NM, 3)} nm"
     )
-    if kept["met"] is None:
+    if goal["met"] is None:
         return f"{tolerance}: errors not estimated"
-    numerical = "" if kept["used"] is None else _percent(kept["used"] * kept["relative"], "numerical error")
+    numerical = "" if goal["used"] is None else _percent(goal["used"] * goal["relative"], "numerical error")
     lasting = (
-        f"{_percent(kept['lasting'], 'of the method')}, which no mesh lowers" if "lasting" in kept else ""
+        f"{_percent(goal['lasting'], 'of the method')}, which no mesh lowers" if "lasting" in goal else ""
     )
-    return f"{tolerance}: {'met' if kept['met'] else 'NOT met'}{numerical}{lasting}"
+    return f"{tolerance}: {'met' if goal['met'] else 'NOT met'}{numerical}{lasting}"
 
 
 def _percent(part: float, name: str) -> str:

@@ -33,8 +33,8 @@ def grouped(verb: Callable[..., R]) -> Callable[..., R]:
 
     The verb is called with the dataclasses.
     """
-    own = parameters_of(verb)
-    kinds = {part.name: part.annotation for part in own}
+    declared = parameters_of(verb)
+    kinds = {part.name: part.annotation for part in declared}
     groups = {name: kind for name, kind in kinds.items() if isinstance(kind, type) and is_dataclass(kind)}
 
     @wraps(verb)
@@ -45,7 +45,7 @@ def grouped(verb: Callable[..., R]) -> Callable[..., R]:
 
     parameters = [
         parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)
-        for part in own
+        for part in declared
         for parameter in (_options(groups[part.name]) if part.name in groups else [part])
     ]
     return with_parameters(run, parameters)

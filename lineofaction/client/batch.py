@@ -46,8 +46,8 @@ class _BatchSurface(Followed, Generic[T, J]):
             yield from end_of(self, self.id, self._seen(progress), pace)
         path, exchange = f"/v1/jobs/{self.id}/results", self.session.exchange
 
-        def jobs(facts: dict[str, Any]) -> list[J]:
-            return [self._job(*self._ended(place, entry)) for place, entry in enumerate(facts["jobs"])]
+        def jobs(answer: dict[str, Any]) -> list[J]:
+            return [self._job(*self._ended(index, entry)) for index, entry in enumerate(answer["jobs"])]
 
         return (yield from self._patiently(lambda: exchange.read(jobs, "GET", path)))
 
@@ -55,19 +55,19 @@ class _BatchSurface(Followed, Generic[T, J]):
     def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[list[T]]:
         """Wait for all jobs and return their results in order; raises why the first that has none failed."""
         results: list[Any] = []
-        for place, job in enumerate((yield from _BatchSurface.wait(self, progress, timeout=timeout))):
+        for index, job in enumerate((yield from _BatchSurface.wait(self, progress, timeout=timeout))):
             try:
                 results.append((yield from JobSurface.result(job)))
             except ServiceError as error:
-                error.add_note(f"This is job {place} of batch {self.id}; wait() returns all of them.")
+                error.add_note(f"This is job {index} of batch {self.id}; wait() returns all of them.")
                 raise
         return results
 
-    def _ended(self, place: int, entry: dict[str, Any]) -> tuple[JobState, Result | None]:
+    def _ended(self, index: int, entry: dict[str, Any]) -> tuple[JobState, Result | None]:
         message = entry["problem"]["detail"] if entry["problem"] else "Done."
         state = JobState(entry["jobID"], self.state.process, entry["status"], message, "", 100, 100)
         result = Result.from_json(entry["results"]) if entry["results"] else None
-        return replace(state, parent=self.id, place=place), result
+        return replace(state, parent=self.id, place=index), result
 
     def _job(self, state: JobState, result: Result | None) -> J:
         raise NotImplementedError

@@ -71,14 +71,14 @@ class ResultCache:
         If a version is given, only a result of a service of that version.
         """
         try:
-            facts = json.loads(self._note(service, process, inputs).read_text())
-            result = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
-            if version not in (None, facts.get("version")):
+            note = json.loads(self._note(service, process, inputs).read_text())
+            result = Result(str(note["key"]), str(note["kind"]), str(note["href"]))
+            if version not in (None, note.get("version")):
                 return None
         except (OSError, ValueError, KeyError, TypeError):
             return None
-        held = any(self.get(result.kind, result.key, suffix) is not None for suffix in (SUFFIX, FIGURES))
-        return result if held else None
+        is_stored = any(self.get(result.kind, result.key, suffix) is not None for suffix in (SUFFIX, FIGURES))
+        return result if is_stored else None
 
     def _folder(self, kind: str, key: str) -> Path:
         """Return the folder of a key, whose files differ where services gave different bytes for it.

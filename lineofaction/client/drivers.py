@@ -27,16 +27,16 @@ class _Course(Generic[T]):
 
     def action(self) -> Any:
         """Return the next action; raises `StopIteration` with the result, or what the operation raises."""
-        return self._advance(self._given)
+        return self._advance(self._reply)
 
     def answer(self, reply: Any) -> None:
         """Give the answer to an action."""
         self._advance: Callable[[Any], Any] = self._steps.send
-        self._given = reply
+        self._reply = reply
 
     def fail(self, error: BaseException) -> None:
         """Give what an action raised; the operation decides what becomes of it."""
-        self._advance, self._given = self._steps.throw, error
+        self._advance, self._reply = self._steps.throw, error
 
 
 class BlockingDriver:
@@ -96,7 +96,7 @@ class BlockingDriver:
                 if not window:
                     return
                 while not window[0].ended:
-                    under_way = (each for each in window if not each.ended)
+                    under_way = (operation for operation in window if not operation.ended)
                     self._until_pause(min(under_way, key=lambda begun: begun.due), streams)
                 first = window.popleft()
                 if first.error is not None:

@@ -18,8 +18,8 @@ from lineofaction.gearbox.problems import (
     Unreachable,
 )
 
-_TRY_AGAIN = (429, 502, 503, 504)
-_FIRST_PAUSE_S, _LONGEST_OWN_PAUSE_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0
+_RETRIED = (429, 502, 503, 504)
+_FIRST_PAUSE_S, _LONGEST_BACKOFF_S, _LONGEST_PAUSE_S = 0.1, 2.0, 10.0
 
 T = TypeVar("T")
 
@@ -138,7 +138,7 @@ class Exchange:
 
 
 def _checked(response: httpx2.Response) -> httpx2.Response:
-    if response.status_code in _TRY_AGAIN:
+    if response.status_code in _RETRIED:
         raise _TryAgain(response)
     if not response.is_success:  # a redirection too: those are for others
         raise problem_of(response)
@@ -151,7 +151,7 @@ def _pause_s(attempt: int, error: Exception) -> float:
         requested = _retry_after_s(error.response.headers)
         if requested is not None:
             return min(max(requested, 0.0), _LONGEST_PAUSE_S)
-    return min(_FIRST_PAUSE_S * 2.0 ** (attempt - 1), _LONGEST_OWN_PAUSE_S)
+    return min(_FIRST_PAUSE_S * 2.0 ** (attempt - 1), _LONGEST_BACKOFF_S)
 
 
 def _retry_after_s(headers: Mapping[str, str]) -> float | None:

@@ -68,14 +68,14 @@ def pages(
 
     left = limit
     size = _PAGE if limit is None else max(1, min(limit, _PAGE))
-    shown, following = yield from exchange.read(read, "GET", path, params={**parameters, "limit": size})
+    batch, following = yield from exchange.read(read, "GET", path, params={**parameters, "limit": size})
     while True:
-        for entry in shown[:left]:
+        for entry in batch[:left]:
             yield Item(entry)
-        left = None if left is None else left - len(shown)
+        left = None if left is None else left - len(batch)
         if following is None or (left is not None and left <= 0):
             return
-        shown, following = yield from exchange.read(read, "GET", following)
+        batch, following = yield from exchange.read(read, "GET", following)
 
 
 def pace_of_known(session: Session, timeout: float | None = None, interval: float = 0.05) -> Pace:
@@ -154,7 +154,7 @@ class JobCalls(Surface):
     @operation
     def version(self) -> Steps[str]:
         """Return the version of the service."""
-        return self.session.exchange.read(lambda facts: str(facts["version"]), "GET", "/v1/")
+        return self.session.exchange.read(lambda answer: str(answer["version"]), "GET", "/v1/")
 
     @operation
     def status(self, job: str) -> Steps[JobState]:

@@ -35,7 +35,7 @@ _VIEWS = {
 """What a view may be; variants that are not shown are views of the one that is."""
 _JOBS = ("analyze", "simulate", "modes", "scene", "job", *studies_of("case"), *studies_of("case or scene"))
 _NAMES = {"database": _HASH} | dict.fromkeys(_JOBS, _JOB)
-_WORDS = _VIEWS | _NAMES
+_PATTERNS = _VIEWS | _NAMES
 _BOUNDS = {
     _HASH: "a content hash: 64 digits 0-9a-f",
     _JOB: "the identifier of a job",
@@ -79,7 +79,7 @@ class PageAddress:
     def differing(self) -> str:
         """In words, what it has that its result has not; empty: nothing."""
         parts = {"its design was edited": "case" in self.views, "its sliders moved": "live" in self.views}
-        return " and ".join(words for words, holds in parts.items() if holds) if self.names else ""
+        return " and ".join(part for part, holds in parts.items() if holds) if self.names else ""
 
 
 def _origin(page: str) -> Origin:
@@ -101,7 +101,7 @@ def _word(part: str) -> tuple[str, str]:
         remedy = "Save the case from the page as a file."
         raise BadInput.of(_FIELD, part, f"made of words of at most {LONGEST_WORD} characters", remedy)
     name, _, value = (unquote(piece) for piece in part.partition("="))
-    pattern = _WORDS.get(name)
+    pattern = _PATTERNS.get(name)
     if pattern is None:
         remedy = f"{_COPY} Was it made by another version of the page?"
         raise BadInput.of(_FIELD, unquote(part), "made of words of the page, such as database=HASH", remedy)
@@ -177,22 +177,22 @@ class PageCalls(Surface):
         example = None if page.case else (yield from self._example())
         if example is None or not example["stored"]:
             remedy = "Fetch its case with -o case.toml, then: loa analyze case.toml -o ste.nc"
-            words = "&".join(page.views) or str(page.origin)
-            raise BadInput.of(_FIELD, words, "one with a result, database=HASH or a job", remedy)
+            views = "&".join(page.views) or str(page.origin)
+            raise BadInput.of(_FIELD, views, "one with a result, database=HASH or a job", remedy)
         return str(example["hash"])
 
     def _at(self, address: str) -> PageAddress:
         page = PageAddress.of(address)
-        own = self.session.exchange.base_url
+        service = self.session.exchange.base_url
         try:
-            same = Origin.of(own) == page.origin
+            same = Origin.of(service) == page.origin
         except ValueError:
             same = False
         if not same:
             remedy = (
                 "No access key leaves its service: set the service to that of the address if it is meant."
             )
-            raise BadInput.of("service", own, f"that of the address, {page.origin}", remedy)
+            raise BadInput.of("service", service, f"that of the address, {page.origin}", remedy)
         return page
 
     def _example(self) -> Steps[dict[str, Any]]:

@@ -31,9 +31,9 @@ _BY_TYPE = {
 def problem_of(response: httpx2.Response) -> ServiceError:
     """Return the error that an answer tells of; `Unreachable` if it is not this service's."""
     try:
-        facts = response.json()
-        detail, kind = str(facts["detail"]), str(facts["type"])
-        faults = [Fault(**fault) for fault in facts.get("errors", [])]
+        problem = response.json()
+        detail, kind = str(problem["detail"]), str(problem["type"])
+        faults = [Fault(**fault) for fault in problem.get("errors", [])]
     except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError):
         return stranger(response)
     if kind == BadInput.type:

@@ -73,7 +73,7 @@ class JobState:
         return self.status in ("successful", "failed", "dismissed")
 
     @property
-    def words(self) -> str:
+    def activity(self) -> str:
         """What the job does now: its stage while it runs, else waits, done, failed or dismissed."""
         if self.status == "running":
             return self.stage or "starts"
@@ -93,7 +93,7 @@ class JobState:
     def __str__(self) -> str:
         """Return a line: ``analyze: contact, 58 %, 12 s left``."""
         running = (f"{self.progress} %", self.time_left) if self.status == "running" else ()
-        return ", ".join(part for part in (f"{self.process}: {self.words}", *running) if part)
+        return ", ".join(part for part in (f"{self.process}: {self.activity}", *running) if part)
 
     @classmethod
     def cached(cls, process: str) -> JobState:
@@ -101,20 +101,20 @@ class JobState:
         return cls("", process, "successful", "Taken from the cache.", "", 100, 100)
 
     @classmethod
-    def from_json(cls, facts: dict[str, Any]) -> JobState:
+    def from_json(cls, document: dict[str, Any]) -> JobState:
         """Read a status document."""
         names = ("status", "message", "stage", "progress", "stage_progress")
-        warnings = tuple(facts.get("warnings") or ())
-        known: dict[str, Any] = {name: facts[name] for name in names}
+        warnings = tuple(document.get("warnings") or ())
+        known: dict[str, Any] = {name: document[name] for name in names}
         known |= {
-            name: facts.get(name) or "" for name in ("created", "started", "finished", "title", "subject")
+            name: document.get(name) or "" for name in ("created", "started", "finished", "title", "subject")
         }
-        known |= {"priority": facts.get("priority", 0)}
-        known |= {"tags": tuple(facts.get("tags") or ())}
-        known |= {"differences": tuple((facts.get("differences") or {}).get("first", ()))}
-        known |= {"remaining_s": facts.get("remaining_s"), "parent": facts.get("parentID") or ""}
-        known |= {name: facts.get(name, 0) for name in ("place", "children")}
-        return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
+        known |= {"priority": document.get("priority", 0)}
+        known |= {"tags": tuple(document.get("tags") or ())}
+        known |= {"differences": tuple((document.get("differences") or {}).get("first", ()))}
+        known |= {"remaining_s": document.get("remaining_s"), "parent": document.get("parentID") or ""}
+        known |= {name: document.get(name, 0) for name in ("place", "children")}
+        return cls(document["jobID"], document["processID"], **known, warnings=warnings)
 
 
 Watch = Callable[[JobState], None]
@@ -130,9 +130,9 @@ class Result:
     href: str
 
     @classmethod
-    def from_json(cls, facts: dict[str, Any]) -> Result:
+    def from_json(cls, document: dict[str, Any]) -> Result:
         """Read the one result of a job."""
-        ((kind, reference),) = facts.items()
+        ((kind, reference),) = document.items()
         return cls(reference["hash"], kind, reference["href"])
 
 

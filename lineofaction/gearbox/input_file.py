@@ -131,14 +131,14 @@ def _entries(owner: Any, override: Override, name: str) -> Iterator[tuple[Any, A
     if isinstance(owner, list):
         yield from ((owner, at) for at in _parts(owner, override, key))
     elif not isinstance(owner, dict):
-        raise _no_place(override, f"inside a table, which {owner!r} is not", "Shorten the path.")
+        raise _no_such_part(override, f"inside a table, which {owner!r} is not", "Shorten the path.")
     elif index is None:
         yield owner, key
     else:
         entries = owner.get(key)
         count = len(entries) if isinstance(entries, list) else 0
         if int(index) >= count:
-            raise _no_place(override, f"an entry of a list: {key} has {count}", "They count from 0.")
+            raise _no_such_part(override, f"an entry of a list: {key} has {count}", "They count from 0.")
         yield entries, int(index)
 
 
@@ -147,9 +147,9 @@ def _parts(parts: list[Any], override: Override, name: str) -> list[int]:
     chosen = [index for index, known_name in enumerate(names) if name in (_EVERY, known_name)]
     if not chosen:
         known = ", ".join(str(known_name) for known_name in names if known_name is not None) or "[0], [1] ..."
-        raise _no_place(override, f'a part of the file: there is no "{name}"', f"Known here: {known}.")
+        raise _no_such_part(override, f'a part of the file: there is no "{name}"', f"Known here: {known}.")
     return chosen
 
 
-def _no_place(override: Override, bound: str, remedy: str) -> BadInput:
+def _no_such_part(override: Override, bound: str, remedy: str) -> BadInput:
     return BadInput.of(override.path, override.value, bound, remedy)

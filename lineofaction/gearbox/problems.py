@@ -36,13 +36,13 @@ class Fault:
     """What would be accepted, to be read after "must be"."""
     suggestion: str = ""
     """What to try."""
-    place: str = dataclasses.field(default="", compare=False)
+    location: str = dataclasses.field(default="", compare=False)
     """File and line, for those who wrote one; empty where none is known. It makes no other fault of it."""
 
     def __str__(self) -> str:
-        text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"
+        text = f"{self.field} = {_value_text(self.value)}: must be {self.bound}"
         parts = (text, self.suggestion) if self.suggestion else (text,)
-        return ". ".join(parts) + (f" ({self.place})" if self.place else "")
+        return ". ".join(parts) + (f" ({self.location})" if self.location else "")
 
     def as_json(self) -> dict[str, Any]:
         """Return the four facts as plain JSON; a value that JSON cannot hold is shown as text."""
@@ -54,7 +54,7 @@ class Fault:
         }
 
 
-def _shown(value: object) -> str:
+def _value_text(value: object) -> str:
     if value is None:
         return "nothing"
     text = ""
@@ -93,7 +93,7 @@ def _plain(value: object) -> object:
         return value
     if isinstance(value, str):
         return value[:_LONGEST_VALUE].encode("utf-8", "replace").decode()
-    return _shown(value).encode("utf-8", "replace").decode()
+    return _value_text(value).encode("utf-8", "replace").decode()
 
 
 def last_part(problem_type: str) -> str:
@@ -312,9 +312,9 @@ def _row(
     home: str = _OURS,
 ) -> type[Kind]:
     """Return a class of no more than a title, an HTTP status, and seconds after which to try again."""
-    facts = {"status": status, "type": f"{home}{name}", "title": title, "retry_after_s": retry_after_s}
+    members = {"status": status, "type": f"{home}{name}", "title": title, "retry_after_s": retry_after_s}
     names = {"__module__": __name__, "__doc__": f"{title}."}
-    kind: type[Kind] = type(name.title().replace("-", ""), (base,), facts | names)
+    kind: type[Kind] = type(name.title().replace("-", ""), (base,), members | names)
     return kind
 
 

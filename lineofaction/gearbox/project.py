@@ -109,8 +109,8 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
     return {part: paths for part, paths in by_part.items() if paths}
 
 
-def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path | None]:
-    """Return a table as it is named, of a folder that of each case by its name: its own, else the `kept` one.
+def tables_in(named: Path, cached: Callable[[Path], Path]) -> dict[str, Path | None]:
+    """Return a table as it is named, of a folder that of each case by its name: its own, else a `cached` one.
 
     None where there is neither. Raises `BadInput`: there is none at all.
     """
@@ -118,7 +118,7 @@ def tables_in(named: Path, kept: Callable[[Path], Path]) -> dict[str, Path | Non
         return {"": named}
     cases = {case: named / f"{case.stem}{SUFFIX}" for case in _chosen(dict(_tables(named)), "case")}
     paths = {
-        case.stem: table_path if table_path.is_file() else kept(case) for case, table_path in cases.items()
+        case.stem: table_path if table_path.is_file() else cached(case) for case, table_path in cases.items()
     }
     tables = {name: table if table.is_file() else None for name, table in paths.items()}
     if not any(tables.values()):
@@ -182,11 +182,13 @@ def status_of(project: Path) -> list[ResultState]:
 def _expected(tables: Mapping[Path, Mapping[str, Any]]) -> dict[str, tuple[str, Path | None]]:
     """Return the results of every verb that the files have a subject for: verb and subject by their names."""
     cases, scenes = (_chosen(tables, kind) for kind in ("case", "scene"))
-    expected: dict[str, tuple[str, Path | None]] = {f"{own.stem}{SUFFIX}": ("analyze", own) for own in cases}
+    expected: dict[str, tuple[str, Path | None]] = {
+        f"{case_path.stem}{SUFFIX}": ("analyze", case_path) for case_path in cases
+    }
     if scenes:
         expected |= {RUN: ("simulate", scenes[0]), SOUND: ("listen", scenes[0])}
-    own_verbs = {verb for verb, _ in expected.values()}
-    for study in (study for study in STUDIES.values() if study.name not in own_verbs):
+    file_verbs = {verb for verb, _ in expected.values()}
+    for study in (study for study in STUDIES.values() if study.name not in file_verbs):
         if scenes and "scene" in study.takes.subject:
             expected[result_name(study)] = study.name, scenes[0]
         elif cases and "case" in study.takes.subject:

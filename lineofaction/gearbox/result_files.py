@@ -26,12 +26,12 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
         file.write_text(f"{text}\n", encoding="utf-8")
 
 
-def stamp_scene(file: Path, facts: Json) -> None:
+def stamp_scene(file: Path, metadata: Json) -> None:
     """Write what the facts of a scene say of its complaint and its unit into the file of a result."""
     with h5netcdf.File(file, "r+") as content:
         for name in (COMPLAINT, UNIT):
-            if name in facts:
-                content.attrs[name] = json.dumps(facts[name])
+            if name in metadata:
+                content.attrs[name] = json.dumps(metadata[name])
 
 
 def stamped(file: Path) -> list[Json]:

@@ -71,9 +71,9 @@ class PacedFraction:
             return share * fraction / (share + ahead)
         usual_s = past_s * share / before
         known = min(fraction / _PACE_KNOWN, 1.0)
-        whole_s = (1.0 - known) * max(usual_s, stage_s) + (known * stage_s / fraction if fraction else 0.0)
-        later_s = ahead * (past_s + whole_s) / (before + share)
-        return (past_s + stage_s) / (past_s + whole_s + later_s)
+        total_s = (1.0 - known) * max(usual_s, stage_s) + (known * stage_s / fraction if fraction else 0.0)
+        later_s = ahead * (past_s + total_s) / (before + share)
+        return (past_s + stage_s) / (past_s + total_s + later_s)
 
 
 class TableFraction:

@@ -95,7 +95,7 @@ def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | No
         raise error.within(f"{field}.case_file") from None
 
 
-def with_own_cases(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
+def with_inline_cases(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with the cases in its files written out; raises `BadInput`."""
     meshes = (with_case(mesh, f"meshes[{i}]", folder) for i, mesh in enumerate(scene.meshes))
     return scene.model_copy(update={"meshes": tuple(meshes)})
@@ -107,9 +107,9 @@ def with_case(mesh: MeshInput, field: str, folder: Path) -> MeshInput:
     return mesh if case is None else mesh.model_copy(update={"case": case, "case_file": None})
 
 
-def with_own_files(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
+def with_absolute_paths(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
     """Return the scene with its cases written out, and the files that it still names by their whole paths."""
-    with_cases = with_own_cases(scene, folder)
+    with_cases = with_inline_cases(scene, folder)
     meshes = tuple(_in_folder(mesh, "database_file", folder) for mesh in with_cases.meshes)
     housings = tuple(_in_folder(part, "modes_file", folder) for part in with_cases.housings)
     return with_cases.model_copy(update={"meshes": meshes, "housings": housings})

@@ -20,14 +20,14 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
-from lineofaction.gearbox.subjects import with_case, with_own_cases, without_modes_files
+from lineofaction.gearbox.subjects import with_case, with_inline_cases, without_modes_files
 from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
 OnDraft = Callable[[SteDatabase, str], None]
 TableOf = Callable[[int, MeshInput], SteDatabase]
-KeptTable = Callable[[Case], SteDatabase | None]
+CachedTable = Callable[[Case], SteDatabase | None]
 
 
 def tabled_scene(
@@ -38,7 +38,7 @@ def tabled_scene(
     progress: Progress,
     warn: Warn,
     cases: CheckedCases,
-    kept_table: KeptTable = lambda _case: None,
+    cached_table: CachedTable = lambda _case: None,
 ) -> TabledScene:
     """Return a scene with its tables, housings reduced; all is checked before anything is computed.
 
@@ -56,8 +56,8 @@ def tabled_scene(
         Takes what is implausible about cases and scene.
     cases : CheckedCases
         Of this scene: `table_of` goes on from what is checked here.
-    kept_table : callable
-        ``kept_table(case)``, the table of a case that was computed before, which needs no check, or None.
+    cached_table : callable
+        ``cached_table(case)``, the table of a case that was computed before, which needs no check, or None.
 
     Raises
     ------
@@ -67,11 +67,11 @@ def tabled_scene(
         A table has failed points.
     """
     began = cpu_seconds()
-    meshes, facts = list(scene.meshes), {}
+    meshes, geometry = list(scene.meshes), {}
     for i, mesh in scene.with_database:
         meshes[i] = with_case(mesh, f"meshes[{i}]", folder)
-        facts[mesh.name] = _facts(i, meshes[i], table_of, cases, warn, kept_table)
-    warn(scene_warnings(scene, check_scene(scene, facts)))
+        geometry[mesh.name] = _pair_geometry(i, meshes[i], table_of, cases, warn, cached_table)
+    warn(scene_warnings(scene, check_scene(scene, geometry)))
     if any(part.is_measured for part in scene.housings):
         from lineofaction.gearbox.convert.measured_housings import read_responses  # noqa: PLC0415 (start-up)
 
@@ -84,7 +84,7 @@ def tabled_scene(
         from lineofaction.gearbox.level_quantity import with_quantity  # noqa: PLC0415 (start-up time)
 
         built = with_quantity(built, scene, housings)
-    with_cases = with_own_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
+    with_cases = with_inline_cases(scene.model_copy(update={"meshes": tuple(meshes)}), folder)
     return TabledScene(without_modes_files(with_cases), databases, built, housings, cpu_seconds() - began)
 
 
@@ -112,7 +112,7 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
         database = analyze(request, run=run, case=case_json(checked.case), on_draft=on_draft)
     made = database.metadata
     if (allowed := allowed_misalignment(checked.case)) is not None:
-        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.words})
+        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.text})
     warnings = phrased_for(checked.case, made.warnings)
     return replace(database, metadata=replace(made, warnings=warnings))
 
@@ -138,11 +138,11 @@ class ComputedTables:
         return self._compute(case)
 
 
-def _facts(
-    index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, kept_table: KeptTable
+def _pair_geometry(
+    index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, cached_table: CachedTable
 ) -> PairFacts:
     """Return the facts of a mesh's pair; of a case without computing anything."""
-    if mesh.case is None or kept_table(mesh.case) is not None:
+    if mesh.case is None or cached_table(mesh.case) is not None:
         return table_of(index, mesh).facts
     field, checked = f"meshes[{index}]", cases.of(mesh.case)
     try:

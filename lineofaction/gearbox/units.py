@@ -139,17 +139,17 @@ def _renamed(plain: Any) -> Any:
     return {_RENAMED.get(name, name): _renamed(entry) for name, entry in plain.items()}
 
 
-def in_um(plain: Any, *, own: bool = False) -> Any:
+def in_um(plain: Any, *, is_length: bool = False) -> Any:
     """Turn every field of plain JSON that ends in _m (and no torque) into one that ends in _um.
 
-    `own`: the value is of such a field.
+    `is_length`: the value is of such a field.
     """
     if isinstance(plain, list):
-        return [in_um(entry, own=own) for entry in plain]
+        return [in_um(entry, is_length=is_length) for entry in plain]
     if not isinstance(plain, dict):
-        return plain / UM if own and plain is not None else plain
+        return plain / UM if is_length and plain is not None else plain
     lengths = {name for name in plain if name.endswith("_m") and not name.endswith("_n_m")}
     return {
-        f"{name.removesuffix('_m')}_um" if name in lengths else name: in_um(entry, own=name in lengths)
+        f"{name.removesuffix('_m')}_um" if name in lengths else name: in_um(entry, is_length=name in lengths)
         for name, entry in plain.items()
     }

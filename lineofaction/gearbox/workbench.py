@@ -13,7 +13,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate as run_scene
 from fe_contact import analyze as analyze_pair
-from fe_contact.analysis.database.kept_tolerance import OnDraft
+from fe_contact.analysis.database.refined_table import OnDraft
 from fe_contact.geometry import ParallelAxes
 from fe_contact.keywords import TableKeywords
 from fe_contact.options import AnalysisOptions, Run, TableAxes
@@ -32,12 +32,12 @@ from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, written_out
-from lineofaction.gearbox.schemas.named_files import beside
+from lineofaction.gearbox.schemas.named_files import in_folder
 from lineofaction.gearbox.schemas.plan import left_out_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
-from lineofaction.gearbox.subjects import Subject, case_of, scene_of, with_own_files
+from lineofaction.gearbox.subjects import Subject, case_of, scene_of, with_absolute_paths
 from lineofaction.gearbox.tabled_scene import ComputedTables, database_of
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
 from model_studies.progress import Progress, silent
@@ -75,7 +75,7 @@ def open_unit(
     unit = OpenedUnit.of(read_rexs(Path(file)), [Assumption.of(text) for text in assume])
     if overrides and unit.scene is not None:
         table = _over(overrides, Path(file)).applied(unit.scene.model_dump(mode="json", exclude_unset=True))
-        unit = replace(unit, scene=validated(SceneInput, written_out(table, beside(Path()), READERS)))
+        unit = replace(unit, scene=validated(SceneInput, written_out(table, in_folder(Path()), READERS)))
     _warn(left_out_warnings(unit.left_out))
     return unit
 
@@ -96,7 +96,7 @@ def read(file: Path | str, overrides: Mapping[str, object] | None = None) -> Cas
     source = _over(overrides or {}, path)
     if "shafts" not in read_table(source):
         return read_model(Case, source)
-    return with_own_files(read_model(SceneInput, source), path.parent.absolute())
+    return with_absolute_paths(read_model(SceneInput, source), path.parent.absolute())
 
 
 def _over(overrides: Mapping[str, object], path: Path) -> InputFile:
@@ -192,8 +192,8 @@ def studied(
     """Return the result of a study, as its function does; raises `BadInput`, `JobFailed`."""
     work, named = study.run, {} if run is None else {"run": content_digest(run)}
     varied = validated(study.inputs, {**named, **inputs})
-    stated, files = _stated(study, subject)
-    chosen = work.narrowed(stated, varied)
+    written_subject, files = _as_written(study, subject)
+    chosen = work.narrowed(written_subject, varied)
     work.check(chosen, varied)
     workers = InProcess() if workers is None else workers
     means = Means(cache_home(), progress or silent, workers, folder=folder, run=run)
@@ -205,7 +205,7 @@ def studied(
     return result
 
 
-def _stated(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
+def _as_written(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
     """Return what is studied as written, and the folder of its files."""
     kind = study.takes.subject
     if kind == "scene" or (kind != "case" and _has_shafts(subject)):

@@ -124,9 +124,9 @@ def _queries_outside() -> Sequence[Measured]:
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
     table = table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))
     x = np.linspace(0.0, 1.0, 101)[:-1]
-    here = table.ste(x, 2500.0)
-    far = np.abs(table.ste(x + 1e6, 2500.0) / here - 1.0).max()
-    behind = np.abs(table.ste(x - 12345.0, 2500.0) / here - 1.0).max()
+    ste = table.ste(x, 2500.0)
+    far = np.abs(table.ste(x + 1e6, 2500.0) / ste - 1.0).max()
+    behind = np.abs(table.ste(x - 12345.0, 2500.0) / ste - 1.0).max()
     top = table.ste(x, _FORCE[-1])
     beyond = table.force_at(x, 2.0 * top)
     inside = table.force_at(x, 0.99 * top)
@@ -152,13 +152,13 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     scaled: dict[str, Any] = {name: along(getattr(table, name), factor) for name in names}
     scaled |= {name: along(getattr(table, name), np.ones(factor.size)) for name in PLAIN_TABLE}
     wide = replace(table, misalignment=misalignment, **scaled)
-    here = table.ste(x, 2500.0)
-    at = [wide.ste(x, 2500.0, misalignment=m) / here for m in misalignment]
-    between = wide.ste(x, 2500.0, misalignment=15e-6) / here
+    ste = table.ste(x, 2500.0)
+    at = [wide.ste(x, 2500.0, misalignment=m) / ste for m in misalignment]
+    between = wide.ste(x, 2500.0, misalignment=15e-6) / ste
     force = [
-        wide.force_at(x, f * here, misalignment=m).force for m, f in zip(misalignment, factor, strict=True)
+        wide.force_at(x, f * ste, misalignment=m).force for m, f in zip(misalignment, factor, strict=True)
     ]
-    beyond = wide.force_at(x, here, misalignment=1e-3)
+    beyond = wide.force_at(x, ste, misalignment=1e-3)
     return (
         Measured(
             "STE at each misalignment off the one stored for it",
@@ -219,8 +219,8 @@ def _slope_error(table: SteDatabase) -> Measured:
     deflection = table.ste(x, force)
     step = 1e-6 * deflection
     sides = [table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0)]
-    stated = table.force_at(x, deflection).stiffness
-    off = np.abs((sides[1] - sides[0]) / (2.0 * step) - stated) / stated.max()
+    stiffness = table.force_at(x, deflection).stiffness
+    off = np.abs((sides[1] - sides[0]) / (2.0 * step) - stiffness) / stiffness.max()
     return Measured("stiffness off the difference of forces", float(off.max()), maximum=1e-3)
 
 

@@ -32,9 +32,9 @@ def bound(pages: Mapping[str, Page]) -> Page:
     by_title: dict[tuple[Part, str, str], _Parted] = {}
     for name, page in pages.items():
         for section in page.sections:
-            apart = name if section.part is Part.EFFECTS else ""  # their tables become one
+            part_name = name if section.part is Part.EFFECTS else ""  # their tables become one
             if not is_picture(section):
-                by_title.setdefault((section.part, section.title, apart), []).append((name, section))
+                by_title.setdefault((section.part, section.title, part_name), []).append((name, section))
     merged = (*sections, *(_section(title, parted) for (_, title, _), parted in by_title.items()))
     ordered = sorted(one_effects_section(merged), key=lambda section: section.part)
     return Page(
@@ -87,9 +87,9 @@ def _figure(figures: Mapping[str, Figure]) -> Figure:
     (first, figure), *others = figures.items()
     titles = {name: figure.title for name, figure in figures.items()}
     head = _head(list(titles.values()))
-    own = {name: title.removeprefix(head).strip() for name, title in titles.items()}
+    suffixes = {name: title.removeprefix(head).strip() for name, title in titles.items()}
     panels = [
-        [_panel(name, panel, own[name] if others else "") for panel in figure.content]
+        [_panel(name, panel, suffixes[name] if others else "") for panel in figure.content]
         for name, figure in figures.items()
     ]
     side_by_side = [panel for row in zip_longest(*panels) for panel in row if panel is not None]
@@ -105,9 +105,9 @@ def _figure(figures: Mapping[str, Figure]) -> Figure:
     )
 
 
-def _panel(part: str, panel: Panel, own: str) -> Panel:
-    words = ", ".join(filter(None, (own, panel.title[:1].lower() + panel.title[1:])))
-    return replace(panel, title=": ".join(filter(None, (part, words)))) if part else panel
+def _panel(part: str, panel: Panel, suffix: str) -> Panel:
+    title = ", ".join(filter(None, (suffix, panel.title[:1].lower() + panel.title[1:])))
+    return replace(panel, title=": ".join(filter(None, (part, title)))) if part else panel
 
 
 def _joined(tables: Mapping[str, Table]) -> Table:
@@ -121,14 +121,14 @@ def _joined(tables: Mapping[str, Table]) -> Table:
 
 def _head(titles: Sequence[str]) -> str:
     """Return the words with which all titles begin."""
-    words = zip(*(title.split() for title in titles), strict=False)
-    return " ".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, words))
+    columns = zip(*(title.split() for title in titles), strict=False)
+    return " ".join(row[0] for row in takewhile(lambda row: len(set(row)) == 1, columns))
 
 
-def _trimmed(words: list[str]) -> list[str]:
-    while words[1:] and words[-1] in _LINKS:
-        words = words[:-1]
-    return [*words[:-1], *(word.rstrip(",;:") for word in words[-1:])]
+def _trimmed(title: list[str]) -> list[str]:
+    while title[1:] and title[-1] in _LINKS:
+        title = title[:-1]
+    return [*title[:-1], *(word.rstrip(",;:") for word in title[-1:])]
 
 
 def _said(texts: Mapping[str, str]) -> str:
@@ -136,6 +136,8 @@ def _said(texts: Mapping[str, str]) -> str:
     sentences = {name: _SENTENCE.split(text) for name, text in texts.items() if text}
     if not sentences:
         return ""
-    common = [one for one in next(iter(sentences.values())) if all(one in own for own in sentences.values())]
-    rest = {name: " ".join(one for one in own if one not in common) for name, own in sentences.items()}
+    common = [
+        one for one in next(iter(sentences.values())) if all(one in part for part in sentences.values())
+    ]
+    rest = {name: " ".join(one for one in part if one not in common) for name, part in sentences.items()}
     return " ".join([*common, *(_named(name, text) for name, text in rest.items() if text)])

@@ -15,7 +15,7 @@ from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
-from host.directories import whole_file
+from host.directories import atomic_file
 from lineofaction.gearbox.convert.complaint import marks_of_case
 from lineofaction.gearbox.problems import BadInput, DamagedFile
 from lineofaction.gearbox.registry import STUDIES
@@ -61,9 +61,9 @@ def stored_study(attributes: Mapping[str, object]) -> Study | None:
 
 def _study_page(study: Study, file: Path, database: SteDatabase | None = None) -> Page:
     result = read_stored(study, file)
-    page = page_beside(study, result, database)
-    stated = file_attributes(file).get(COMPLAINT)
-    return page if stated is None or marks_of(result) else marked_page_of_case(page, json.loads(stated))
+    page = page_with_database(study, result, database)
+    complaint = file_attributes(file).get(COMPLAINT)
+    return page if complaint is None or marks_of(result) else marked_page_of_case(page, json.loads(complaint))
 
 
 def read_stored(study: Study, file: Path) -> Any:
@@ -77,12 +77,12 @@ def read_stored(study: Study, file: Path) -> Any:
         raise BadInput.of("file", str(file), f"an undamaged {study.kind}", remedy) from None
 
 
-def page_beside(study: Study, result: object, database: SteDatabase | None) -> Page:
+def page_with_database(study: Study, result: object, database: SteDatabase | None) -> Page:
     """Return the page of a study's result; beside a database, if there is one."""
     presentation = presentation_of(study)
-    if database is None or presentation.beside is None:
+    if database is None or presentation.with_database is None:
         return presentation.page(result)
-    return presentation.beside(result, database)
+    return presentation.with_database(result, database)
 
 
 @dataclass(frozen=True)
@@ -298,8 +298,8 @@ def of_the_store() -> Iterator[None]:
     except BadInput as error:
         if not any(fault.field == "file" for fault in error.faults):
             raise
-        words = "; ".join(f"{fault.bound}. {fault.suggestion}" for fault in error.faults)
-        raise DamagedFile(f"The stored file is not {words}") from None
+        reasons = "; ".join(f"{fault.bound}. {fault.suggestion}" for fault in error.faults)
+        raise DamagedFile(f"The stored file is not {reasons}") from None
 
 
 def page_json(page: Page, *, printed: bool = False) -> Json:
@@ -361,10 +361,10 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
         Folder for the PNG files, made if missing; left out: none are written.
     """
     read = read_inputs([inputs] if isinstance(inputs, Path) else list(inputs))
-    return write_whole(page_of(read), output, images)
+    return write_page(page_of(read), output, images)
 
 
-def write_whole(
+def write_page(
     page: Page,
     output: Path,
     images: Path | None = None,
@@ -383,13 +383,13 @@ def write_whole(
     stills = {key: still(image) for key, image in drawn.items()}
     text = html(page, stills, still=printed or still_only)
     content = _printed(page, text, output) if printed else text.encode("utf-8")
-    with whole_file(output) as draft:
+    with atomic_file(output) as draft:
         draft.write_bytes(content)
     written = [output]
     if images is not None:
         images.mkdir(parents=True, exist_ok=True)
         for figure in figures:
-            with whole_file(images / f"{figure.key}.png") as draft:
+            with atomic_file(images / f"{figure.key}.png") as draft:
                 draft.write_bytes(drawn[figure.key] if _in_one_column(figure) else png(figure))
             written.append(images / f"{figure.key}.png")
     return written
@@ -437,7 +437,7 @@ def write(result: Any, file: Path | str) -> Path:
     elif path.suffix == ".png":
         path.write_bytes(png(presentation_of(study).figure(result)))
     elif path.suffix == ".html":
-        write_whole(presentation_of(study).page(result), path)
+        write_page(presentation_of(study).page(result), path)
     else:
         raise BadInput.of("file", str(path), "a file ending in one of .nc, .json, .png, .html")
     return path

@@ -95,8 +95,8 @@ def pair_of(database: SteDatabase) -> ParallelAxes | None:
 def tolerance_class_of(database: SteDatabase) -> int | None:
     """Return the class of gears and axes that the case of a database states."""
     errors = database.metadata.case.get("errors") or {}
-    stated: int | None = errors.get("misalignment_class")
-    return stated
+    tolerance_class: int | None = errors.get("misalignment_class")
+    return tolerance_class
 
 
 def iso_mesh_stiffness(database: SteDatabase) -> float | None:
@@ -129,35 +129,35 @@ def _fields(content: Json) -> Json:
 
 def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
     if isinstance(content, list):
-        return tuple(_parts(kind, each) for each in content)
+        return tuple(_parts(kind, entry) for entry in content)
     return kind(**_fields(content))
 
 
-def pair_title(facts: PairFacts) -> str:
+def pair_title(geometry: PairFacts) -> str:
     """Name a pair by its teeth."""
-    one, other = facts.teeth
-    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
+    one, other = geometry.teeth
+    return f"Gear pair {one}/{other}, internal" if geometry.internal else f"Gear pair {one}/{other}"
 
 
-def pair_lead(facts: PairFacts) -> str:
+def pair_lead(geometry: PairFacts) -> str:
     """Say the dimensions of a pair."""
     return (
-        f"center distance {1e3 * facts.center_distance:.6g} mm, "
-        f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
+        f"center distance {1e3 * geometry.center_distance:.6g} mm, "
+        f"face width {1e3 * geometry.face_width:.6g} mm, base pitch {1e3 * geometry.base_pitch:.5g} mm"
     )
 
 
 def pair_remarks(pair: ParallelAxes) -> list[Json]:
     """Return the remarks as warnings: `check`, `message`."""
-    words = "the tool cuts into the involute near the root. Raise its profile shift."
+    remedy = "the tool cuts into the involute near the root. Raise its profile shift."
     remarks = [
-        ("undercut", f"pair.{name}: {words}")
+        ("undercut", f"pair.{name}: {remedy}")
         for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel))
         if isinstance(gear, Gear) and gear.form_point.undercut
     ]
     if pair.normal_backlash <= 0.0:
-        words = "no backlash. Give thickness_allowance_um, or a larger center distance."
-        remarks.append(("backlash", f"pair: {words}"))
+        remedy = "no backlash. Give thickness_allowance_um, or a larger center distance."
+        remarks.append(("backlash", f"pair: {remedy}"))
     remarks += [(finding.check, finding.message()) for finding in mesh_findings(pair)]
     return [{"check": check, "message": message} for check, message in remarks]
 
@@ -232,8 +232,8 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
     angles = math.radians(gear["angle_deg"]) + pitch * _near(gear, across)
     x = np.cos(angles)[:, None] * tooth[:, 0] - np.sin(angles)[:, None] * tooth[:, 1]
     y = np.sin(angles)[:, None] * tooth[:, 0] + np.cos(angles)[:, None] * tooth[:, 1]
-    whole = len(angles) == gear["teeth"]
-    closed = [np.append(part.ravel(), part.ravel()[0] if whole else 0.0) for part in (x, y)]
+    is_complete = len(angles) == gear["teeth"]
+    closed = [np.append(part.ravel(), part.ravel()[0] if is_complete else 0.0) for part in (x, y)]
     center = gear["centre_mm"]  # where the ends of a part of the teeth meet
     outline = Line(name, closed[0] + center[0], closed[1] + center[1], _SIDES[name], width=1.4)
     return replace(outline, filled=gear["radius_mm"]["tip"] > gear["radius_mm"]["root"])  # no ring gear
@@ -242,8 +242,8 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
 def _near(gear: Json, across: float) -> IntArray:
     """Return the numbers of the teeth near the mesh: as far to either side as twice what is drawn, or all."""
     count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
-    beside = math.ceil(reach * count / (2.0 * math.pi)) + 1
-    return np.arange(count) if reach >= 1.0 else np.arange(-beside, beside + 1)
+    reach_teeth = math.ceil(reach * count / (2.0 * math.pi)) + 1
+    return np.arange(count) if reach >= 1.0 else np.arange(-reach_teeth, reach_teeth + 1)
 
 
 def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_class: int | None) -> float:
@@ -265,14 +265,14 @@ def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Pane
     bands = (_half(profile_tolerance, gear, tolerance_class), 0.0, 0.0)
     designed = (
         Line(
-            f"{name}, {place}" if twisted else name,
+            f"{name}, {face_name}" if twisted else name,
             angle,
             _removed(gear, roll, face),
             _SIDES[name],
             dash,
             band=band,
         )
-        for (place, face, dash), band in zip(faces[: 3 if twisted else 1], bands, strict=False)
+        for (face_name, face, dash), band in zip(faces[: 3 if twisted else 1], bands, strict=False)
     )
     lines = (*designed, *_teeth_as_made(name, gear, angle, roll, np.zeros(_POINTS)))
     pitch_point = pair.path_of_contact.pitch_point
@@ -330,7 +330,7 @@ class Entry:
     `of` returns those of pinion and wheel, or of the pair.
     """
 
-    words: str
+    term: str
     symbol: str
     unit: str
     of: Callable[[ParallelAxes], Sequence[float]]
@@ -338,8 +338,8 @@ class Entry:
     @property
     def name(self) -> str:
         """Its name in JSON, with the unit."""
-        words = self.words.replace(" ", "_").replace("-", "_")
-        return f"{words}_{self.unit}" if self.unit else words
+        label = self.term.replace(" ", "_").replace("-", "_")
+        return f"{label}_{self.unit}" if self.unit else label
 
     def values(self, pair: ParallelAxes) -> list[float]:
         """Return the values in the unit of the boundary."""
@@ -348,7 +348,7 @@ class Entry:
     def row(self, pair: ParallelAxes) -> tuple[str, ...]:
         """Return the line as words."""
         return (
-            self.words,
+            self.term,
             self.symbol,
             *(_text(value, self.unit) for value in self.values(pair)),
             _SYMBOLS.get(self.unit, self.unit),

@@ -30,41 +30,41 @@ _SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) 
 class Presentation:
     """A result as people see it: the plot of ``-o FILE.png``, the report, tables and lines of the terminal.
 
-    `series` are the numbers of the plot, which are written as CSV; `beside` is the report beside that of an
-    STE database, called with both, by default the same.
+    `series` are the numbers of the plot, which are written as CSV; `with_database` is the report beside
+    that of an STE database, called with both, by default the same.
     """
 
     figure: Callable[[Any], Figure]
     page: Callable[[Any], Page]
     text: Callable[[Any], Iterable[Table | str]]
     series: Callable[[Any], Table] | None = None
-    beside: Callable[[Any, SteDatabase], Page] | None = None
+    with_database: Callable[[Any, SteDatabase], Page] | None = None
 
 
 def presentation_of(study: Study) -> Presentation:
     """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
     files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
     with LOADING:
-        shown: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
-    return _of_its_unit(shown)
+        presentation: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
+    return _of_its_unit(presentation)
 
 
-def _of_its_unit(shown: Presentation) -> Presentation:
+def _of_its_unit(presentation: Presentation) -> Presentation:
     """Return a presentation with what a result says of its unit.
 
     The page begins with its picture; what is complained of is marked in all plots.
     """
 
     def figure(result: Any) -> Figure:
-        marks, plain = marks_of(result), shown.figure(result)
+        marks, plain = marks_of(result), presentation.figure(result)
         return plain if marks is None else marked(plain, marks)
 
     def page(result: Any) -> Page:
-        marks, plain = marks_of(result), shown.page(result)
-        whole = plain if marks is None else marked_page(plain, marks)
-        return with_picture(whole, getattr(result, "facts", {}).get(UNIT))
+        marks, plain = marks_of(result), presentation.page(result)
+        complete = plain if marks is None else marked_page(plain, marks)
+        return with_picture(complete, getattr(result, "facts", {}).get(UNIT))
 
-    return replace(shown, figure=figure, page=page)
+    return replace(presentation, figure=figure, page=page)
 
 
 def dynamics_presentation(
@@ -75,24 +75,24 @@ def dynamics_presentation(
 ) -> Presentation:
     """Return how a study of a scene shows its result, whose `facts` say what its model neglects."""
 
-    def whole_text(result: Any) -> Iterator[Table | str]:
+    def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)
         yield from model_text(result.facts)
 
     return Presentation(
         lambda result: figures(result)[0],
         lambda result: dynamics_page(title, figures(result), headlines(result), result.facts),
-        whole_text,
+        complete_text,
     )
 
 
-def model_text(facts: Mapping[str, Any]) -> Iterator[Table | str]:
+def model_text(metadata: Mapping[str, Any]) -> Iterator[Table | str]:
     """Yield the cost of the housings of a scene, and what its model neglects; nothing where there is none."""
-    yield from cost_tables(facts)
-    if facts["effect_ledger"] is None:
+    yield from cost_tables(metadata)
+    if metadata["effect_ledger"] is None:
         return
-    yield from effect_text(boundary_ledger(facts["effect_ledger"]))
-    yield from run_lines(facts)
+    yield from effect_text(boundary_ledger(metadata["effect_ledger"]))
+    yield from run_lines(metadata)
 
 
 def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
@@ -107,16 +107,16 @@ def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
 
 
 def dynamics_page(
-    title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], facts: Mapping[str, Any]
+    title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], metadata: Mapping[str, Any]
 ) -> Page:
     """Return the page of a study of a scene: its figures, effects, cost of its housings, what does not hold.
 
-    `facts` hold `effect_ledger`, None of what has no model of its dynamics.
+    `metadata` hold `effect_ledger`, None of what has no model of its dynamics.
     """
     sections = [Section(title, figures=figures)]
-    if facts["effect_ledger"] is None:
+    if metadata["effect_ledger"] is None:
         return Page("Dynamics of geared shafts", "", headlines, tuple(sections), ())
-    sections.append(ledger_section(boundary_ledger(facts["effect_ledger"])))
-    if tables := cost_tables(facts):
+    sections.append(ledger_section(boundary_ledger(metadata["effect_ledger"])))
+    if tables := cost_tables(metadata):
         sections.append(Section("Cost", tables=tables, part=Part.RECEIPT))
-    return Page("Dynamics of geared shafts", "", headlines, tuple(sections), tuple(run_lines(facts)))
+    return Page("Dynamics of geared shafts", "", headlines, tuple(sections), tuple(run_lines(metadata)))

@@ -35,12 +35,12 @@ def excess_of_teeth(
     roll, face : ndarray, shapes (R,), (Z,)
         Roll lengths, and distances from the mid-face of the gear, m.
     """
-    own = (pair.pinion, pair.wheel)[gear]
-    tooth = np.arange(own.teeth)[:, None, None]
+    toothing = (pair.pinion, pair.wheel)[gear]
+    tooth = np.arange(toothing.teeth)[:, None, None]
     along = face + (pair.axial_offset if gear else 0.0)
     teeth = MeetingTeeth(pair, tooth, roll[:, None], roll[:, None], along)
     gaps = [term(teeth) for term in model.tooth_gaps if term.gear == gear]
-    return -np.asarray(sum(np.broadcast_to(gap, (own.teeth, roll.size, face.size)) for gap in gaps))
+    return -np.asarray(sum(np.broadcast_to(gap, (toothing.teeth, roll.size, face.size)) for gap in gaps))
 
 
 def _figure(pair: ParallelAxes, model: ContactModel, index: int) -> Figure | None:

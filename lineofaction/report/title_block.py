@@ -41,10 +41,10 @@ def titled(page: Page, about: ReportInput | None) -> Page:
         "date": date.today().isoformat(),
         "made with": f"lineofaction {software_versions()['lineofaction']}",
     }
-    requirements = [one for words in about.requirements if (one := Requirement.of(words)) is not None]
-    verdicts = tuple(words for one in requirements for words in _verdicts(one, page.headlines))
+    requirements = [one for line in about.requirements if (one := Requirement.of(line)) is not None]
+    verdicts = tuple(line for one in requirements for line in _verdicts(one, page.headlines))
     unmet = tuple(
-        f"Required, but no main result of this report: {one.words}"
+        f"Required, but no main result of this report: {one.text}"
         for one in requirements
         if not _meant(one, page.headlines)
     )
@@ -65,15 +65,15 @@ def _meant(required: Requirement, headlines: Sequence[Headline]) -> list[tuple[H
 
 def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]:
     """Return a sentence for each result: met, not met, or open where its error leaves it so."""
-    words = []
+    verdicts = []
     for one, value in _meant(required, headlines):
-        low, high, stated = _band(one, value)
+        low, high, band = _band(one, value)
         met = value <= required.limit if required.maximum else value >= required.limit
         verdict = "Open within the error" if low < required.limit < high else "Met" if met else "Not met"
         limit = f"{'at most' if required.maximum else 'at least'} {required.limit:g} {required.unit}".rstrip()
-        result = f"{one.value.removesuffix(required.unit).strip()}{stated} {required.unit}".rstrip()
-        words.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
-    return words
+        result = f"{one.value.removesuffix(required.unit).strip()}{band} {required.unit}".rstrip()
+        verdicts.append(f"{verdict}: {one.name} is {result}; required is {limit}.")
+    return verdicts
 
 
 def _band(headline: Headline, value: float) -> tuple[float, float, str]:

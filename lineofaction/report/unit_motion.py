@@ -58,8 +58,8 @@ def _groups(offered: list[OfferedMotion]) -> list[Json]:
 def motion_json(motion: UnitMotion) -> Json:
     """Return a motion in mm and rad; raises `DamagedFile`: a value is not finite."""
     shafts = []
-    for name, (along, moved) in motion.at_stations(STATIONS).items():
-        in_mm = np.where(_LENGTHS, moved / MM, moved)
+    for name, (along, displacement) in motion.at_stations(STATIONS).items():
+        in_mm = np.where(_LENGTHS, displacement / MM, displacement)
         if not np.all(np.isfinite(in_mm)):
             raise DamagedFile(f"The stored motion of {name} has values that are not finite.")
         shafts.append(
@@ -90,8 +90,8 @@ def _surface_json(surface: SurfaceShape, is_velocity: bool) -> Json:
         "level_db": packed(20.0 * np.log10(np.maximum(size, QUIETEST))),
         "level_re": "50 nm/s" if is_velocity else "the largest",
     }
-    moved = {"real": packed(motion.real / MM), "imaginary": packed(motion.imag / MM)}
-    return packed_surface(points, facets) | moved | level
+    parts = {"real": packed(motion.real / MM), "imaginary": packed(motion.imag / MM)}
+    return packed_surface(points, facets) | parts | level
 
 
 def _rounded(values: Any) -> list[list[float]]:

@@ -65,7 +65,7 @@ def picture_sections(unit: Sequence[Json] | None) -> tuple[Section, ...]:
         key=f"unit_{sha256(repr((bodies, surfaces)).encode()).hexdigest()[:8]}",
         title=TITLE,
         caption=CAPTION + (HOUSED if surfaces else UNHOUSED),
-        alternative=_words(bodies),
+        alternative=_alternative(bodies),
         content=(),
         picture=partial(unit_png, bodies, tuple(map(Hull.of, surfaces))),
     )
@@ -83,7 +83,7 @@ def is_picture(section: Section) -> bool:
     return any(figure.picture is not None for figure in section.figures)
 
 
-def _words(bodies: Sequence[Body]) -> str:
+def _alternative(bodies: Sequence[Body]) -> str:
     """Say how many shafts, gears and bearings there are, and name them."""
     counts = [
         (sum(body.kind in kinds for body in bodies), word)
@@ -125,15 +125,15 @@ def _points(
         rows, columns = np.nonzero(seen.body == index)
         if body.kind in kinds and rows.size:
             column = int(np.quantile(columns, 0.05 + 0.9 * side, method="nearest"))
-            own = rows[columns == column]
-            points.append((_short(body.name), float(column), float(own[own.size // 2])))
+            in_column = rows[columns == column]
+            points.append((_short(body.name), float(column), float(in_column[in_column.size // 2])))
     return sorted(points, key=lambda point: point[2])[: int(SIZE[1] / ROW) - 1]
 
 
 def _write(sheet: Sheet, points: list[tuple[str, float, float]], at: float, side: str) -> None:
     """Write names in a column that begins or ends at a pixel, each with a line to what it names."""
     width, height = SIZE
-    middles = _apart([row for _, _, row in points])
+    middles = _spread_rows([row for _, _, row in points])
     for (text, column, row), middle in zip(points, middles, strict=True):
         end = at + (-2.0 if side == "left" else 2.0)
         line = Line2D([end / width, column / width], [1.0 - middle / height, 1.0 - row / height])
@@ -144,7 +144,7 @@ def _write(sheet: Sheet, points: list[tuple[str, float, float]], at: float, side
         )
 
 
-def _apart(rows: Sequence[float]) -> list[float]:
+def _spread_rows(rows: Sequence[float]) -> list[float]:
     """Return the middles of names, rows apart and within the picture, near increasing rows of pixels."""
     low, high = 0.5 * ROW, SIZE[1] - 0.5 * ROW
     middles: list[float] = []

@@ -43,4 +43,4 @@ def _parts(content: object) -> list[bytes]:
     else:
         raise TypeError(f"the content of {type(content).__name__} is not known")
     name = f"{type(content).__qualname__} {len(inside)}".encode()
-    return [name, *(part for each in inside for part in _parts(each))]
+    return [name, *(part for entry in inside for part in _parts(entry))]

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from host.extras import require
-from model_studies.workers.executor import KEPT, Packed, RunCost, WorkersLost, do_task
+from model_studies.workers.executor import MAX_SHARED, Packed, RunCost, WorkersLost, do_task
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -29,9 +29,9 @@ _LOOK_S = 1.0
 """How often it is looked whether there are any."""
 _AT_ONCE = 256
 """Results that are fetched by one message, at most."""
-KEPT_RESULTS = 64
-"""Results of `kept` tasks that stay in a cluster: a gear over its face has up to 100 MB."""
-_KEPT = "kept-"
+MAX_RESULTS = 64
+"""Results of `cluster_cached` tasks that stay in a cluster: a gear over its face has up to 100 MB."""
+_PREFIX = "kept-"
 CONNECT_S = 10.0
 """How long a scheduler may take to answer."""
 
@@ -52,7 +52,7 @@ class ByDask:
         """Submit everything, yield in order; what is not yielded any more is left.
 
         A task is named by its content: what several callers want at the same time is done once, and what is
-        `kept` is done once while the cluster lasts.
+        `cluster_cached` is done once while the cluster lasts.
         """
         import dask  # noqa: PLC0415 (an extra)
 
@@ -64,14 +64,14 @@ class ByDask:
             keys = [f"{name}-{digest}-{Packed.of(item).digest}" for item in items]
             # one graph: a submission each costs the scheduler as much as the task
             futures = self.client.map(partial(do_task, function), items, packed=packed, key=keys)
-        return self._in_order(futures, keep=getattr(function, "kept", False))
+        return self._in_order(futures, keep=getattr(function, "cluster_cached", False))
 
     def _send(self, shared: object) -> tuple[str, Any]:
         """Return digest and future of what is shared, sent unless it was before."""
         known = self._sent.get(id(shared))
         if known is None or known[2].status == "cancelled":
             self._sent.pop(id(shared), None)
-            while len(self._sent) >= KEPT:
+            while len(self._sent) >= MAX_SHARED:
                 self._sent.pop(next(iter(self._sent)))
             packed = Packed.of(shared)
             # a task of its own, not scattered data: the scheduler makes it again where its worker died
@@ -83,10 +83,10 @@ class ByDask:
         """Yield the results; let go of the rest when the caller stops or a task fails."""
         count = 0
         try:
-            kept_before = {key for _, key in self._published()} if keep else set()
+            earlier_keys = {key for _, key in self._published()} if keep else set()
             while count < len(futures):
                 for done in self._results(futures, count):
-                    yield done.result if futures[count].key in kept_before else self.cost.add(done)
+                    yield done.result if futures[count].key in earlier_keys else self.cost.add(done)
                     count += 1
             if keep:
                 self._publish({future.key: future for future in futures})
@@ -99,18 +99,18 @@ class ByDask:
         names: tuple[str, ...] = ()
         with suppress(Exception):  # a scheduler that is gone ends the tasks, which say so
             names = self.client.list_datasets()  # type: ignore[no-untyped-call]
-        return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_KEPT)]
+        return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_PREFIX)]
 
     def _publish(self, futures: Mapping[str, Any]) -> None:
         """Leave results with the workers, which write to disk what their memory has no room for."""
-        published, now = self._published(), f"{_KEPT}{time.time():.3f}"
+        published, now = self._published(), f"{_PREFIX}{time.time():.3f}"
         new: dict[Any, Any] = {
             f"{now} {key}": futures[key] for key in futures.keys() - {key for _, key in published}
         }
         older: list[Any] = [name for name, _ in published]
         with suppress(Exception):  # all results are here: who asks for them later makes them again
             self.client.publish_dataset(new)
-            self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - KEPT_RESULTS)])
+            self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - MAX_RESULTS)])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as there is somebody to make it; return it with those ready after it."""

@@ -19,7 +19,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from host import children_cpu_seconds, cpu_seconds, peak_memory
 
-KEPT = 2
+MAX_SHARED = 2
 """Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
 _local = threading.local()
 R = TypeVar("R")
@@ -65,7 +65,7 @@ class Packed:
         """Return it; the same object for all tasks of a thread, so that what it keeps is kept."""
         known: dict[str, Any] = _local.__dict__.setdefault("known", {})
         if self.digest not in known:
-            while len(known) >= KEPT:
+            while len(known) >= MAX_SHARED:
                 known.pop(next(iter(known)))
             content = self.content if self.file is None else self.file.read_bytes()
             known[self.digest] = pickle.loads(content)
@@ -135,8 +135,8 @@ def do_task(function: Callable[[Any, Any], R], item: Any, packed: Packed) -> _Do
 def task_cpu_seconds() -> float:
     """Return the CPU seconds of a task's process, or of its thread beside others, and of children."""
     alone = threading.current_thread() is threading.main_thread()
-    own = time.process_time() if alone else time.thread_time()
-    return own + children_cpu_seconds()
+    seconds = time.process_time() if alone else time.thread_time()
+    return seconds + children_cpu_seconds()
 
 
 @dataclass(frozen=True)
@@ -164,7 +164,7 @@ class ByExecutor:
         known = self._packed.get(id(shared))
         if known is not None:
             return known[1]
-        while len(self._packed) >= KEPT:
+        while len(self._packed) >= MAX_SHARED:
             _, old = self._packed.pop(next(iter(self._packed)))
             if old.file is not None:
                 old.file.unlink(missing_ok=True)
@@ -241,9 +241,9 @@ class InProcess:
         return (function(shared, item) for item in items)
 
 
-def kept(function: Function) -> Function:
+def cluster_cached(function: Function) -> Function:
     """Mark a function of tasks whose results a cluster keeps for whoever asks for the same later."""
-    function.kept = True  # type: ignore[attr-defined]
+    function.cluster_cached = True  # type: ignore[attr-defined]
     return function
 
 
@@ -254,11 +254,11 @@ def kept(function: Function) -> Function:
 class OrHere:
     """Workers that may be lost; what they leave is done in this process.
 
-    `told` is called once, with the reason, when they are lost; nobody looks for them again.
+    `on_loss` is called once, with the reason, when they are lost; nobody looks for them again.
     """
 
     others: Workers
-    told: Callable[[WorkersLost], None]
+    on_loss: Callable[[WorkersLost], None]
 
     @property
     def cost(self) -> RunCost:
@@ -275,7 +275,7 @@ class OrHere:
                     done += 1
             except WorkersLost as error:
                 self.cost.lost = str(error)
-                self.told(error)
+                self.on_loss(error)
         for item in items[done:]:
             yield function(shared, item)
 

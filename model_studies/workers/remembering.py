@@ -44,10 +44,10 @@ class Remembering:
         if files is None:
             yield from self.others.run(function, shared, items)
             return
-        kept = [_read(file) for file in files]
-        missing = [item for item, known in zip(items, kept, strict=True) if known is None]
+        stored = [_read(file) for file in files]
+        missing = [item for item, known in zip(items, stored, strict=True) if known is None]
         results = self.others.run(function, shared, missing)
-        for file, known in zip(files, kept, strict=True):
+        for file, known in zip(files, stored, strict=True):
             if known is not None:
                 yield known[0]
                 continue

@@ -18,7 +18,7 @@ import threading
 from dataclasses import dataclass
 from typing import BinaryIO
 
-from host import kill_own_group, lower_priority
+from host import kill_process_group, lower_priority
 from host.children.frames import Frame, read_frame
 from service.live.answer import answer_of
 from service.live.order import LiveOrder
@@ -70,7 +70,7 @@ def _listen(stream: BinaryIO, orders: queue.SimpleQueue[Frame], stop: _Stop) -> 
             stop.ask_for(frame.as_json())
         else:
             orders.put(frame)
-    kill_own_group()
+    kill_process_group()
 
 
 class _Stopped(BaseException):

@@ -11,7 +11,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.file_content import LARGEST, FileContentInput
 from lineofaction.gearbox.schemas.files import SENT, written_out
-from lineofaction.gearbox.schemas.named_files import Find, own_name, read_text
+from lineofaction.gearbox.schemas.named_files import Find, base_name, read_text
 from lineofaction.gearbox.schemas.reading import validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table
@@ -31,7 +31,7 @@ def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Annou
     fields: dict[str, str] = {}
     left = LARGEST
     for index, file in enumerate(files):
-        name = own_name(file.name)
+        name = base_name(file.name)
         if name in places:
             raise BadInput.of(f"files[{index}].name", name, "sent once", "Rename one of the files.")
         fields[name] = f"files[{index}]"
@@ -39,11 +39,11 @@ def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Annou
         left -= places[name].stat().st_size
 
     def find(name: str, field: str) -> Path:
-        if own_name(name) not in places:
+        if base_name(name) not in places:
             known = f"one of {', '.join(places)}" if places else "a file sent with the text"
             raise BadInput.of(field, name, known, "Send it together with the text that names it.")
-        announce(fields[own_name(name)])
-        return places[own_name(name)]
+        announce(fields[base_name(name)])
+        return places[base_name(name)]
 
     return find
 
@@ -54,7 +54,7 @@ def _written(file: FileContentInput, folder: Path, field: str, maximum: int) -> 
         content = file.unpacked(maximum)
     except ValueError as error:
         raise BadInput.of(f"{field}.content", file.name, str(error)) from None
-    place = folder / own_name(file.name)
+    place = folder / base_name(file.name)
     try:
         place.write_bytes(content)
     except (OSError, ValueError):
@@ -78,7 +78,7 @@ def scene_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:
     Raises `BadInput`: with every fault of the text, or a file that it names is missing, damaged or holds
     something else.
     """
-    names = {own_name(file["name"]) for file in inputs["files"]}
+    names = {base_name(file["name"]) for file in inputs["files"]}
     table = _table(inputs, folder, announce, lambda table, find: _with_cases(table, find, names))
     scene = validated(SceneInput, table)
     return {"scene": scene.model_dump(mode="json", exclude_unset=True)}
@@ -108,7 +108,7 @@ def _with_cases(table: Json, find: Find, names: set[str]) -> Json:
 def _with_case(mesh: object, find: Find, names: set[str], cases: dict[str, Json], field: str) -> object:
     """Return the table of a mesh with its case in place of the name of its file; each is read once."""
     name = mesh.get("case_file") if isinstance(mesh, dict) else None
-    if not isinstance(mesh, dict) or not isinstance(name, str) or own_name(name) not in names:
+    if not isinstance(mesh, dict) or not isinstance(name, str) or base_name(name) not in names:
         return mesh
     field = f"{field}.case_file"
     if name not in cases:

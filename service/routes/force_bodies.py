@@ -24,7 +24,7 @@ from lineofaction.gearbox.convert.force_query import (
 from lineofaction.gearbox.problems import BadInput, NotAcceptable, UnsupportedMediaType
 from lineofaction.gearbox.schemas.faults import fault_of, innermost
 from lineofaction.gearbox.schemas.model import HASH
-from lineofaction.gearbox.schemas.query import QueryInput, validity_words
+from lineofaction.gearbox.schemas.query import QueryInput, validity_text
 from service.routes.context import context_of
 from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
 
 
-_WORDS = [validity_words(flags) for flags in range(16)]
+_WORDS = [validity_text(flags) for flags in range(16)]
 _FLOAT64_ARRAY = 86  # RFC 8746: little-endian float64, the one tag a query may have
 _DEEPEST = 2
 _EMPTY_LIST = b"\x80"  # also a byte of numbers, but hardly of every other one

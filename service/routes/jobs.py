@@ -64,7 +64,7 @@ AtMost = Annotated[
     Query(alias="maxDuration", description="Jobs that ran for at most this many seconds", **_DURATION),
 ]
 Tags = Annotated[list[Tag], Query(max_length=16, description="Jobs that have all of these tags")]
-Words = Annotated[Title, Query(description="Jobs with all of these words in their title, in any case")]
+Wording = Annotated[Title, Query(description="Jobs with all of these words in their title, in any case")]
 Parent = Annotated[
     str | None,
     Query(pattern="^[0-9a-f-]{36}$", description="Jobs of this batch; without it, batches and jobs of none"),
@@ -85,7 +85,7 @@ async def job_filter(
     shortest: AtLeast = 0,
     longest: AtMost = None,
     tag: Tags = [],  # noqa: B006
-    title: Words = "",
+    title: Wording = "",
     parent: Parent = None,
     once: Once = False,
 ) -> JobFilter:

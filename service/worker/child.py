@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from fe_contact.cache_reads import COMPLIANCE_READS
-from host import cpu_seconds, kill_own_group, lock, lower_priority, peak_memory
+from host import cpu_seconds, kill_process_group, lock, lower_priority, peak_memory
 from host.children.frames import Frame, read_frame
 from lineofaction.gearbox.loading import on_demand
 from lineofaction.gearbox.problems import ServiceError
@@ -86,7 +86,7 @@ def _order(orders: BinaryIO) -> WorkOrder:
 def _end_with(orders: BinaryIO) -> None:
     """Kill the process group when the service is gone, and so no order can come any more."""
     orders.read(1)
-    kill_own_group()
+    kill_process_group()
 
 
 class _Channel:

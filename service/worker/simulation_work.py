@@ -29,7 +29,7 @@ from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.stages import TableFraction, staged
-from lineofaction.gearbox.studies.excitations import facts_of_scene
+from lineofaction.gearbox.studies.excitations import scene_metadata
 from lineofaction.gearbox.tabled_scene import checked_table
 from model_studies.progress import Report, by_cost
 from service.worker.job_executor import table_workers
@@ -99,7 +99,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
     _run(ordered.tabled.scene, file, progress)
-    stamp_scene(file, facts_of_scene(ordered.tabled))
+    stamp_scene(file, scene_metadata(ordered.tabled))
     return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
 
 

@@ -59,7 +59,7 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     own = study.run.warnings(found) if warnings is None else warnings
     if isinstance(subject, HousedScene):
         own = [*left_out_warnings(subject.inputs.left_out), *(own or ())]
-    runs = (Product(key, "run", run) for key, run in study.run.kept(found, means).items())
+    runs = (Product(key, "run", run) for key, run in study.run.stored_runs(found, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, own))
 
 

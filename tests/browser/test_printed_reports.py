@@ -21,7 +21,7 @@ from small_inputs import small_inputs
 from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report.binding import bound
-from lineofaction.report.document import page_of, read_inputs, write_whole
+from lineofaction.report.document import page_of, read_inputs, write_page
 from lineofaction.report.drawing.figure import Table
 from lineofaction.report.drawing.image import panel_sheet
 from lineofaction.report.drawing.page import Page, Part, Section
@@ -108,7 +108,7 @@ def report(
     else:
         page = of_long_table() if name == "table" else of_study(name)
     page = titled(page, BLOCK)
-    write_whole(page, folder / "report.pdf")
+    write_page(page, folder / "report.pdf")
     return Report(page, Printed((folder / "report.pdf").read_bytes()))
 
 
@@ -231,7 +231,7 @@ def test_a_report_is_saved_to_print(browser: Browser, address: str, analyzed: st
 def test_a_picture_with_its_title_has_no_second_one_on_the_screen(
     browser: Browser, closed_forms: ModuleType, tmp_path: Path
 ) -> None:
-    write_whole(of_pair(closed_forms, tmp_path), tmp_path / "still.html", still_only=True)
+    write_page(of_pair(closed_forms, tmp_path), tmp_path / "still.html", still_only=True)
     page = browser.new_page()
     page.goto((tmp_path / "still.html").as_uri())
     figures = page.locator("figure:has(.still)")

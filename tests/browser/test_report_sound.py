@@ -15,7 +15,7 @@ from playwright.sync_api import Browser, Locator, Page, Route, expect
 from running_service import until
 
 from lineofaction.report.comparison.compare import compare, stored_comparison
-from lineofaction.report.document import stored_figures, write_report, write_whole
+from lineofaction.report.document import stored_figures, write_page, write_report
 from lineofaction.report.run.sound import stored_sound
 from lineofaction.report.run.view import RunView
 
@@ -39,7 +39,7 @@ def order_map(browser: Browser, folder: Path) -> Iterator[Locator]:
 
 @pytest.fixture(scope="module")
 def levels(browser: Browser, folder: Path) -> Iterator[Locator]:
-    write_whole(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
+    write_page(compare([folder / "loud.nc", folder / "quiet.nc"], RunView()), folder / "comparison.html")
     yield from figure(browser, folder / "comparison.html", "#levels")
 
 

@@ -42,7 +42,7 @@ def with_length(figure: Figure) -> dict[str, Any]:
 
 
 def as_written(facts: dict[str, Any]) -> dict[str, Any]:
-    return {each.field: each.own(facts[each.name]) for each in FIGURES if each.name in facts}
+    return {each.field: each.boundary_value(facts[each.name]) for each in FIGURES if each.name in facts}
 
 
 def test_all_but_the_grid_are_declared_numbers_or_names() -> None:
@@ -63,7 +63,7 @@ def test_a_case_and_the_library_mean_the_same(figure: Figure) -> None:
         value = getattr(meant, each.name)
         near = pytest.approx(value, rel=1e-15) if isinstance(value, float) else value
         assert getattr(read, each.name) == near, each.name
-    assert figure.own(figure.default) == getattr(case.pair.wheel, figure.field)
+    assert figure.boundary_value(figure.default) == getattr(case.pair.wheel, figure.field)
 
 
 LATER = [figure for figure in FIGURES if figure.what.later]
@@ -86,7 +86,7 @@ def test_a_case_is_written_with_the_later_figures_that_it_uses(figure: Figure) -
     table = json.loads(json.dumps(CASE))
     table["pair"]["pinion"] |= as_written(facts)
     found = Case.model_validate_json(json.dumps(table)).model_dump(mode="json")["pair"]["pinion"]
-    assert found[figure.field] == figure.own(facts[figure.name])
+    assert found[figure.field] == figure.boundary_value(facts[figure.name])
     assert written(FlankModification(**facts))[figure.name] == facts[figure.name]
 
 
@@ -130,7 +130,7 @@ def test_a_body_of_a_case_means_that_of_the_library(kind: type[Any]) -> None:
     at = table
     for name in place.split("."):
         at = at.setdefault(name, {"tangential_foundation_n_per_mm3": 1e4} if name == "seat" else {})
-    at |= {each.field: each.own(facts[each.name]) for each in figures(kind) if each.name in facts}
+    at |= {each.field: each.boundary_value(facts[each.name]) for each in figures(kind) if each.name in facts}
     pair = gear_pair(Case.model_validate_json(json.dumps(table)))
     gear = pair.pinion
     assert isinstance(gear, Gear)
@@ -157,8 +157,8 @@ def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any],
     at = table
     for name in place.split("."):
         at = at.setdefault(name, {})
-    at |= {each.field: each.own(facts[each.name]) for each in figures(kind) if each.name in facts}
-    at[figure.field] = figure.own(beyond)
+    at |= {each.field: each.boundary_value(facts[each.name]) for each in figures(kind) if each.name in facts}
+    at[figure.field] = figure.boundary_value(beyond)
     with pytest.raises(ValidationError) as refused:
         Case.model_validate_json(json.dumps(table))
     assert figure.field in str(refused.value)
@@ -208,7 +208,7 @@ def test_a_gear_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any],
     place = "pair" if figure in SHARED else f"pair.{gear}"
     assert case_field(f"{gear}.{figure.name}") == f"{place}.{figure.field}"
     at = table["pair"] if figure in SHARED else table["pair"][gear]
-    at[figure.field] = figure.own(beyond)
+    at[figure.field] = figure.boundary_value(beyond)
     with pytest.raises(ValidationError) as refused:
         Case.model_validate_json(json.dumps(table))
     assert f"{place}.{figure.field}" in str(refused.value)
@@ -231,7 +231,7 @@ def test_a_pair_is_refused_beyond_its_largest_center_distance_by_case_and_librar
         GearPair(GEARS[Gear], GEARS[Gear], 2 * figure.what.bound.le)
     assert (caught.value.field, caught.value.bound) == ("center_distance", figure.what.limits)
     table = json.loads(json.dumps(CASE))
-    table["pair"]["center_distance_mm"] = figure.own(2 * figure.what.bound.le)
+    table["pair"]["center_distance_mm"] = figure.boundary_value(2 * figure.what.bound.le)
     with pytest.raises(ValidationError) as refused:
         Case.model_validate_json(json.dumps(table))
     assert "pair.center_distance_mm" in str(refused.value)

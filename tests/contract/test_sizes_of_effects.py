@@ -218,9 +218,9 @@ def test_outputs_of_a_run_tell_one_number(sound: bool) -> None:
     for name, size in sizes.items():
         level = LevelChange(**size["level"])
         assert level.unit == ("dB(A)" if sound else "dB")
-        assert size["words"].startswith(f"{level.words}, ")
-        assert shown[name] == lines.get(name, level.words) == level.words
-        assert rows[name] == level.words
+        assert size["words"].startswith(f"{level.text}, ")
+        assert shown[name] == lines.get(name, level.text) == level.text
+        assert rows[name] == level.text
         assert document[name]["level"] == size["level"]
         assert levels.get(name, level.decibels) == level.decibels
     assert "lateral" in lines and levels["tilt"] != 0.0
@@ -243,7 +243,7 @@ def test_a_response_tells_the_number_of_a_run_at_its_speed() -> None:
     lines = {row[0].replace(" ", "_"): row[2] for row in table.rows}
     for name, size in sizes.items():
         assert size["level"]["decibels"] == pytest.approx(run[name]["level"]["decibels"], abs=0.05)
-        words = LevelChange(**size["level"]).words
+        words = LevelChange(**size["level"]).text
         assert lines.get(name) == words or abs(size["level"]["relative"]) < 1e-3
 
 

@@ -27,7 +27,7 @@ def point_request(**keywords: Any) -> tuple[OperatingPoint, AnalysisOptions]:
 def _options(keywords: dict[str, Any]) -> AnalysisOptions:
     """Take the options out of keywords; a number is the relative part of a tolerance."""
     found = {one.name: keywords.pop(one.name) for one in fields(AnalysisOptions) if one.name in keywords}
-    return AnalysisOptions(**found | {"tolerance": AllowedError.given(found.get("tolerance"))})
+    return AnalysisOptions(**found | {"tolerance": AllowedError.from_value(found.get("tolerance"))})
 
 
 def design_request(

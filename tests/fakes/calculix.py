@@ -101,7 +101,7 @@ def input_deck(placed: PlacedPair, loading: Loading) -> str:
     for gear, body in zip(gears, bodies, strict=True):
         lines += _nodes(gear.points, body)
     lines += [f"{turning},0.,0.,0.", f"*NSET, NSET={TURNING}", f"{turning}"]
-    lines += [f"*NSET, NSET={HELD}", *_list(bodies[1].first_node + gears[1].held)]
+    lines += [f"*NSET, NSET={HELD}", *_list(bodies[1].first_node + gears[1].bore_nodes)]
     for gear, body, material in zip(gears, bodies, loading.materials, strict=True):
         lines += _body(gear, body, material, loading.face_width)
     lines += _contact(placed, bodies, loading.penalty)
@@ -166,9 +166,9 @@ def _contact(placed: PlacedPair, bodies: Sequence[NumberedBody], penalty: float)
 
 def _rigid_bore(gear: PlacedBody, body: NumberedBody, turning: int, base_radius: float) -> list[str]:
     """Tie the bore to the turning node: clockwise, u = (y, -x) theta, linear as displacements are small."""
-    arms = ((gear.points[gear.held] - gear.center) / base_radius).tolist()
+    arms = ((gear.points[gear.bore_nodes] - gear.center) / base_radius).tolist()
     lines = []
-    for node, (x, y) in zip((gear.held + body.first_node).tolist(), arms, strict=True):
+    for node, (x, y) in zip((gear.bore_nodes + body.first_node).tolist(), arms, strict=True):
         lines += ["*EQUATION", "2", f"{node},1,1.,{turning},1,{_number(-y)}"]
         lines += ["*EQUATION", "2", f"{node},2,1.,{turning},1,{_number(x)}"]
     return lines

@@ -238,7 +238,9 @@ def _gear(gear: Any) -> Json:
 
 def _written(part: Any, declared: Any, names: tuple[str, ...]) -> Json:
     return {
-        figure.field: figure.own(getattr(part, figure.name)) for figure in declared if figure.name in names
+        figure.field: figure.boundary_value(getattr(part, figure.name))
+        for figure in declared
+        if figure.name in names
     }
 
 

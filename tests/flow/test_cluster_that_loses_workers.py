@@ -217,7 +217,7 @@ def test_a_gear_is_condensed_once_for_all_machines_and_the_oldest_one_goes(
     cluster: Cluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cluster.at_least(2)
-    monkeypatch.setattr(dask_cluster, "KEPT_RESULTS", 2)
+    monkeypatch.setattr(dask_cluster, "MAX_RESULTS", 2)
     first, second = replace(FEW_TEETH, teeth=10), FEW_TEETH
 
     def tasks(machine: str, *gears: Gear) -> int:
@@ -286,6 +286,6 @@ def divided(shared: float, item: float) -> float:
     return shared / item
 
 
-@executor.kept
+@executor.cluster_cached
 def kept_quotient(shared: float, item: float) -> float:
     return shared / item

@@ -67,14 +67,14 @@ def internal(numbers: dict[str, Any], rim: float) -> RingGear:
         raise
 
 
-def good_mesh(gear: Gear | RingGear, held_radius: float) -> Any:
+def good_mesh(gear: Gear | RingGear, seat_radius: float) -> Any:
     mesh = mesh_gear(gear)
     for part in (mesh.sector, mesh.hub):
         if part is not None:
             quality = mesh_quality(part.points, part.triangles)
             assert quality.scaled_jacobian.min() >= 0.2
             assert quality.angle.min() >= np.radians(12.0)
-    assert np.linalg.norm(mesh.points[mesh.bore_nodes], axis=1) == pytest.approx(held_radius)
+    assert np.linalg.norm(mesh.points[mesh.bore_nodes], axis=1) == pytest.approx(seat_radius)
     return mesh
 
 
@@ -123,7 +123,7 @@ def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, l
 )
 def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float, level: str) -> None:
     gear = internal(numbers, rim)
-    good_mesh(gear, gear.held_radius)
+    good_mesh(gear, gear.seat_radius)
     good_section(gear, getattr(SectorRecipe, level)(gear))
 
 
@@ -132,4 +132,4 @@ def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor() -> None:
     numbers = {"teeth": 30, "normal_module": 31.25e-3, "face_width": 187.5e-3, "cutter_teeth": 13}
     numbers |= {"normal_pressure_angle": 0.4526947747360292, "root_radius_coefficient": 0.00390625}
     gear = RingGear(**numbers, rim_diameter=1.078125)
-    good_mesh(gear, gear.held_radius)
+    good_mesh(gear, gear.seat_radius)

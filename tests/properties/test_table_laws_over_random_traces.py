@@ -119,7 +119,7 @@ def test_laws_pass_true_touching_points_and_find_out_others(
     case = solved(GearPair(**gears))
     error = case.no_load - true_no_load(case)
     (rigid,) = (law for law in case.laws if law.law == "lifting of rigid gears")
-    broken = [law.words for law in case.laws if law.broken]
+    broken = [law.text for law in case.laws if law.broken]
     if np.abs(error).max() < NEAR:
         assert broken == []
     span = case.model.extent(case.contact.pair, np.arange(24)).span

@@ -11,8 +11,8 @@ import pytest
 from analysis_requests import point_request
 from spur_gears import PAIR
 
-import fe_contact.analysis.pairs.kept_contact as kept
 import fe_contact.analysis.pairs.pair_contact as room
+import fe_contact.analysis.pairs.solved_contact as kept
 from fe_contact import SteDatabase, analyze, flank_results
 from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
 from fe_contact.contact.sweep import solve_sets

@@ -24,15 +24,15 @@ class SolvedPosition:
     def with_error(self, coarse: SolvedPosition) -> SolvedPosition:
         """Return the same points; their differences from those of a coarser mesh are their errors."""
         both = zip(self.contacts, coarse.contacts, strict=True)
-        return replace(self, contacts=tuple(_apart(own, other) for own, other in both))
+        return replace(self, contacts=tuple(_with_differences(point, other) for point, other in both))
 
 
-def _apart(fine: Loads, coarse: Loads) -> Loads:
+def _with_differences(fine: Loads, coarse: Loads) -> Loads:
     return tuple(
-        replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
-        if own.status.usable
-        else own
-        for own, other in zip(fine, coarse, strict=True)
+        replace(point, error_estimate=abs(point.transmission_error - other.transmission_error))
+        if point.status.usable
+        else point
+        for point, other in zip(fine, coarse, strict=True)
     )
 
 

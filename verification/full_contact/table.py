@@ -54,20 +54,20 @@ class FullContactPoint:
 
     def to_json(self) -> Json:
         """Return plain JSON; a point without a solution has its status and reason only."""
-        facts: Json = {"status": self.status.name.lower(), "iterations": self.iterations}
+        content: Json = {"status": self.status.name.lower(), "iterations": self.iterations}
         if np.isfinite(self.torque):
-            facts["torque_n_m"] = self.torque
+            content["torque_n_m"] = self.torque
         if not self.status.usable:
-            return facts | {"reason": self.reason}
-        facts |= {
+            return content | {"reason": self.reason}
+        content |= {
             "position": self.position,
             "transmission_error_m": self.transmission_error,
             "equilibrium_residual": self.residual,
             "torque_ratio": self.torque_ratio,
         }
         if np.isfinite(self.error_estimate):
-            facts["error_estimate_m"] = self.error_estimate
-        return facts
+            content["error_estimate_m"] = self.error_estimate
+        return content
 
 
 @brief

@@ -25,7 +25,7 @@ from dynamics.engines.fmu.model_description import (
 from dynamics.engines.mesh_element import MeshElement
 from dynamics.errors import InputError
 from dynamics.meshes.mesh_table import FIELDS, MeshTable
-from host.directories import whole_file
+from host.directories import atomic_file
 
 MAGIC = b"LOAMESH1"
 _EARLIEST = (1980, 1, 1, 0, 0, 0)
@@ -229,7 +229,7 @@ def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
 
 def _write(target: Path, content: Mapping[str, bytes]) -> None:
     """Write the archive; no clock goes into it."""
-    with whole_file(target) as draft, zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:
+    with atomic_file(target) as draft, zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:
         for member in sorted(content):
             entry = zipfile.ZipInfo(member, _EARLIEST)
             entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16

@@ -10,8 +10,8 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.pairs.kept_contact import problems_in_parts
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
+from fe_contact.analysis.pairs.solved_contact import problems_in_parts
 from fe_contact.analysis.pairs.tip_edges import edge_depth, handovers
 from fe_contact.analysis.request.solved_run import SolvedRun
 from fe_contact.analysis.tables import SolvedTable
@@ -72,7 +72,7 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
     )
 
 
-def check_one_place(run: SolvedRun) -> tuple[Assumption, ...]:
+def check_single_point(run: SolvedRun) -> tuple[Assumption, ...]:
     """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
     return (*_tip_edges(run, np.abs(_means(run))), *check_cheaply(run))
 
@@ -129,9 +129,9 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
             scene, _ = run.checked.assessing(name)
             sizes = _means(run), _ripples(run)
             bound = largest_part(scene.effect(name).extent(scene), *sizes, _allowed(run))
-            reason = f"estimated at {_allowed(run).part_words(estimate)} of what was computed"
+            reason = f"estimated at {_allowed(run).part_text(estimate)} of what was computed"
             if bound:
-                reason += f"; its gaps change at most {_allowed(run).part_words(bound)}"
+                reason += f"; its gaps change at most {_allowed(run).part_text(bound)}"
             change = max(estimate, bound)
             holds = change <= _allowed(run).relative
             yield Assumption(name, "neglected effects are negligible", holds, change, reason)
@@ -207,7 +207,7 @@ def _load_patches(run: SolvedRun) -> Assumption:
 
 def _support_loads(run: SolvedTable) -> Assumption:
     """From lift-off to twice the largest load the forces for dynamics are solved."""
-    failed = sum(int(np.count_nonzero(place.solution.status)) for place in run.support)
+    failed = sum(int(np.count_nonzero(point.solution.status)) for point in run.support)
     reason = (
         f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"
     )

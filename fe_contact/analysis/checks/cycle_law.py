@@ -34,9 +34,9 @@ def check_cycle(contact: CycleContact, ste: FloatArray, error: FloatArray) -> La
     alone = np.where(np.isfinite(alone), alone, alike.solution.deflection)
     room = alone + error
 
-    def place(pitch: int, position: int, load: int) -> str:
+    def location(pitch: int, position: int, load: int) -> str:
         at = pitch + contact.position[position]
         return f"position {at:.6g}, force {contact.load[load]:.6g} N"
 
     change = ste - alike.solution.deflection
-    return _LIFTING.between(change, low[:, None, None] - room, high[:, None, None] + room, place)
+    return _LIFTING.between(change, low[:, None, None] - room, high[:, None, None] + room, location)

@@ -102,7 +102,7 @@ def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | Non
         return ""
     if entry.on:
         return f"about {engineering(seconds, 2)} CPU s" if seconds is not None else "time"
-    return "not estimated" if influence is None else influence.words
+    return "not estimated" if influence is None else influence.text
 
 
 def toggled(checked: Checked, name: str, choice: str) -> Checked:

@@ -22,7 +22,7 @@ class LawCheck:
     law: str
     quantity: str
     """`law`, `quantity`: Name of the law, and what it bounds."""
-    place: str
+    location: str
     """Position, load, misalignment and center distance."""
     value: float
     bound: float
@@ -40,19 +40,24 @@ class LawCheck:
         return not self.ratio <= 1.0
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The law, the place and both numbers."""
         value, bound = (
             f"{engineering(number, _DIGITS)} {self.unit}".rstrip() if np.isfinite(number) else str(number)
             for number in (self.value, self.bound)
         )
-        return f"{self.law}: {self.quantity} is {value} at {self.place}, bound {bound}"
+        return f"{self.law}: {self.quantity} is {value} at {self.location}, bound {bound}"
 
     def to_json(self) -> Json:
         """Return plain JSON; numbers that are not finite are None."""
         numbers = {"value": self.value, "bound": self.bound, "ratio": self.ratio}
         finite = {name: number if np.isfinite(number) else None for name, number in numbers.items()}
-        return {"law": self.law, "quantity": self.quantity, "unit": self.unit, "place": self.place} | finite
+        return {
+            "law": self.law,
+            "quantity": self.quantity,
+            "unit": self.unit,
+            "place": self.location,
+        } | finite
 
 
 @dataclass(frozen=True)
@@ -65,36 +70,40 @@ class Law:
     per_si: float = 1.0
 
     def between(
-        self, value: FloatArray, low: FloatArray | float, high: FloatArray | float, place: Callable[..., str]
+        self,
+        value: FloatArray,
+        low: FloatArray | float,
+        high: FloatArray | float,
+        location: Callable[..., str],
     ) -> LawCheck:
-        """Hold values (...) between bounds that broadcast; `place` names the place of an index."""
+        """Hold values (...) between bounds that broadcast; `location` names the place of an index."""
         low, high = np.broadcast_to(low, value.shape), np.broadcast_to(high, value.shape)
         middle, room = 0.5 * (low + high), 0.5 * (high - low)
         off = value - middle
         ratio = np.divide(np.abs(off), room, out=np.full(value.shape, np.inf), where=room > 0.0)
         ratio = np.where(off == 0.0, 0.0, ratio)
         bound = np.where(off < 0.0, low, high)
-        return self._worst(value, bound, ratio, place)
+        return self._worst(value, bound, ratio, location)
 
-    def below(self, value: FloatArray, bound: FloatArray | float, place: Callable[..., str]) -> LawCheck:
+    def below(self, value: FloatArray, bound: FloatArray | float, location: Callable[..., str]) -> LawCheck:
         """Hold values (...) below bounds > 0 that broadcast."""
         bound = np.broadcast_to(bound, value.shape)
-        return self._worst(value, bound, value / bound, place)
+        return self._worst(value, bound, value / bound, location)
 
-    def above(self, value: FloatArray, bound: FloatArray | float, place: Callable[..., str]) -> LawCheck:
+    def above(self, value: FloatArray, bound: FloatArray | float, location: Callable[..., str]) -> LawCheck:
         """Hold values (...) above bounds > 0 that broadcast; the ratio is bound over value."""
         bound = np.broadcast_to(bound, value.shape)
         ratio = np.divide(bound, value, out=np.full(value.shape, np.inf), where=value > 0.0)
-        return self._worst(value, bound, ratio, place)
+        return self._worst(value, bound, ratio, location)
 
     def _worst(
-        self, value: FloatArray, bound: FloatArray, ratio: FloatArray, place: Callable[..., str]
+        self, value: FloatArray, bound: FloatArray, ratio: FloatArray, location: Callable[..., str]
     ) -> LawCheck:
         at = np.unravel_index(int(np.argmax(np.where(np.isnan(ratio), np.inf, ratio))), ratio.shape)
         return LawCheck(
             law=self.name,
             quantity=self.quantity,
-            place=place(*at),
+            location=location(*at),
             value=float(value[at]) * self.per_si,
             bound=float(bound[at]) * self.per_si,
             unit=self.unit,
@@ -102,13 +111,13 @@ class Law:
         )
 
 
-def place_words(
+def location_text(
     table: SteFields, position: int, misalignment: int, distance: int, force: float | None = None
 ) -> str:
     """Name a place of a table by its indices, and the normal force in N if there is one."""
-    words = [f"position {table.position[position]:.6g}"]
+    parts = [f"position {table.position[position]:.6g}"]
     if force is not None:
-        words.append(f"force {force:.6g} N")
-    words.append(f"misalignment {1e6 * table.misalignment[misalignment]:.4g} µm")
-    words.append(f"center distance change {1e6 * table.center_distance_change[distance]:.4g} µm")
-    return ", ".join(words)
+        parts.append(f"force {force:.6g} N")
+    parts.append(f"misalignment {1e6 * table.misalignment[misalignment]:.4g} µm")
+    parts.append(f"center distance change {1e6 * table.center_distance_change[distance]:.4g} µm")
+    return ", ".join(parts)

@@ -89,9 +89,9 @@ def largest_steps(
     """
     pair = point.contact.pair
     low, high, slope = (np.asarray(bound) for bound in (deviations.low, deviations.high, deviations.slope))
-    here_and_next = [np.stack([bound, np.roll(bound, -1)]) for bound in (low, high, slope)]
-    span = here_and_next[1].max(axis=0) - here_and_next[0].min(axis=0)
-    by_deviations = np.minimum(here_and_next[2].max(axis=0) * way, span)[:, None]
+    neighbors = [np.stack([bound, np.roll(bound, -1)]) for bound in (low, high, slope)]
+    span = neighbors[1].max(axis=0) - neighbors[0].min(axis=0)
+    by_deviations = np.minimum(neighbors[2].max(axis=0) * way, span)[:, None]
     edges = edge_slope(pair, deflection)
     elastic = ELASTIC * compliance_slope(problem, pair.base_pitch) * deflection
     return np.asarray(by_deviations + way[:, None] * (edges + elastic))

@@ -56,12 +56,10 @@ def settled(
         repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
 
 
-def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bool = True) -> Checked:
+def with_effects(checked: Checked, needed: Mapping[str, str], *, check_size: bool = True) -> Checked:
     """Return the request with effects switched on that a run showed to be needed."""
     request = checked.request
     reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
     neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
     turned_on = {**request.turned_on, **reasons}
-    return checked_request(
-        replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table
-    )
+    return checked_request(replace(request, neglected=neglected, turned_on=turned_on), check_size=check_size)

@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fe_contact.analysis.checks.law import Law, LawCheck, place_words
+from fe_contact.analysis.checks.law import Law, LawCheck, location_text
 from fe_contact.analysis.checks.lifting import deviations_in_mesh
 from fe_contact.analysis.checks.neighbors import approach_steps, largest_steps
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
@@ -76,8 +76,8 @@ def check_laws(
     worst: dict[tuple[str, str], LawCheck] = {}
     for i, (point, (problem, solution)) in enumerate(zip(points, solved, strict=True)):
         solutions = (solution, *support[i : i + 1])
-        place = _Place(table, point, problem, solutions, *divmod(i, distances))
-        for law in place.laws():
+        alignment = _AlignmentLaws(table, point, problem, solutions, *divmod(i, distances))
+        for law in alignment.laws():
             key = law.law, law.quantity
             if key not in worst or not law.ratio <= worst[key].ratio:
                 worst[key] = law
@@ -89,7 +89,7 @@ def require_laws(laws: Sequence[LawCheck], partial: object, result: str = "table
 
     `result`: what it is, a noun in the singular.
     """
-    broken = [law.words for law in laws if law.broken]
+    broken = [law.text for law in laws if law.broken]
     if broken:
         raise SolveError(
             f"the {result} breaks a law of mechanics and is no result: {'; '.join(broken)}", partial
@@ -97,7 +97,7 @@ def require_laws(laws: Sequence[LawCheck], partial: object, result: str = "table
 
 
 @dataclass(frozen=True)
-class _Place:
+class _AlignmentLaws:
     """One misalignment m at one center distance d of a table; the first solution is at its loads."""
 
     table: SteFields
@@ -146,11 +146,11 @@ class _Place:
 
     def _at(self, position: int, load: int | None = None) -> str:
         force = None if load is None else float(self.table.force[load])
-        return place_words(self.table, position, self.m, self.d, force)
+        return location_text(self.table, position, self.m, self.d, force)
 
     def _lifting(self) -> Iterator[LawCheck]:
         """Bound the curve without load and under load by the deviations of the teeth in mesh."""
-        low, high = (np.asarray(each) for each in (self._deviations.low, self._deviations.high))
+        low, high = (np.asarray(values) for values in (self._deviations.low, self._deviations.high))
         alone = single_pair_deflection(self.point.contact.pair, self.problem, self.table.force)
         alone = np.tile(alone, (self._ste.shape[0] // len(alone), 1))
         carried = np.isfinite(alone).all(axis=1)
@@ -186,7 +186,7 @@ class _Place:
         upper = np.where(exact, 1.0 + bent, np.inf) * tangent
 
         def at(position: int, load: int) -> str:
-            return place_words(t, position, m, d, float(force[load]))
+            return location_text(t, position, m, d, float(force[load]))
 
         good = np.isfinite(ste) & np.isfinite(chord)
         yield _RISING.above(np.where(good, chord, 1.0), np.where(good, minimum, 0.0), at)
@@ -251,8 +251,8 @@ class _Place:
         pairs = np.unique(candidates.pair)
         there = np.isfinite(candidates.gap[:count])
         widths, radii = (
-            np.where(there, each[:count], 0.0).reshape(count, pairs.size, -1)
-            for each in (candidates.width, candidates.radius)
+            np.where(there, values[:count], 0.0).reshape(count, pairs.size, -1)
+            for values in (candidates.width, candidates.radius)
         )
         model = self.point.model
         flattest = flattest_touch(candidates.touch) if model.sloped or model.tooth_gaps else 1.0

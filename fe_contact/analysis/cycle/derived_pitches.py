@@ -20,8 +20,8 @@ from fe_contact.analysis.cycle.load_monotonicity import rising_deflection
 from fe_contact.analysis.cycle.tangents import SolvedState
 from fe_contact.analysis.pairs.contact_block import curves_of_point
 from fe_contact.analysis.pairs.contact_fields import OF_SUPPORT, contact_fields, largest_by_pair
-from fe_contact.analysis.pairs.kept_contact import KeptContact, solved_in_parts
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.pairs.solved_contact import SolvedContact, solved_in_parts
 from fe_contact.analysis.pairs.tip_edges import edge_depth
 from fe_contact.contact import Candidates, ContactSolution, contact_pressure
 from fe_contact.contact.load_weights import load_sums
@@ -113,7 +113,7 @@ class DerivedPitches:
         """Take those of an envelope whose transmission error (T, P, L) is known."""
         states = envelope.minimum.state.copy()
         states[envelope.pitches] = 1 + np.arange(envelope.pitches.size)[:, None, None]
-        exact = [envelope.kept[name] for name in _CURVES]
+        exact = [envelope.arrays[name] for name in _CURVES]
         curves = np.stack([ste, envelope.sum(_ARM)], axis=-1)
         return cls(envelope.contact, envelope.pitches, states, np.stack(exact, axis=-1), curves)
 
@@ -154,7 +154,7 @@ def _arms(state: SolvedState) -> FloatArray:
 class DerivedTable:
     """One operating point over a whole period, by derivatives."""
 
-    kept: tuple[KeptContact, ...]
+    contacts: tuple[SolvedContact, ...]
     """Of each set of loads. Pitches that were not solved have no residuals: NaN."""
     derived: DerivedPitches
     errors: DerivedErrors
@@ -183,18 +183,18 @@ def derived_table(
             return "derivatives about a quarter of the base pitches do not keep the tolerance"
         envelope = _with_pressed(envelope.about(np.setdiff1d(first, envelope.pitches)))
         light = CycleContact(point, position, support)
-        beside = Envelope.about_all(light, envelope.pitches, partial(_keep_support, point))
+        support_envelope = Envelope.about_all(light, envelope.pitches, partial(_keep_support, point))
     except SolveError as error:
         return str(error)
-    levels = rising_deflection(envelope, beside)
+    levels = rising_deflection(envelope, support_envelope)
     if levels is None:
         return "by derivatives the transmission error would not rise with load"
     begun = solved_in_parts(point, position, sets, first, edges=False)
     unloaded, ste, of_support = levels
-    arrays = _arrays(envelope, ste), _support_arrays(beside, of_support)
+    arrays = _arrays(envelope, ste), _support_arrays(support_envelope, of_support)
     contacts = [
-        _kept(start, each, values, unloaded)
-        for start, each, values in zip(begun, (envelope, beside), arrays, strict=True)
+        _contact(start, part_envelope, values, unloaded)
+        for start, part_envelope, values in zip(begun, (envelope, support_envelope), arrays, strict=True)
     ]
     return DerivedTable(tuple(contacts), DerivedPitches.of(envelope, ste), _errors(envelope))
 
@@ -218,9 +218,9 @@ class DerivedCycle:
         )
 
     @property
-    def kept(self) -> list[list[KeptContact]]:
+    def contacts(self) -> list[list[SolvedContact]]:
         """What is kept of every place, for each set of loads."""
-        return [list(contacts) for contacts in zip(*(table.kept for table in self.tables), strict=True)]
+        return [list(contacts) for contacts in zip(*(table.contacts for table in self.tables), strict=True)]
 
     def to_json(self) -> Json:
         """Return how many base pitches were solved at every operating point, or why all were."""
@@ -254,10 +254,10 @@ def derived_cycle(
 
 
 def _errors(envelope: Envelope) -> DerivedErrors:
-    band = np.where(envelope.solved[:, None, None], 0.0, envelope.missed.error)
+    band = np.where(envelope.solved[:, None, None], 0.0, envelope.drawn_errors.error)
     band = np.broadcast_to(band, envelope.minimum.ste.shape)
     return DerivedErrors(
-        _flat(band), envelope.quantity_errors, envelope.sum_errors(_ARM), *_missed_in_drawn(envelope)
+        _flat(band), envelope.quantity_errors, envelope.sum_errors(_ARM), *_drawn_errors(envelope)
     )
 
 
@@ -265,7 +265,7 @@ def _arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[Any]]:
     """Return the arrays of a table (T, P, L, ...) by name, in pitches that were solved as they are."""
     share, flank, edge = _shares_and_pressures(envelope, envelope.minimum)
     # those that may be largest were solved: none is told to be larger
-    flank = np.minimum(flank, envelope.kept["max_pressure"][1:].max(axis=(0, 1))[:, None])
+    flank = np.minimum(flank, envelope.arrays["max_pressure"][1:].max(axis=(0, 1))[:, None])
     derived = {
         "static_transmission_error": ste,
         "tangent_compliance": envelope.nearest("tangent_compliance"),
@@ -289,17 +289,17 @@ def _shares_and_pressures(envelope: Envelope, minimum: LeastTangents) -> tuple[F
     share /= share.sum(axis=3, keepdims=True)
     p, load = np.indices(minimum.state.shape[1:])
     names = "load_share", "pair_pressure", _EDGE_OF_PAIR
-    before, *of_pair = (envelope.kept[name][minimum.state, p, load] for name in names)
+    before, *of_pair = (envelope.arrays[name][minimum.state, p, load] for name in names)
     grown = np.sqrt(np.divide(share, before, out=np.zeros_like(share), where=before > 0.0))
     flank, edge = (pressure * np.minimum(grown, MAX_GROWN) for pressure in of_pair)
     return share, flank, edge
 
 
-def _missed_in_drawn(envelope: Envelope) -> tuple[float, float]:
+def _drawn_errors(envelope: Envelope) -> tuple[float, float]:
     """Return the error of shares that 99 % of the drawn points keep, and of pressures over the largest."""
     share, flank, _ = _shares_and_pressures(envelope, envelope.without)
     drawn = slice(1, 1 + envelope.drawn.size)
-    exact, pressure = (envelope.kept[name][drawn] for name in ("load_share", "max_pressure"))
+    exact, pressure = (envelope.arrays[name][drawn] for name in ("load_share", "max_pressure"))
     errors = np.abs(share - exact).max(axis=3), np.abs(flank.max(axis=3) - pressure) / pressure.max()
     of_share, of_pressure = (float(np.quantile(error, _MAX_POINTS)) for error in errors)
     return of_share, of_pressure
@@ -329,29 +329,31 @@ def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
     }
 
 
-def _kept(
-    first: KeptContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
-) -> KeptContact:
+def _contact(
+    first: SolvedContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
+) -> SolvedContact:
     """Return what a table keeps; problem and forces are those of the first pitch."""
-    whole = {
-        name: _flat(envelope.exact_in(values, envelope.kept[name][1:])) for name, values in arrays.items()
+    solved = {
+        name: _flat(envelope.exact_in(values, envelope.arrays[name][1:])) for name, values in arrays.items()
     }
     solution = ContactSolution(
         first.solution.load,
-        whole["static_transmission_error"],
-        whole["tangent_compliance"],
+        solved["static_transmission_error"],
+        solved["tangent_compliance"],
         first.solution.force,
-        whole["status"],
-        whole["iterations"],
-        whole["residuals"],
-        whole["beyond"],
+        solved["status"],
+        solved["iterations"],
+        solved["residuals"],
+        solved["beyond"],
         unloaded.ravel(),
     )
     depth = (
-        envelope.kept["edge_depth"].max(axis=(0, 1)) if "edge_depth" in envelope.kept else first.edge_depth
+        envelope.arrays["edge_depth"].max(axis=(0, 1))
+        if "edge_depth" in envelope.arrays
+        else first.edge_depth
     )
-    stored = {name: whole[name] for name in first.stored}
-    return KeptContact(first.problem, solution, stored, np.asarray(depth))
+    stored = {name: solved[name] for name in first.stored}
+    return SolvedContact(first.problem, solution, stored, np.asarray(depth))
 
 
 def _flat(values: NDArray[Any]) -> NDArray[Any]:

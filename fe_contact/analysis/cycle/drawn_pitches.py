@@ -9,10 +9,10 @@ import numpy as np
 import scipy
 
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
     FIRST_HARMONIC,
     HARMONICS,
     MEAN,
+    OFF_MESH,
     PEAK_TO_PEAK,
     QUANTITIES,
 )
@@ -28,7 +28,7 @@ quantities of drawn gears."""
 class DrawnPitches:
     """By how much tangents miss C drawn pitches of P positions at L loads."""
 
-    missed: FloatArray
+    tangent_error: FloatArray
     """Transmission error, or arm of the load, by the tangents of all other states less the solved one, m.
     Shape (C, P, L).
     """
@@ -38,7 +38,7 @@ class DrawnPitches:
     @property
     def correction(self) -> FloatArray:
         """Mean of what is missed at every position (P, L), m: tangents lie above."""
-        return np.asarray(self.missed.mean(axis=0))
+        return np.asarray(self.tangent_error.mean(axis=0))
 
     @property
     def error(self) -> FloatArray:
@@ -53,7 +53,7 @@ class DrawnPitches:
         envelope, which knows where it is largest: NaN here. All orders beside the mesh share the energy of
         what pitches are missed by (Parseval), so none is larger than the root of twice the mean square.
         """
-        count, left = len(self.missed), self._left
+        count, left = len(self.tangent_error), self._left
         of_mean = scipy.stats.t.ppf(0.5 + 0.5 * CONFIDENCE, count - 1) / math.sqrt(count)
         spacing = Axis(self.position, 1.0).spacing
         weight = 0.5 * (spacing + np.roll(spacing, 1))
@@ -62,10 +62,10 @@ class DrawnPitches:
         errors = np.empty((QUANTITIES, left.shape[2]))
         errors[MEAN] = of_mean * np.einsum("p,cpl->cl", weight, left).std(axis=0, ddof=1)
         errors[PEAK_TO_PEAK] = np.nan
-        errors[BESIDE_MESH] = np.sqrt(2.0 * np.einsum("p,cpl->l", weight, left**2) / count)
+        errors[OFF_MESH] = np.sqrt(2.0 * np.einsum("p,cpl->l", weight, left**2) / count)
         errors[FIRST_HARMONIC:] = of_mean * np.sqrt((np.abs(lines) ** 2).sum(axis=0) / (count - 1))
         return errors
 
     @property
     def _left(self) -> FloatArray:
-        return np.asarray(self.missed - self.correction)
+        return np.asarray(self.tangent_error - self.correction)

@@ -18,8 +18,8 @@ from fe_contact.analysis.cycle.tangents import (
     nominal_tangent,
     pitch_tangents,
 )
-from fe_contact.analysis.pairs.kept_contact import problems_in_parts
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
+from fe_contact.analysis.pairs.solved_contact import problems_in_parts
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution, solve_contact
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -31,7 +31,7 @@ FEWEST = 8
 """Of the drawn pitches that count at least."""
 PART = 4
 """Pitches that are solved together: their touching points are held at once."""
-WHOLE = 4
+DIVISOR = 4
 """Where one in so many pitches is to be solved, all are."""
 
 Rows = Callable[[ParallelAxes, Candidates], FloatArray]
@@ -131,7 +131,7 @@ class LeastTangents:
     def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
         """Begin with one tangent in whole base pitches (t,)."""
         motion, every = (
-            tangent.moved(gaps, pitches),
+            tangent.motion(gaps, pitches),
             np.ones((pitches.size, *tangent.value.shape), dtype=bool),
         )
         change, shape = motion.sum(axis=0), every.shape
@@ -143,7 +143,7 @@ class LeastTangents:
         self, number: int, tangent: Tangent, gaps: ToothGaps, pitches: IntArray, but: BoolArray
     ) -> LeastTangents:
         """Return the least with another tangent, in the same pitches `but` (t,) some."""
-        motion = tangent.moved(gaps, pitches)
+        motion = tangent.motion(gaps, pitches)
         change = motion.sum(axis=0)
         ste = tangent.value + change
         less = (ste < self.ste) & ~but[:, None, None]
@@ -177,7 +177,7 @@ class Envelope:
     """`exact`, `exact_sums`: Of them: transmission error, m, and what is followed. Ndarray, shapes (K, P, L),
     (K, P, L, Q).
     """
-    kept: Mapping[str, NDArray[Any]]
+    arrays: Mapping[str, NDArray[Any]]
     """Arrays (1 + K, P, L, ...) of all states by name."""
     minimum: LeastTangents
     """In all pitches."""
@@ -235,9 +235,9 @@ class Envelope:
         return replace(
             self,
             pitches=np.concatenate([self.pitches, pitches]),
-            exact=np.concatenate([self.exact, [each.value for each in tangents]]),
-            exact_sums=np.concatenate([self.exact_sums, [each.sums.value for each in tangents]]),
-            kept={name: np.concatenate([known, added[name]]) for name, known in self.kept.items()},
+            exact=np.concatenate([self.exact, [tangent.value for tangent in tangents]]),
+            exact_sums=np.concatenate([self.exact_sums, [tangent.sums.value for tangent in tangents]]),
+            arrays={name: np.concatenate([known, added[name]]) for name, known in self.arrays.items()},
             minimum=minimum,
             without=without,
         )
@@ -265,18 +265,18 @@ class Envelope:
         return np.array(chosen)
 
     @property
-    def missed(self) -> DrawnPitches:
+    def drawn_errors(self) -> DrawnPitches:
         """What tangents about other states miss in the drawn pitches.
 
         Pitches further than any that is left stand for none of those: they would have been solved.
         """
-        return self._missed(self.without.ste - self.exact[: self.drawn.size])
+        return self._drawn_errors(self.without.ste - self.exact[: self.drawn.size])
 
-    def missed_sum(self, q: int) -> DrawnPitches:
+    def drawn_sum_errors(self, q: int) -> DrawnPitches:
         """Return the same of one quantity that is followed."""
-        return self._missed((self.without.sums - self.exact_sums[: self.drawn.size])[..., q])
+        return self._drawn_errors((self.without.sums - self.exact_sums[: self.drawn.size])[..., q])
 
-    def _missed(self, errors: FloatArray) -> DrawnPitches:
+    def _drawn_errors(self, errors: FloatArray) -> DrawnPitches:
         order = np.argsort(self.without.furthest, kind="stable")
         left = self.minimum.furthest[~self.solved].max()
         count = max(int(np.count_nonzero(self.without.furthest <= left)), FEWEST)
@@ -285,11 +285,11 @@ class Envelope:
     @property
     def ste(self) -> FloatArray:
         """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
-        return self.exact_in(self.minimum.ste - self.missed.correction, self.exact)
+        return self.exact_in(self.minimum.ste - self.drawn_errors.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
         """Return one quantity that is followed in the same way, (T, P, L)."""
-        values = self.minimum.sums[..., q] - self.missed_sum(q).correction
+        values = self.minimum.sums[..., q] - self.drawn_sum_errors(q).correction
         return self.exact_in(values, self.exact_sums[..., q])
 
     def exact_in(self, values: NDArray[Any], exact: NDArray[Any]) -> NDArray[Any]:
@@ -301,18 +301,18 @@ class Envelope:
     def nearest(self, name: str) -> NDArray[Any]:
         """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
         p, load = np.indices(self.minimum.state.shape[1:])
-        return np.asarray(self.kept[name][self.minimum.state, p, load])
+        return np.asarray(self.arrays[name][self.minimum.state, p, load])
 
     @property
     def quantity_errors(self) -> FloatArray:
         """Errors of mean, peak-to-peak, orders beside the mesh and mesh harmonics (23, L), m."""
-        errors = self.missed.quantity_errors
+        errors = self.drawn_errors.quantity_errors
         errors[PEAK_TO_PEAK] = np.maximum(self._beyond.max(axis=1).sum(axis=0), errors[MEAN])
         return errors
 
     def sum_errors(self, q: int) -> FloatArray:
         """Return the same of one quantity that is followed; both ends may be missed by the most."""
-        drawn = self.missed_sum(q)
+        drawn = self.drawn_sum_errors(q)
         errors = drawn.quantity_errors
         errors[PEAK_TO_PEAK] = 2.0 * drawn.error
         return errors
@@ -323,7 +323,7 @@ class Envelope:
 
         Above a tangent nothing lies but what drawn pitches show, below it no more than is missed at most.
         """
-        errors, known = self.missed.missed, self.exact
+        errors, known = self.drawn_errors.tangent_error, self.exact
         above = self.minimum.ste.max(axis=1) + np.maximum(-errors.min(axis=(0, 1)), 0.0)
         below = self.minimum.ste.min(axis=1) - errors.max(axis=(0, 1))
         beyond = np.stack([above - known.max(axis=(0, 1)), known.min(axis=(0, 1)) - below])
@@ -333,11 +333,11 @@ class Envelope:
 def chosen(
     contact: CycleContact, allowed: AllowedError, part: float = 1.0, keep: Keep = keep_nothing
 ) -> Envelope | None:
-    """Solve as many pitches as a part of the error allowed needs; None where that is one in `WHOLE`."""
+    """Solve as many pitches as a part of the error allowed needs; None where that is one in `DIVISOR`."""
     envelope = Envelope.of(contact, keep)
     envelope = envelope.about(envelope.next)
     while not _within(allowed, part, envelope):
-        if WHOLE * envelope.pitches.size > contact.pitches:
+        if DIVISOR * envelope.pitches.size > contact.pitches:
             return None
         envelope = envelope.about(envelope.next)
     return envelope

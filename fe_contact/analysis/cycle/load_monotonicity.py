@@ -13,21 +13,23 @@ _MIN_COMPLIANCE = 0.1
 
 
 def rising_deflection(
-    envelope: Envelope, beside: Envelope
+    envelope: Envelope, support_envelope: Envelope
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Return the transmission error (T, P, ...) without load, at the loads, and at the support loads, m.
 
     In pitches that were not solved support loads yield to the loads of the table, as far as their errors
     let them cross. None where these do not rise.
     """
-    loads, support = envelope.contact.load, beside.contact.load
+    loads, support = envelope.contact.load, support_envelope.contact.load
     force = np.concatenate([[0.0], loads, support])
     kind = np.repeat([0, 1, 2], [1, loads.size, support.size])
     order = np.argsort(force)
     unloaded = _unloaded(envelope)
-    levels = np.concatenate([unloaded[..., None], envelope.ste, beside.ste], axis=2)[..., order]
+    levels = np.concatenate([unloaded[..., None], envelope.ste, support_envelope.ste], axis=2)[..., order]
     tangents = [
-        part.kept["tangent_compliance"].min() for part in (envelope, beside) if part.contact.load.size
+        part.arrays["tangent_compliance"].min()
+        for part in (envelope, support_envelope)
+        if part.contact.load.size
     ]
     step = _MIN_COMPLIANCE * min(tangents) * np.diff(force[order])
     tables = np.flatnonzero(kind[order] == 1)
@@ -56,7 +58,7 @@ def _unloaded(envelope: Envelope) -> FloatArray:
     gap = np.empty((model.period, len(plain)))
     for pitch in range(model.period):
         gap[pitch] = _least_gap(by_pair, gaps, pitch)
-    exact = envelope.kept["no_load"][1:, :, 0]
+    exact = envelope.arrays["no_load"][1:, :, 0]
     error = (gap[envelope.pitches] - exact).mean(axis=0)
     return envelope.exact_in(gap - error, exact)
 

@@ -113,7 +113,7 @@ class Tangent:
     sums: LoadSums
     """Of the same state."""
 
-    def moved(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
+    def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
         """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
         (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
         beyond = driving - self.at_state[:, None]
@@ -128,9 +128,9 @@ class Tangent:
         It is the mean over the pairs, by their parts, of the `motion` of each against the other gear.
         `change`: their sum.
         """
-        whole, distance = change[where], np.zeros(np.count_nonzero(where))
+        total, distance = change[where], np.zeros(np.count_nonzero(where))
         for pair_motion, part in zip(motion, self.part, strict=True):
-            distance += np.abs(pair_motion[where] - np.broadcast_to(part, where.shape)[where] * whole)
+            distance += np.abs(pair_motion[where] - np.broadcast_to(part, where.shape)[where] * total)
         return distance
 
 
@@ -154,7 +154,7 @@ def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> li
     return [
         replace(
             tangent,
-            at_state=tangent.moved(gaps, pitches[k : k + 1])[:, 0],
+            at_state=tangent.motion(gaps, pitches[k : k + 1])[:, 0],
             sums=tangent.sums.about(gaps, int(pitches[k])),
         )
         for k, tangent in enumerate(_tangents(gaps, state, pitches.size))
@@ -176,15 +176,15 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
         np.split(solution.deflection, states), np.split(sums, states), by_state, strict=True
     ):
         flat = parts.reshape(*parts.shape[:3], -1)
-        first, second = (_each_tooth(gap @ flat, loads) for gap in gaps.gears)
-        beside = LoadSums(mean, (first[..., 1:], second[..., 1:]), np.zeros(mean.shape))
+        first, second = (_sums_by_tooth(gap @ flat, loads) for gap in gaps.gears)
+        other_sums = LoadSums(mean, (first[..., 1:], second[..., 1:]), np.zeros(mean.shape))
         part = parts[..., 0].sum(axis=2)
         by_tooth = np.ascontiguousarray(first[..., 0]), np.ascontiguousarray(second[..., 0])
-        tangents.append(Tangent(value, part, by_tooth, np.zeros(part.shape), beside))
+        tangents.append(Tangent(value, part, by_tooth, np.zeros(part.shape), other_sums))
     return tangents
 
 
-def _each_tooth(added: FloatArray, loads: int) -> FloatArray:
+def _sums_by_tooth(added: FloatArray, loads: int) -> FloatArray:
     """Return what teeth add (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
     by_tooth = np.swapaxes(added, 1, 2)
     return np.ascontiguousarray(by_tooth).reshape(*by_tooth.shape[:3], loads, -1)

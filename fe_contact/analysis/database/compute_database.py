@@ -98,7 +98,7 @@ def compute_pass(
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
     metadata = _metadata(case, made, receipt, ledger)
-    table = assessed.stated(made.table, metadata)
+    table = assessed.with_errors(made.table, metadata)
     tolerance = made.checked.request.options.tolerance
     if tolerance is not None:
         tolerance_use = tolerance_receipt(table, tolerance, made.checked.request)
@@ -128,7 +128,7 @@ def _full(made: SolvedTable) -> bool:
 
 def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
     """Check the laws of a table; raises `SolveError` where one is broken."""
-    support = [place.solution for place in made.support]
+    support = [contact.solution for contact in made.support]
     laws = check_laws(made.table, made.places.places, made.solved, support)
     require_laws(laws, made.table)
     return laws
@@ -137,7 +137,7 @@ def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
 def _contact(made: SolvedTable, clock: StageClock) -> Json:
     """Return what the receipt of a table says of its contact."""
     with clock.stage("contact"):
-        support = [(place.problem, place.solution) for place in made.support]
+        support = [(contact.problem, contact.solution) for contact in made.support]
         return contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
 
 

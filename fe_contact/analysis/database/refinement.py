@@ -57,7 +57,7 @@ class Refinement:
     expected: float
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """The refinement in one line."""
         return ", ".join(self.steps)
 

@@ -82,9 +82,9 @@ class AssessedTable:
     bias: PlaneBias | None
     """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
 
-    def stated(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
+    def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""
-        stated = replace(
+        with_errors = replace(
             table,
             error_estimate=self.band,
             metadata=metadata,
@@ -92,7 +92,7 @@ class AssessedTable:
             load_arm_error=self.load_arm_error,
             interval_error=self.interval_error,
         )
-        return stated if self.inserted is None else with_support_loads(stated, self.inserted)
+        return with_errors if self.inserted is None else with_support_loads(with_errors, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
         """Return them with what derivatives miss, if any base pitch of the table is by them."""

@@ -27,9 +27,9 @@ from fe_contact.planning.plan import Plan
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
     FIRST_HARMONIC,
     MEAN,
+    OFF_MESH,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
@@ -81,7 +81,7 @@ def curve_errors(
     solutions = [solution for _, solution in solved]
     deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
-        deflection[BESIDE_MESH] = _beside_by_load(points, solutions, sample)
+        deflection[OFF_MESH] = _off_mesh_by_load(points, solutions, sample)
     by_source = {
         "discretisation": np.hypot(by_mesh, by_patches),
         "slices": by_slices,
@@ -91,7 +91,7 @@ def curve_errors(
             positions.curves[:, :, None, None], (*positions.curves.shape, *points.shape)
         ),
         METHOD: model_errors(pair, plan.load, deflection, over_face=isinstance(made, FaceDiscretization))
-        + points.gathered([of_quantities(rough_flank_errors(*place)) for place in solved]),
+        + points.gathered([of_quantities(rough_flank_errors(*contact)) for contact in solved]),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 
@@ -104,7 +104,7 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
     """
     _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, BALANCE)
     mean, ripple, harmonics = LEFT_OF_ARM
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])
     by_mesh = part[:, None, None, None] * by_mesh
     arms = table.load_arm.reshape(table.position.size, -1)
     by_positions = errors_by_halves(table.position, arms, table.period).curves
@@ -157,7 +157,7 @@ def _changes(
     return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
 
 
-def _beside_by_load(
+def _off_mesh_by_load(
     points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
 ) -> FloatArray:
     """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
@@ -168,7 +168,7 @@ def _beside_by_load(
 
     def added(solution: ContactSolution) -> FloatArray:
         unloaded = np.broadcast_to(solution.no_load[:, None], solution.deflection.shape)
-        return quantity_changes(knots, solution.deflection, unloaded, points.period)[[BESIDE_MESH]]
+        return quantity_changes(knots, solution.deflection, unloaded, points.period)[[OFF_MESH]]
 
     return np.asarray(points.gathered([added(solution) for solution in solutions])[0])
 
@@ -194,7 +194,7 @@ def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
         mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound
     else:
         mean, ripple, harmonics = LEFT_BY_MESH["plane"][level]
-    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - BESIDE_MESH)])
+    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])
 
 
 def _shared(change: FloatArray, helical: float) -> FloatArray:

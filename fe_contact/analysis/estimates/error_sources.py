@@ -98,7 +98,7 @@ def estimate_errors(
         """Return a part of the differences of STE, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
 
-    face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(each.deflection) for each in solutions]
+    face, lags = isinstance(made, FaceDiscretization), [np.nan_to_num(s.deflection) for s in solutions]
     return _ErrorSources(
         left(nested.patched, nested.coarse, made.remaining)
         + left(nested.plane, nested.patched, plan.remaining_patches),
@@ -107,7 +107,7 @@ def estimate_errors(
         points.gathered([contact_error(solution) for solution in solutions]),
         left(nested.table, nested.plane, CORRECTION_ERROR),
         points.gathered([point_error(nominal, plan.load, lag, over_face=face) for lag in lags])
-        + points.gathered([rough_flank_errors(*each) for each in solved]),
+        + points.gathered([rough_flank_errors(*pair) for pair in solved]),
     )
 
 

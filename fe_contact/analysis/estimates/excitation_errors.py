@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, all_sources, errors_by_source
-from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, HARMONICS, MEAN, mean_of_curves
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, HARMONICS, MEAN, OFF_MESH, mean_of_curves
 from fe_contact.ste.extraction import sliding_sums
 from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray
@@ -25,7 +25,7 @@ class ExcitationErrors:
     """`transmission_error`, `load_arm`: m; of the transmission error with what the method leaves out."""
     friction: FloatArray
     """Of the friction over the largest, the coefficient of friction times the mesh force."""
-    beside_mesh: float
+    off_mesh: float
     """Of the transmission error in any order beside the mesh orders, m."""
 
 
@@ -41,11 +41,11 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
     of_load = 0.0
     mean = mean_of_curves(table.position, table.static_transmission_error, table.period)
     for m, d in product(range(table.misalignment.size), range(table.center_distance_change.size)):
-        sources = _stated(table, at, m, d)
+        sources = _source_errors(table, at, m, d)
         errors = all_sources(sources)
         of_ste, of_load = (
             np.maximum(of_ste, errors[FIRST_HARMONIC:]),
-            np.maximum(of_load, errors[BESIDE_MESH]),
+            np.maximum(of_load, errors[OFF_MESH]),
         )
         of_mesh = all_sources(np.delete(sources, AT_NODES.index(METHOD), axis=0))[MEAN]
         of_shares = np.maximum(of_shares, of_mesh / np.interp(at, table.force, mean[:, m, d]))
@@ -56,12 +56,12 @@ def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:
     sliding = sliding_sums(table)[0]
     between = errors_by_halves(table.position, sliding.reshape(len(sliding), -1), table.period).curves
     by_load = between.reshape(-1, *sliding.shape[1:]).max(axis=(2, 3))
-    missed_here = np.array([np.interp(at, table.force, curve) for curve in by_load[FIRST_HARMONIC:]])
+    between_positions = np.array([np.interp(at, table.force, curve) for curve in by_load[FIRST_HARMONIC:]])
     arm = of_arm if table.load_arm_error.size else unknown
-    return ExcitationErrors(of_ste, arm, np.hypot(of_shares, missed_here), float(of_load))
+    return ExcitationErrors(of_ste, arm, np.hypot(of_shares, between_positions), float(of_load))
 
 
-def _stated(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:
+def _source_errors(table: SteDatabase, force: float, m: int, d: int) -> FloatArray:
     """Return the errors (sources, 23) of the transmission error by source at an alignment, m.
 
     An interval of loads that was not assessed, as of condensed gears, adds nothing.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.analysis.estimates.position_errors import NEXT_SPACING, PositionErrors, predicted_failure
-from fe_contact.ste.curve_quantities import PEAK_TO_PEAK, missed_peaks, quantity_changes
+from fe_contact.ste.curve_quantities import PEAK_TO_PEAK, peak_excess, quantity_changes
 from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
@@ -46,7 +46,7 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
     changes = (quantity_changes(knots[half], values[half], values, period, knots) for half in halves)
     change = np.maximum(*changes)
     curves = LEFT_BY_HALF * change
-    curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * missed_peaks(knots, values, period))
+    curves[PEAK_TO_PEAK] = np.maximum(curves[PEAK_TO_PEAK], PASSED_BY * peak_excess(knots, values, period))
     predicted = NEXT_SPACING * predicted_failure(Axis(knots, float(period)), values)
     nearby = np.maximum(predicted, np.maximum(np.roll(predicted, 1, axis=0), np.roll(predicted, -1, axis=0)))
     return PositionErrors(nearby, curves)

@@ -23,12 +23,12 @@ from fe_contact.analysis.estimates.tolerance_shares import allowed_errors
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Start
-from fe_contact.sampled import LOADS, sample_of, some_positions, spread
+from fe_contact.sampled import LOADS, sample_of, sampled_positions, spread
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
     FIRST_HARMONIC,
     MEAN,
+    OFF_MESH,
     PEAK_TO_PEAK,
     quantity_changes,
 )
@@ -86,7 +86,7 @@ class HeldOutAlignments:
                 break
             made = more
         self._solve(made, self._missing(made, truths, self._last_probes), truths)
-        error, change = self._spread(made, *self._missed(made, truths))
+        error, change = self._spread(made, *self._errors(made, truths))
         return AlignmentErrors(made, error, change, limit)
 
     @property
@@ -110,7 +110,7 @@ class HeldOutAlignments:
     def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
         """Return which intervals (I,) of an axis miss the goal; those without a solution do not."""
         assert self.goal_of is not None
-        _, change = self._spread(made, *self._missed(made, truths))
+        _, change = self._spread(made, *self._errors(made, truths))
         goal = self.goal_of(made.table)
         # of (2, F, M, D), which has quantities in the place of positions
         allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
@@ -169,7 +169,7 @@ class HeldOutAlignments:
         first, second = (solution.force[np.ix_(rows, loads)] for _, solution in (lower, upper))
         return Start(lower[0].candidates, first + part * (second - first))
 
-    def _missed(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    def _errors(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Largest differences (I, l) in every interval and changes of the quantities (23, I, l), m."""
         rows, loads = self._sample(made)
         table, position = first_pitch(made.table), made.nodes.position[rows]
@@ -182,7 +182,7 @@ class HeldOutAlignments:
         flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
         change = AWAY * quantity_changes(position, *flat, 1).reshape(-1, *truth.shape[1:])
         # one pitch has no orders beside the mesh: they count as the harmonic that changes most
-        change[BESIDE_MESH] = change[FIRST_HARMONIC:].max(axis=0)
+        change[OFF_MESH] = change[FIRST_HARMONIC:].max(axis=0)
         nodes = getattr(table, self.axis)
         inside = [(at > low) & (at < high) for low, high in pairwise(nodes.tolist())]
         return (
@@ -208,7 +208,7 @@ class HeldOutAlignments:
 
     def _sample(self, made: SolvedTable) -> tuple[IntArray, IntArray]:
         """Return the positions of a pitch and the loads that are solved."""
-        rows = some_positions(made.nodes.position.size)
+        rows = sampled_positions(made.nodes.position.size)
         return rows, sample_of(made.table.force.size, LOADS)
 
 

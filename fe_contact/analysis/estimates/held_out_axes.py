@@ -12,7 +12,7 @@ from fe_contact.analysis.estimates.held_out_loads import HeldOutLoads
 from fe_contact.analysis.estimates.interval_goal import GoalOf
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.errors import DatabaseError
-from fe_contact.sampled import some_positions
+from fe_contact.sampled import sampled_positions
 from fe_contact.ste.curve_errors import BETWEEN_NODES
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.support_loads import SupportLoads
@@ -99,7 +99,7 @@ def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:
         return HeldOut(made, axes)
     pitch = first_pitch(made.table)
     goal = None if goal_of is None else goal_of(made.table)
-    rows = some_positions(pitch.position.size)
+    rows = sampled_positions(pitch.position.size)
     loads = HeldOutLoads(pitch, rows, made.places, made.solved).errors(goal)
     middles = np.sqrt(table.force[1:] * table.force[:-1])
     inserted = np.empty(0) if loads.inserted is None else loads.inserted.force

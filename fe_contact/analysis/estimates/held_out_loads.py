@@ -22,9 +22,9 @@ from fe_contact.contact import Start
 from fe_contact.sampled import WIDE_INTERVALS, WIDE_PROBES
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
     FIRST_HARMONIC,
     MEAN,
+    OFF_MESH,
     PEAK_TO_PEAK,
     mean_of_curves,
     quantity_changes,
@@ -87,7 +87,7 @@ class HeldOutLoads:
             table = with_support_loads(self.table, self._first_pitch(support))
             missing = self._missing(_ends(table), probes.force)
             probes = _joined(probes, self._solved(missing)) if missing.size else probes
-        error, change = self._missed(table, probes)
+        error, change = self._errors(table, probes)
         within = [_inside(probes.force, low, high) for low, high in pairwise(force)]
         return LoadErrors(
             np.array([error[inside].max() for inside in within]),
@@ -101,7 +101,7 @@ class HeldOutLoads:
         if goal is None:
             return []
         allowed, middles = goal.shares("force"), []
-        share = self._shares(probes, self._missed(table, probes)[1], goal)
+        share = self._shares(probes, self._errors(table, probes)[1], goal)
         for low, high in pairwise(_ends(table)):
             inside = _inside(probes.force, low, high)
             if not np.all(share[inside] <= allowed[np.searchsorted(table.force, low, side="right") - 1]):
@@ -135,7 +135,7 @@ class HeldOutLoads:
         loads = np.concatenate([known, ends])
         return np.array([x for x in np.concatenate(wanted) if not np.isclose(x, loads, rtol=1e-9).any()])
 
-    def _missed(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
+    def _errors(self, table: SteDatabase, probes: SupportLoads) -> tuple[FloatArray, FloatArray]:
         """Largest difference (L,) of a table, and changes of the quantities (23, L), m."""
         position, skews = self._at_rows.position, self._at_rows.misalignment
         where = position[:, None, None], probes.force[:, None], skews
@@ -145,7 +145,7 @@ class HeldOutLoads:
         flat = curves.reshape(len(curves), -1), truth.reshape(len(truth), -1)
         changes = quantity_changes(position, flat[0], flat[1], 1).reshape(-1, *truth.shape[1:])
         # one pitch has no orders beside the mesh: they count as the harmonic that changes most
-        changes[BESIDE_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
+        changes[OFF_MESH] = changes[FIRST_HARMONIC:].max(axis=0)
         # a kink passes the extremes of the curve at a load between those that are held out
         changes[PEAK_TO_PEAK] = np.maximum(changes[PEAK_TO_PEAK], error)
         return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
@@ -191,10 +191,10 @@ class HeldOutLoads:
         load, position, solutions = np.sort(load), self.table.position, []
         skews, change = self._alignments
         for m in skews.tolist():
-            place = m * self.table.center_distance_change.size + change
-            point = self.places.places[place]
+            point_index = m * self.table.center_distance_change.size + change
+            point = self.places.places[point_index]
             point.contact.keep_rows(point.model, position, self.rows)
-            problem, solution = point.solve(position[self.rows], load, start=self._start(load, place))
+            problem, solution = point.solve(position[self.rows], load, start=self._start(load, point_index))
             pairs = carrying_pairs(solution.force, problem.candidates)
             solutions.append((solution.deflection, solution.tangent, pairs))
         deflection, tangent, carrying = (
@@ -202,8 +202,8 @@ class HeldOutLoads:
         )
         return SupportLoads(load, deflection, tangent, carrying)
 
-    def _start(self, load: FloatArray, place: int) -> Start:
-        force, (problem, solution) = self.table.force, self.solved[place]
+    def _start(self, load: FloatArray, point_index: int) -> Start:
+        force, (problem, solution) = self.table.force, self.solved[point_index]
         above = np.clip(np.searchsorted(force, load), 1, force.size - 1)
         part = (load - force[above - 1]) / (force[above] - force[above - 1])
         lower, upper = (solution.force[np.ix_(self.rows, loads)] for loads in (above - 1, above))

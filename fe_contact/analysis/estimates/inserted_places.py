@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
-from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.analysis.request.solved_run import edges_left_out
 from fe_contact.analysis.tables import SolvedTable, assembled_table
 from fe_contact.contact import ContactProblem
@@ -39,24 +39,24 @@ def with_inserted_nodes(made: SolvedTable, axis: str, further: FloatArray) -> So
     axes = {name: getattr(made.table, name) for name in (MISALIGNMENT, CENTER_DISTANCE)}
     axes[axis] = np.sort(np.concatenate([axes[axis], further]))
     places = _merged_places(made, axes)
-    old = {id(place): k for k, place in enumerate(made.places.places)}
-    new = [place for place in places.places if id(place) not in old]
-    further_kept = _solved(made, replace(places, places=tuple(new)))
-    if further_kept is None:
+    old = {id(point): k for k, point in enumerate(made.places.places)}
+    new = [point for point in places.places if id(point) not in old]
+    further_sets = _solved(made, replace(places, places=tuple(new)))
+    if further_sets is None:
         return None
-    number = old | {id(place): len(old) + k for k, place in enumerate(new)}
-    order = [number[id(place)] for place in places.places]
-    kept, support = (
-        [[*own, *others][k] for k in order]
-        for own, others in zip((made.kept, made.support), further_kept, strict=True)
+    number = old | {id(point): len(old) + k for k, point in enumerate(new)}
+    order = [number[id(point)] for point in places.places]
+    contacts, support = (
+        [[*known, *others][k] for k in order]
+        for known, others in zip((made.contacts, made.support), further_sets, strict=True)
     )
     return replace(
         made,
         places=places,
-        kept=kept,
+        contacts=contacts,
         support=support,
-        solved=[(contact.problem, contact.solution) for contact in kept],
-        table=_marked(made, axes, places, (kept, support)),
+        solved=[(contact.problem, contact.solution) for contact in contacts],
+        table=_marked(made, axes, places, (contacts, support)),
     )
 
 
@@ -69,7 +69,7 @@ def alignment_points(made: SolvedTable, axes: Alignments) -> OperatingPoints:
     )
     points = operating_points(scene, made.checked.decision, made.places.nominal, made.places.workers)
     distances = made.table.center_distance_change.tolist()
-    known = dict(zip(distances, (place.contact for place in made.places.places), strict=False))
+    known = dict(zip(distances, (point.contact for point in made.places.places), strict=False))
     places = [
         replace(point, contact=known.get(distance, point.contact))
         for (_, distance), point in zip(_alignments(axes), points.places, strict=True)
@@ -79,8 +79,8 @@ def alignment_points(made: SolvedTable, axes: Alignments) -> OperatingPoints:
 
 def _merged_places(made: SolvedTable, axes: Alignments) -> OperatingPoints:
     """Return the operating points of a table with more alignments; those it has are the same objects."""
-    own = {name: getattr(made.table, name) for name in axes}
-    old = dict(zip(_alignments(own), made.places.places, strict=True))
+    table_axes = {name: getattr(made.table, name) for name in axes}
+    old = dict(zip(_alignments(table_axes), made.places.places, strict=True))
     points = alignment_points(made, axes)
     places = [
         old.get(alignment, point) for alignment, point in zip(_alignments(axes), points.places, strict=True)
@@ -93,37 +93,37 @@ def _alignments(axes: Alignments) -> list[tuple[float, float]]:
     return list(product(axes[MISALIGNMENT].tolist(), axes[CENTER_DISTANCE].tolist()))
 
 
-def _solved(made: SolvedTable, places: OperatingPoints) -> list[list[KeptContact]] | None:
+def _solved(made: SolvedTable, places: OperatingPoints) -> list[list[SolvedContact]] | None:
     """Solve operating points at the loads and support loads of a table; None if a point failed."""
-    for place in places.places:
-        take_compliance(made, place)
+    for point in places.places:
+        take_compliance(made, point)
     loads = made.plan.load, made.plan.support
     edges = edges_left_out(made.checked)
     sets, _ = solve_operating_points(places, made.nodes.position, loads, conditioned=False, edges=edges)
     needed = made.plan.load, made.table.support_force
-    for load, kept in zip(needed, sets, strict=True):
-        for contact in kept:
+    for load, contacts in zip(needed, sets, strict=True):
+        for contact in contacts:
             columns = np.isin(contact.solution.load, load)
             if np.any(contact.solution.status[:, columns] != Status.CONVERGED):
                 return None
     return sets
 
 
-def take_compliance(made: SolvedTable, place: OperatingPoint) -> None:
+def take_compliance(made: SolvedTable, point: OperatingPoint) -> None:
     """Let the contact of a place have the compliance of the table's positions, if the table has it."""
-    contact, model, position = place.contact, place.model, made.nodes.position
-    if contact.kept(model, position) is not None:
+    contact, model, position = point.contact, point.model, made.nodes.position
+    if contact.cached_problem(model, position) is not None:
         return
-    problem = _problem_of(made, place)
+    problem = _problem_of(made, point)
     if problem is not None:
         plain = replace(problem, candidates=contact.candidates(model, position))
         contact.take(model, plain)
 
 
-def _problem_of(made: SolvedTable, place: OperatingPoint) -> ContactProblem | None:
+def _problem_of(made: SolvedTable, operating_point: OperatingPoint) -> ContactProblem | None:
     """Return the problem of the table's first operating point with the contact of a place."""
-    for point, contact in zip(made.places.places, made.kept, strict=True):
-        if point.contact is place.contact:
+    for point, contact in zip(made.places.places, made.contacts, strict=True):
+        if point.contact is operating_point.contact:
             return contact.problem
     return None
 
@@ -132,7 +132,7 @@ def _marked(
     made: SolvedTable,
     axes: Alignments,
     places: OperatingPoints,
-    contacts: tuple[Sequence[KeptContact], Sequence[KeptContact]],
+    contacts: tuple[Sequence[SolvedContact], Sequence[SolvedContact]],
 ) -> SteDatabase:
     """Assemble the table of all operating points, and mark the nodes that were inserted."""
     request = replace(

@@ -19,11 +19,11 @@ from fe_contact.contact import ContactSolution
 from fe_contact.planning.plan import NodeRule, Plan
 from fe_contact.sampled import sample_of, spread
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
+    OFF_MESH,
     PEAK_TO_PEAK,
     QUANTITIES,
     error_bound,
-    missed_peaks,
+    peak_excess,
     quantity_changes,
 )
 from fe_contact.ste.interpolation import Axis, interpolate
@@ -32,7 +32,7 @@ from fe_contact.types import FloatArray, IntArray
 LEFT_BY_MIDDLES = 1.5
 """Error of the positions over what their middles change: 4/3 for second order, and more for kinks, which may
 stand anywhere in an interval. Peaks at handovers, which would fall with the first power of the spacing, are
-looked for by themselves: the chords beside their interval bound them as they are (`missed_peaks`)."""
+looked for by themselves: the chords beside their interval bound them as they are (`peak_excess`)."""
 LOADS = 7
 """Nodes of an axis of loads that are solved: peaks between positions come and go from one to the next."""
 SOLVED_PART = 4
@@ -67,16 +67,14 @@ def position_errors(
     """
     load, period = plan.load, points.period
     if np.isfinite(nodes.interval_error).any() and period == 1:
-        return _told(nodes, _by_middles(nodes, 1), load.size)
+        return _position_errors(nodes, _by_middles(nodes, 1), load.size)
     sample = sample_of(load.size, LOADS)
     measured, left = _measured(nodes.position, points, solutions, plan, sample)
     bound = _bound(measured, left, period)
     if period > 1:
-        bound[BESIDE_MESH] = _bound(measured, _left_of_difference(measured, left, period), period)[
-            BESIDE_MESH
-        ]
+        bound[OFF_MESH] = _bound(measured, _left_of_difference(measured, left, period), period)[OFF_MESH]
     curves = _by_middles(measured, period) + bound
-    errors = _told(measured, curves, sample.size)
+    errors = _position_errors(measured, curves, sample.size)
     return PositionErrors(spread(load, sample, errors.band, 1), spread(load, sample, errors.curves, 1))
 
 
@@ -166,13 +164,13 @@ def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:
     everywhere = np.sort(np.concatenate([knots, 0.5 * (axis[1:] + axis[:-1])]))
     both = np.stack([nodes.value, nodes.middle], axis=1).reshape(everywhere.size, -1)
     change = quantity_changes(knots, nodes.value, both, period, everywhere)
-    ripple = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + missed_peaks(everywhere, both, period)
+    ripple = np.ptp(both, axis=0) - np.ptp(nodes.value, axis=0) + peak_excess(everywhere, both, period)
     change *= LEFT_BY_MIDDLES
     change[PEAK_TO_PEAK] = ripple
     return change
 
 
-def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
+def _position_errors(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
     band: FloatArray = nodes.error.reshape(len(nodes.error), -1, loads).max(axis=1)
     worst: FloatArray = curves.reshape(QUANTITIES, -1, loads).max(axis=1)
     return PositionErrors(band, worst)

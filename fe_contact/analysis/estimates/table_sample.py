@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution, Start
-from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
+from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, sampled_positions, spread, spread_around
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, IntArray
 
@@ -42,7 +42,7 @@ class TableSample:
             sample_of(skew.size, ALIGNMENTS),
             sample_of(change.size, ALIGNMENTS),
         )
-        return cls(position, period, axes, some_positions(position.size), misaligned)
+        return cls(position, period, axes, sampled_positions(position.size), misaligned)
 
     @property
     def places(self) -> list[int]:
@@ -60,9 +60,9 @@ class TableSample:
         """Their rows among those of the table, (T R,)."""
         return (np.arange(self.period)[:, None] * self.position.size + self.rows).ravel()
 
-    def shaped(self, by_place: Sequence[FloatArray]) -> FloatArray:
+    def shaped(self, by_point: Sequence[FloatArray]) -> FloatArray:
         """Stack arrays (..., f) of the places solved into (..., f, m, d)."""
-        stacked = np.stack(by_place, axis=-1)
+        stacked = np.stack(by_point, axis=-1)
         return stacked.reshape(*stacked.shape[:-1], self.nodes[1].size, self.nodes[2].size)
 
     def spread(self, values: FloatArray) -> FloatArray:
@@ -111,7 +111,7 @@ class TableSample:
         first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
         if first != second:
             return None
-        return [place.contact.candidates(place.model, self.position).rows(self.rows) for place in known]
+        return [point.contact.candidates(point.model, self.position).rows(self.rows) for point in known]
 
 
 @dataclass(frozen=True)

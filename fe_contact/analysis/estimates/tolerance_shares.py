@@ -104,7 +104,7 @@ def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reques
     use = {"used": used if np.isfinite(used) else None, "met": used <= 1.0}
     use["used_at_nodes"] = float(nodes.max()) if np.isfinite(nodes).all() else None
     use["lasting"] = allowed.relative * float(np.nanmax(all_sources(lasting)))
-    return limits | use | {"between_nodes": _missed_intervals(table, cells, between)}
+    return limits | use | {"between_nodes": _failing_intervals(table, cells, between)}
 
 
 def _cells(nodes: FloatArray, shares: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -129,7 +129,7 @@ def _with_next(values: FloatArray, axis: int, chosen: np.ufunc) -> FloatArray:
     return np.asarray(chosen(values, after))
 
 
-def _missed_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray) -> list[Json]:
+def _failing_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray) -> list[Json]:
     """Return the worst interval of each axis by which a table misses the tolerance, and why it stays so."""
     total = np.sqrt(cells**2 + np.square(between).sum(axis=0))
     held_out = table.metadata.receipt.get("held_out", {})

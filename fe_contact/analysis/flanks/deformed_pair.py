@@ -111,9 +111,9 @@ def deformed_pairs(
     gears = _deformed_gears(solved, beside)
     run.progress("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
-    here = solved.contact.pair
+    pair_at_distance = solved.contact.pair
     return tuple(
-        _placed_pair(here, float(x), float(ste), both)
+        _placed_pair(pair_at_distance, float(x), float(ste), both)
         for x, ste, both in zip(position, deflection, gears, strict=True)
     )
 

@@ -27,7 +27,7 @@ _BALANCE = Law("balance of moments", "moment of the contact forces over the torq
 _LINE_LOAD = Law("line loads carry the load", "moment of the line loads over the torque less one")
 _ARM = Law("load within the face", "centroid of the load from the middle of the common face", "mm", 1e3)
 _TILTING = Law("balance of moments", "centroid of the forces off that of the slices", "µm", 1e6)
-_APART = Law("flanks do not overlap", "overlap over the largest deflection")
+_OVERLAP = Law("flanks do not overlap", "overlap over the largest deflection")
 _LOADED_GAP = Law("flanks touch where they carry", "force times gap over load times deflection")
 _FLATTEST = Law("pressure carries the line load", "pressure", "MPa", 1e-6)
 _SHARPEST = Law("pressure of the sharpest contact", "pressure", "MPa", 1e-6)
@@ -63,12 +63,12 @@ class _Flanks:
 
     def _at(self, position: int, pair: int | None = None, stretch: int | None = None) -> str:
         flanks = self.flanks
-        words = [f"position {flanks.position[position]:.6g}"]
+        parts = [f"position {flanks.position[position]:.6g}"]
         if pair is not None:
-            words.append(f"pair {int(flanks.pair[pair]):+d}")
+            parts.append(f"pair {int(flanks.pair[pair]):+d}")
         if stretch is not None:
-            words.append(f"face position {1e3 * flanks.face_position[stretch]:.4g} mm")
-        return ", ".join(words)
+            parts.append(f"face position {1e3 * flanks.face_position[stretch]:.4g} mm")
+        return ", ".join(parts)
 
     def _forces(self) -> Iterator[LawCheck]:
         """Bound forces and pressures from below, and the sums of forces and of line loads."""
@@ -105,7 +105,7 @@ class _Flanks:
         """Bound the gaps of loaded flanks from below, and their forces where a gap is left."""
         flanks = self.flanks
         deflection = float(np.max(np.abs(flanks.deflection)))
-        yield _APART.below(np.maximum(-flanks.gap, 0.0) / deflection, OVERLAP, self._at)
+        yield _OVERLAP.below(np.maximum(-flanks.gap, 0.0) / deflection, OVERLAP, self._at)
         closed = flanks.force == 0.0
         gap = np.where(closed, 0.0, np.abs(flanks.gap))
         worth = np.abs(flanks.force) * gap / (flanks.scene.normal_force * deflection)

@@ -53,9 +53,9 @@ def _pass_between(
         if points.size == 0:
             continue
         at, known = roll[:, :, k].copy().ravel()[points], pressure[:, :, k].copy().ravel()[points]
-        place = _SAME * (ends[1] - ends[0]) / points.size
-        place = place if place > 0.0 else 1.0
-        number = np.rint((at - ends[0]) / place)
+        spacing = _SAME * (ends[1] - ends[0]) / points.size
+        spacing = spacing if spacing > 0.0 else 1.0
+        number = np.rint((at - ends[0]) / spacing)
         order = np.argsort(number)
         knots, largest, last = np.empty(points.size), np.empty(points.size), -1
         for i in order:
@@ -63,6 +63,6 @@ def _pass_between(
                 last += 1
                 knots[last], largest[last] = number[i], known[i]
             largest[last] = max(largest[last], known[i])
-        passing = np.interp(rows, ends[0] + place * knots[: last + 1], largest[: last + 1])
+        passing = np.interp(rows, ends[0] + spacing * knots[: last + 1], largest[: last + 1])
         reached = (rows >= ends[0]) & (rows <= ends[1])
         out[:, k] = np.where(reached, passing, 0.0)

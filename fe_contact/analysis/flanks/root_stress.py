@@ -22,7 +22,7 @@ from fe_contact.analysis.request.solved_run import SolvedOperatingPoint
 from fe_contact.compliance import (
     PlaneHypothesis,
     UnitRootStress,
-    stress_kept,
+    stress_cached,
     unit_root_stresses,
     unit_root_stresses_3d,
 )
@@ -63,7 +63,7 @@ def stress_seconds(pair: ParallelAxes, plan: Plan, cache: Path | None) -> float:
     return times * sum(
         body_seconds(gear, recipe, cache)
         for gear, recipe in dict.fromkeys(zip(gears, recipes, strict=True))
-        if not stress_kept(gear, recipe, hypothesis, cache)
+        if not stress_cached(gear, recipe, hypothesis, cache)
     )
 
 
@@ -143,7 +143,7 @@ def _load_changes(
     for half in halves(fine[0].position):
         yield _peak_changes(fine, (fine[0].at(half), fine[1].at(half)))
     for both in rougher_solutions(solved, cache):
-        finer, rougher = (pair_histories(each, units) for each in both)
+        finer, rougher = (pair_histories(solution, units) for solution in both)
         yield _peak_changes(finer, rougher)
 
 

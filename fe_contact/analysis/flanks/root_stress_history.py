@@ -153,9 +153,9 @@ def crest_values(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatAr
     middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
     low, crest, high = (s[middle + step] for step in (-1, 0, 1))
     y = [np.take_along_axis(values, (middle + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)]
-    whole = np.all(np.isfinite(y), axis=0)
+    finite = np.all(np.isfinite(y), axis=0)
     first, second = (
-        np.subtract(b, a, out=np.zeros_like(a), where=whole) / way
+        np.subtract(b, a, out=np.zeros_like(a), where=finite) / way
         for a, b, way in ((y[0], y[1], crest - low), (y[1], y[2], high - crest))
     )
     bend = (second - first) / (high - low)

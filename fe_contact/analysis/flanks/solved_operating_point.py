@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.checks.assumptions import check_one_place
+from fe_contact.analysis.checks.assumptions import check_single_point
 from fe_contact.analysis.checks.repetition import settled, with_effects
 from fe_contact.analysis.pairs.operating_points import operating_points
 from fe_contact.analysis.request.request import Checked
@@ -23,7 +23,7 @@ from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
 """Over one mesh cycle, where none are requested."""
-SHOWN = 5
+LISTED = 5
 """Positions without a solution that a message names."""
 
 
@@ -53,11 +53,11 @@ def solved_point(
 
     def repeat(made: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
         return solve_operating_point(
-            with_effects(made.checked, needed, whole_table=False), position, clock, run
+            with_effects(made.checked, needed, check_size=False), position, clock, run
         )
 
     first = solve_operating_point(checked, position, clock, run)
-    made, checks, repeated = settled(first, check_one_place, repeat, clock)
+    made, checks, repeated = settled(first, check_single_point, repeat, clock)
     plan, assumptions = made.plan.to_json(), [check.to_json() for check in checks]
     return made, clock.to_json() | {"plan": plan, "assumptions": assumptions, "repeated": repeated}
 
@@ -73,7 +73,7 @@ def solve_operating_point(
     """
     if checked.request.pitches is not None:
         request = replace(checked.request, pitches=None)
-        checked = checked_request(request, whole_table=False, neglect=False)
+        checked = checked_request(request, check_size=False, neglect=False)
     request = checked.request
     plan = checked.planned(run.cache)
     nominal = condensed_bodies(checked, plan, clock, run, report=partial(run.progress, "compliance"))
@@ -86,8 +86,8 @@ def solve_operating_point(
     if not solution.converged:
         codes = solution.status[:, 0]
         failed = np.flatnonzero(codes)
-        names = [f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:SHOWN]]
-        more = f"; and {failed.size - SHOWN} more" if failed.size > SHOWN else ""
+        names = [f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:LISTED]]
+        more = f"; and {failed.size - LISTED} more" if failed.size > LISTED else ""
         reason = f"{failed.size} of {position.size} positions have no solution ({'; '.join(names)}{more})"
         raise SolveError(reason, partial=solution)
     return SolvedOperatingPoint(checked, plan, points, [(problem, solution)])

@@ -20,7 +20,7 @@ from fe_contact.types import FloatArray, IntArray
 class CondensedContacts:
     """One pair at one center distance."""
 
-    own: PairContact
+    fine: PairContact
     """As the table had it."""
     plane: PairContact | None
     """Without the correction for a finite width; None if there is none."""
@@ -54,7 +54,7 @@ class CondensedContacts:
             return replace(contact, pair=pair, touches=touches)
 
         return CondensedContacts(
-            alike(self.own),
+            alike(self.fine),
             self.plane and alike(self.plane),
             self.sliced and replace(self.sliced, pair=pair),
             self.coarse and alike(self.coarse),
@@ -63,7 +63,7 @@ class CondensedContacts:
 
     def touch(self, model: ContactModel, sample: TableSample) -> None:
         """Find where the flanks touch at all positions of a table: for all bodies in the same slices."""
-        nominal, positions = self.own, sample.position[sample.rows]
+        nominal, positions = self.fine, sample.position[sample.rows]
         touch = with_gaps(nominal.pair, nominal.candidates(model, sample.position), model).touch
         nominal.touches.update(
             {positions.tobytes(): touch.rows(sample.rows), sample.position.tobytes(): touch}
@@ -71,22 +71,22 @@ class CondensedContacts:
 
     def keep(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
         """Keep the compliance of some of the positions that are assembled by itself."""
-        if self.own.kept(model, position[rows]) is None:
-            self.own.keep_rows(model, position, rows)
+        if self.fine.cached_problem(model, position[rows]) is None:
+            self.fine.keep_rows(model, position, rows)
 
-    def apart(self, change: float) -> CondensedContacts:
+    def at_distance(self, change: float) -> CondensedContacts:
         """Return the same bodies at a distance larger by `change` in m; nothing is assembled there yet."""
-        pair = self.own.pair.at_center_distance(self.own.pair.center_distance + change)
-        nominal = replace(self.own, pair=pair, _problems={})
+        pair = self.fine.pair.at_center_distance(self.fine.pair.center_distance + change)
+        nominal = replace(self.fine, pair=pair, _problems={})
         coarse = None if self.coarse is None else replace(self.coarse, pair=pair, _problems={})
         return CondensedContacts.of(nominal, coarse)
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
         """Assemble what is not kept yet: all positions of a table, and those that are solved again."""
-        everywhere = self.own.candidates(model, sample.position)
-        self.own.assemble(model, everywhere)
+        everywhere = self.fine.candidates(model, sample.position)
+        self.fine.assemble(model, everywhere)
         positions = sample.position[sample.rows]
-        if self.plane is not None and self.plane.kept(model, positions) is None:
+        if self.plane is not None and self.plane.cached_problem(model, positions) is None:
             self.plane.assemble(model, everywhere.rows(sample.rows))
         for other in (self.sliced, self.coarse, self.patched):
             if other is not None:

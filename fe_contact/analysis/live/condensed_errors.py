@@ -59,7 +59,7 @@ def condensed_errors(
     measured = points, [(run.problem, solution)], ste, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
-        errors[BY_MESH], band = _expected(table, plan, contacts.own)
+        errors[BY_MESH], band = _expected(table, plan, contacts.fine)
         sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
     bias = table_bias(table, points, plan)
     of_arm = load_arm_errors(points, table, arms, plan)

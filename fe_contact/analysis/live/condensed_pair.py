@@ -23,9 +23,9 @@ from fe_contact.analysis.live.condensed_assumptions import edge_assumptions, neg
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.live.condensed_errors import condensed_errors
 from fe_contact.analysis.live.condensed_receipt import condensed_receipt
-from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.pair_contact import PairContact
+from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.analysis.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import checked_request
@@ -46,7 +46,7 @@ PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 handovers are steep, and positions cost little."""
 MAX_ROWS, FEWEST_POSITIONS = 4096, 16
 """Of longer periods, which repeat the positions in every base pitch."""
-KEPT_DISTANCES = 2
+CACHED_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
 
 
@@ -65,13 +65,13 @@ class CondensedPair:
     """At the nominal center distance; they keep what was assembled for the positions."""
     neglected: Mapping[str, str] = field(default_factory=dict)
     """Effects of the bodies that the tolerance of the table neglected, and why."""
-    _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
+    _by_distance: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
     _latest: _Latest = field(default_factory=_Latest, repr=False)
 
     @property
     def contact(self) -> PairContact:
         """The pair at its nominal center distance."""
-        return self.contacts.own
+        return self.contacts.fine
 
     @property
     def largest_load(self) -> float:
@@ -126,7 +126,7 @@ class CondensedPair:
         are not estimated.
         """
         clock = StageClock()
-        checked = self._asked(pair, torques, misalignment, center_distance_change)
+        checked = self._request_at(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
         load, alignment = plan.load, (checked.request.misalignment, checked.request.center_distance_change)
         sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
@@ -145,7 +145,7 @@ class CondensedPair:
             solved = _solved(checked, plan, points, nodes, self._latest.preview if preview else None)
             if preview:
                 self._latest.preview = solved
-            contact = KeptContact.of(solved.pair, solved.problem, solved.solution)
+            contact = SolvedContact.of(solved.pair, solved.problem, solved.solution)
             table = assembled_table(checked.request, points, nodes, [contact], [])
             laws = check_laws(table, points.places, [(contact.problem, contact.solution)])
             require_laws(laws, table)
@@ -158,7 +158,7 @@ class CondensedPair:
         receipt["discretisation_error"] = None if preview else origin
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
-        return assessed.stated(table, metadata), solved
+        return assessed.with_errors(table, metadata), solved
 
     def solve(
         self,
@@ -201,11 +201,13 @@ class CondensedPair:
 
         Parameters and errors are those of `table`.
         """
-        checked = self._asked(pair, torques, misalignment, change)
+        checked = self._request_at(pair, torques, misalignment, change)
         nodes, plan = self._laid_out(checked)
         return checked, *self._placed(checked), nodes, plan
 
-    def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
+    def _request_at(
+        self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
+    ) -> Checked:
         known = self.checked.request.pair
         if _plain(pair) != _plain(known):
             bound = "with the gears and the center distance of the table; only flank modifications may differ"
@@ -238,7 +240,7 @@ class CondensedPair:
                 center_distance_change=axes.center_distance_change,
                 options=replace(request.options, effects=effects),
             ),
-            whole_table=False,
+            check_size=False,
             neglect=False,
         )
 
@@ -252,25 +254,25 @@ class CondensedPair:
         """Return the contacts of the flanks at the requested distance, and the operating point they make."""
         request = checked.request
         contacts = self._at(float(request.center_distance_change[0]))
-        distance = contacts.own.pair.center_distance
+        distance = contacts.fine.pair.center_distance
         nominal = distance == request.pair.center_distance
         pair = request.pair if nominal else request.pair.at_center_distance(distance)
         bodies = contacts.with_flanks(pair)
         scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
-        return bodies, operating_points(scene, request.choices, bodies.own)
+        return bodies, operating_points(scene, request.choices, bodies.fine)
 
     def _at(self, change: float) -> CondensedContacts:
         """Return the contacts at a change of the center distance in m; those requested last are kept."""
         if change == 0.0:
             return self.contacts
-        if change not in self._apart:
-            contacts = self.contacts.apart(change)
-            _refuse_more_teeth(contacts.own, change)
-            self._apart[change] = contacts
-        self._apart.move_to_end(change)
-        while len(self._apart) > KEPT_DISTANCES:
-            self._apart.popitem(last=False)
-        return self._apart[change]
+        if change not in self._by_distance:
+            contacts = self.contacts.at_distance(change)
+            _refuse_more_teeth(contacts.fine, change)
+            self._by_distance[change] = contacts
+        self._by_distance.move_to_end(change)
+        while len(self._by_distance) > CACHED_DISTANCES:
+            self._by_distance.popitem(last=False)
+        return self._by_distance[change]
 
 
 def _solved(

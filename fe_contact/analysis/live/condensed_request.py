@@ -46,5 +46,5 @@ def condense(pair: ParallelAxes, acting: Checked, cache: Path | None) -> Condens
     changes = request.center_distance_change
     nominal, coarse = (pair_contact(pair, choice.plan, cache, rough, changes) for rough in (False, True))
     return CondensedPair(
-        checked_request(bound, whole_table=False, neglect=False), CondensedContacts.of(nominal, coarse)
+        checked_request(bound, check_size=False, neglect=False), CondensedContacts.of(nominal, coarse)
     )

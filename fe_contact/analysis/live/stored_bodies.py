@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.analysis.live.condensed_contacts import CondensedContacts
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.condensed_request import OF_BODIES
-from fe_contact.analysis.pairs.pair_contact import bodies_are_kept, pair_contact
+from fe_contact.analysis.pairs.pair_contact import bodies_are_cached, pair_contact
 from fe_contact.analysis.request.request import Checked, Request
 from fe_contact.analysis.request.request_check import checked_request
 from fe_contact.geometry import ParallelAxes
@@ -46,10 +46,10 @@ def condensed_pair(
     """
     checked, plan = _as_computed(pair, database, effects)
     changes = database.center_distance_change
-    if not (compute or bodies_are_kept(pair, plan, cache, changes)):
+    if not (compute or bodies_are_cached(pair, plan, cache, changes)):
         return None
     coarse = None
-    if compute or bodies_are_kept(pair, plan, cache, changes, coarse=True):
+    if compute or bodies_are_cached(pair, plan, cache, changes, coarse=True):
         coarse = pair_contact(pair, plan, cache, True, changes)
     contacts = CondensedContacts.of(pair_contact(pair, plan, cache, False, changes), coarse)
     entries = [entry for entry in database.metadata.effect_ledger if isinstance(entry, dict)]
@@ -82,5 +82,5 @@ def _as_computed(
         np.zeros(1),
         database.period if database.period > 1 else None,
     )
-    checked = checked_request(request, whole_table=False, neglect=False)
+    checked = checked_request(request, check_size=False, neglect=False)
     return checked, checked.plan(choice["level"], choice["slices"])

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.pairs.kept_contact import KeptContact, problems_in_parts, solved_in_parts
 from fe_contact.analysis.pairs.operating_points import OperatingPoint
 from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
+from fe_contact.analysis.pairs.solved_contact import SolvedContact, problems_in_parts, solved_in_parts
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, Start, load_arm, solve_contact
 from fe_contact.contact.condition_number import condition_numbers
 from fe_contact.geometry import ParallelAxes
@@ -56,7 +56,7 @@ class SolvedBlock:
     The latter are of the compliance at the positions, if they were wanted.
     """
 
-    kept: tuple[tuple[KeptContact, ...], ...]
+    contacts: tuple[tuple[SolvedContact, ...], ...]
     condition: FloatArray | None
 
 

@@ -25,9 +25,9 @@ from fe_contact.analysis.pairs.contact_block import (
     deflect_block,
     solve_block,
 )
-from fe_contact.analysis.pairs.kept_contact import KeptContact, solved_in_parts
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.analysis.pairs.pair_contact import Bodies, PairContact
+from fe_contact.analysis.pairs.solved_contact import SolvedContact, solved_in_parts
 from fe_contact.contact import Candidates, ContactProblem, Start
 from fe_contact.contact.face_assembly import together
 from fe_contact.contact.plain_touch import Touch
@@ -47,31 +47,31 @@ class _Line:
     """Places of one compliance: their contact, and all positions as one block without its bodies."""
 
     contact: PairContact
-    whole: ContactBlock
+    block: ContactBlock
 
     @property
     def pitches(self) -> int:
         """Base pitches that every position is put into."""
-        return 1 if self.whole.pitches is None else self.whole.pitches.size
+        return 1 if self.block.pitches is None else self.block.pitches.size
 
     @property
     def seconds_a_position(self) -> float:
         """CPU seconds that one position is predicted to take."""
-        whole = self.whole
-        work = unit_work(whole.pair, whole.plan, whole.plan.discretization.slices)
-        return work.of(1, len(whole.models) * self.pitches * sum(load.size for load in whole.loads))
+        block = self.block
+        work = unit_work(block.pair, block.plan, block.plan.discretization.slices)
+        return work.of(1, len(block.models) * self.pitches * sum(load.size for load in block.loads))
 
     def blocks(self) -> Iterator[ContactBlock]:
         """Cut it."""
-        whole, count = self.whole, self.whole.candidates.position.size
+        block, count = self.block, self.block.candidates.position.size
         chunks = together(count)
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), len(chunks))
         for numbers in np.array_split(np.arange(len(chunks)), max(parts, 1)):
             rows = np.concatenate([chunks[k] for k in numbers])
-            candidates = laid_out_alike(whole.candidates.rows(rows), whole.candidates)
-            starts, assembled = whole.starts, whole.assembled
+            candidates = laid_out_alike(block.candidates.rows(rows), block.candidates)
+            starts, assembled = block.starts, block.assembled
             yield replace(
-                whole,
+                block,
                 candidates=candidates,
                 starts=None if starts is None else tuple(forces[rows] for forces in starts),
                 assembled=None if assembled is None else replace(assembled.rows(rows), candidates=candidates),
@@ -83,8 +83,8 @@ def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unr
     solved: list[SolvedBlock] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
         joined = _joined(line, blocks)
-        plain = replace(joined.kept[0][0].problem, candidates=line.whole.candidates)
-        line.contact.take(line.whole.models[0], plain)
+        plain = replace(joined.contacts[0][0].problem, candidates=line.block.candidates)
+        line.contact.take(line.block.models[0], plain)
         solved.append(joined)
         report(len(solved) / len(lines))
     return solved
@@ -93,7 +93,7 @@ def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unr
 def _deflections(lines: Sequence[_Line], workers: Workers) -> list[list[FloatArray]]:
     """Solve lines of one set of loads; of each line the curves (T P, L, 2) in m of every model."""
     return [
-        [_rows([block[k] for block in blocks], line.pitches) for k in range(len(line.whole.models))]
+        [_rows([block[k] for block in blocks], line.pitches) for k in range(len(line.block.models))]
         for line, blocks in zip(lines, _by_line(lines, workers, deflect_block), strict=True)
     ]
 
@@ -114,29 +114,29 @@ def _by_line(
 
 def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
     """Put the blocks of a line together; all models share one compliance."""
-    problems = [[kept[0].problem for kept in block.kept] for block in blocks]
+    problems = [[contacts[0].problem for contacts in block.contacts] for block in blocks]
     compliance = np.concatenate([parts[0].compliance for parts in problems])
     tilts = [np.concatenate([problem.tilt for problem in parts]) for parts in zip(*problems, strict=True)]
     tilt = max(tilts, key=np.size)  # that of flanks that slope, if any does
-    kept = []
+    contacts = []
     for k, parts in enumerate(zip(*problems, strict=True)):
         candidates = _joined_candidates([part.candidates for part in parts])
         share = np.concatenate([np.broadcast_to(p.share_1, p.compliance.shape[:2]) for p in parts])
         problem = replace(parts[0], candidates=candidates, compliance=compliance, tilt=tilt, share_1=share)
-        sets = zip(*(block.kept[k] for block in blocks), strict=True)
-        kept.append(tuple(_joined_contact(list(each), problem, line.pitches) for each in sets))
+        sets = zip(*(block.contacts[k] for block in blocks), strict=True)
+        contacts.append(tuple(_joined_contact(list(group), problem, line.pitches) for group in sets))
     known = [block.condition for block in blocks if block.condition is not None]
-    return SolvedBlock(tuple(kept), np.concatenate(known) if known else None)
+    return SolvedBlock(tuple(contacts), np.concatenate(known) if known else None)
 
 
-def _joined_contact(parts: list[KeptContact], problem: ContactProblem, pitches: int) -> KeptContact:
+def _joined_contact(parts: list[SolvedContact], problem: ContactProblem, pitches: int) -> SolvedContact:
     """Put what is kept of the blocks of a line together; forces are those of one base pitch."""
     solutions = [part.solution for part in parts]
     forces = _rows([solution.force for solution in solutions], 1)
     solution = replace(_joined_arrays(solutions, pitches, ("load", "force")), force=forces)
     stored = {name: _rows([part.stored[name] for part in parts], pitches) for name in parts[0].stored}
     depth: FloatArray = np.max([part.edge_depth for part in parts], axis=0)
-    return KeptContact(problem, solution, stored, depth)
+    return SolvedContact(problem, solution, stored, depth)
 
 
 def _joined_candidates(parts: list[Candidates]) -> Candidates:
@@ -195,7 +195,7 @@ def solve_operating_points(
     conditioned: bool,
     edges: bool,
     report: Report = unreported,
-) -> tuple[list[list[KeptContact]], FloatArray | None]:
+) -> tuple[list[list[SolvedContact]], FloatArray | None]:
     """Solve all places at the positions of all base pitches.
 
     Parameters
@@ -222,29 +222,34 @@ def solve_operating_points(
     everywhere = [position] * count
     lines = _sent_lines(points.workers, points.places, everywhere, loads, pitches)
     if not lines:
-        here = [
+        local_sets = [
             solved_in_parts(
-                point, position, loads, pitches, edges=edges, report=partial(_of_whole, report, k, count)
+                point,
+                position,
+                loads,
+                pitches,
+                edges=edges,
+                report=partial(_total_fraction, report, k, count),
             )
             for k, point in enumerate(points.places)
         ]
-        return [list(each) for each in zip(*here, strict=True)], None
+        return [list(group) for group in zip(*local_sets, strict=True)], None
     sent = [
-        replace(line, whole=replace(line.whole, conditioned=conditioned, edges=edges))
+        replace(line, block=replace(line.block, conditioned=conditioned, edges=edges))
         for line, _ in lines.values()
     ]
-    solved_each = _solved_lines(sent, points.workers, report)
-    by_place = {
-        k: kept
-        for (_, members), line in zip(lines.values(), solved_each, strict=True)
-        for k, kept in zip(members, line.kept, strict=True)
+    solved_lines = _solved_lines(sent, points.workers, report)
+    by_point = {
+        k: group
+        for (_, members), line in zip(lines.values(), solved_lines, strict=True)
+        for k, group in zip(members, line.contacts, strict=True)
     }
-    each = [by_place[k] for k in sorted(by_place)]
-    known = [line.condition for line in solved_each if line.condition is not None]
-    return [list(kept) for kept in zip(*each, strict=True)], np.concatenate(known) if known else None
+    ordered = [by_point[k] for k in sorted(by_point)]
+    known = [line.condition for line in solved_lines if line.condition is not None]
+    return [list(group) for group in zip(*ordered, strict=True)], np.concatenate(known) if known else None
 
 
-def _of_whole(report: Report, done: int, count: int, fraction: float) -> None:
+def _total_fraction(report: Report, done: int, count: int, fraction: float) -> None:
     """Report the fraction of one of so many parts."""
     report((done + fraction) / count)
 
@@ -276,7 +281,7 @@ def deflected_operating_points(
     derived = pitches is not None and any(point.derived is not None for point in points)
     lines = {} if derived else _sent_lines(workers, points, position, (load,), pitches, known)
     if not lines:
-        solved = _deflected_here(points, position, load, pitches, known, starts)
+        solved = _deflected_locally(points, position, load, pitches, known, starts)
         return list(solved)
     if starts is not None:
         lines = {
@@ -284,15 +289,15 @@ def deflected_operating_points(
             for key, (line, numbers) in lines.items()
         }
     deflected = _deflections([line for line, _ in lines.values()], workers)
-    by_place = {
+    by_point = {
         k: curve
         for (_, members), curves in zip(lines.values(), deflected, strict=True)
         for k, curve in zip(members, curves, strict=True)
     }
-    return [by_place[k] for k in range(len(points))]
+    return [by_point[k] for k in range(len(points))]
 
 
-def _deflected_here(
+def _deflected_locally(
     points: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     load: FloatArray,
@@ -311,8 +316,8 @@ def _deflected_here(
 
 
 def _started(line: _Line, starts: Sequence[Start]) -> _Line:
-    forces = tuple(start.on(line.whole.candidates) for start in starts)
-    return replace(line, whole=replace(line.whole, starts=forces))
+    forces = tuple(start.on(line.block.candidates) for start in starts)
+    return replace(line, block=replace(line.block, starts=forces))
 
 
 def _sent_lines(
@@ -337,9 +342,9 @@ def _sent_lines(
         contact, first = points[numbers[0]].contact, points[numbers[0]].model
         candidates = contact.candidates(first, position[numbers[0]]) if known is None else known[numbers[0]]
         models = tuple(points[k].model for k in numbers)
-        problem = contact.kept(first, position[numbers[0]])
+        problem = contact.cached_problem(first, position[numbers[0]])
         turned = pitches if first.period > 1 else None
-        whole = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=problem)
-        lines[key] = (_Line(contact, whole), numbers)
-    seconds = sum(line.seconds_a_position * line.whole.candidates.position.size for line, _ in lines.values())
+        block = ContactBlock(contact.pair, contact.plan, candidates, models, turned, loads, assembled=problem)
+        lines[key] = (_Line(contact, block), numbers)
+    seconds = sum(line.seconds_a_position * line.block.candidates.position.size for line, _ in lines.values())
     return lines if seconds > TASK_SECONDS else {}

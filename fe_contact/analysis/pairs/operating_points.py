@@ -99,7 +99,7 @@ class OperatingPoints:
 
     def on(self, contact: PairContact) -> OperatingPoints:
         """Return the same places, which are of one center distance, with another contact."""
-        return self._with_contacts(lambda _own: contact)
+        return self._with_contacts(lambda _contact: contact)
 
     def in_slices(self, count: int) -> OperatingPoints:
         """Return the same places in other slices."""

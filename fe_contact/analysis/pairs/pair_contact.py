@@ -13,9 +13,9 @@ from fe_contact.compliance import (
     finite_width_compliances,
     flank_compliances,
     flank_compliances_3d,
-    free_ends_kept,
-    section_kept,
-    solid_kept,
+    free_ends_cached,
+    section_cached,
+    solid_cached,
 )
 from fe_contact.contact import (
     Candidates,
@@ -41,7 +41,7 @@ from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 from model_studies.progress import Report, unreported
 
-KEPT_PROBLEMS = 2
+CACHED_PROBLEMS = 2
 """Position sets whose compliance is kept: the table's, while another is tried."""
 
 PlaneFlanks = tuple[FlankCompliance, FlankCompliance]
@@ -112,10 +112,10 @@ class PairContact:
 
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""
-        problem = self.kept(model, position)
+        problem = self.cached_problem(model, position)
         return self._located(model, position) if problem is None else problem.candidates
 
-    def kept(self, model: ContactModel, position: FloatArray) -> ContactProblem | None:
+    def cached_problem(self, model: ContactModel, position: FloatArray) -> ContactProblem | None:
         """Return the problem of plain involutes at positions (P,) if it is kept."""
         return self._problems.get(self.key(model, position))
 
@@ -189,7 +189,7 @@ class PairContact:
 
     def _make_room(self) -> None:
         """Let go of what was kept first, before the memory of another is needed."""
-        while len(self._problems) >= KEPT_PROBLEMS:
+        while len(self._problems) >= CACHED_PROBLEMS:
             self._problems.pop(next(iter(self._problems)))
 
     def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:
@@ -242,7 +242,7 @@ def pair_contact(
     return PairContact(pair, plan, plane=corrected, uncorrected=flat)
 
 
-def bodies_are_kept(
+def bodies_are_cached(
     pair: ParallelAxes,
     plan: Plan,
     cache: Path | None,
@@ -254,14 +254,14 @@ def bodies_are_kept(
     made, gears = plan.discretization, plan.bodies(pair)
     if isinstance(made, FaceDiscretization):
         solids = made.coarse_recipes if coarse else made.recipes
-        return all(solid_kept(*recipe, cache) for recipe in zip(gears, solids, strict=True))
+        return all(solid_cached(*recipe, cache) for recipe in zip(gears, solids, strict=True))
     teeth, recipes = _teeth(pair, distance_changes), made.coarse_recipes if coarse else made.recipes
     in_cache = [
-        section_kept(*recipe, made.hypothesis, teeth, cache) for recipe in zip(gears, recipes, strict=True)
+        section_cached(*recipe, made.hypothesis, teeth, cache) for recipe in zip(gears, recipes, strict=True)
     ]
     if made.finite_width is not None and not coarse:
         in_cache += [
-            free_ends_kept(*recipe, teeth, cache) for recipe in zip(gears, made.finite_width, strict=True)
+            free_ends_cached(*recipe, teeth, cache) for recipe in zip(gears, made.finite_width, strict=True)
         ]
     return all(in_cache)
 

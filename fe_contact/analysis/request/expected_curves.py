@@ -42,11 +42,11 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     plan = checked.plan()
     scene = replace(
         request.scene,
-        misalignment=_some(request.misalignment, ALIGNMENTS),
-        center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
+        misalignment=_sampled(request.misalignment, ALIGNMENTS),
+        center_distance_change=_sampled(request.center_distance_change, ALIGNMENTS),
     )
     points = operating_points(scene, checked.decision, SpringContact(request.pair, plan, law=LAW)).places
-    position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
+    position, load = np.arange(POSITIONS) / POSITIONS, _sampled(request.load, LOADS)
     solved = [point.solve(position, load)[1] for point in points]
     # errors grow with what the load adds: a misaligned pair leads at no load
     unloaded = np.concatenate([np.full(load.size, np.mean(thin.no_load)) for thin in solved])
@@ -57,5 +57,5 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)
 
 
-def _some(axis: FloatArray, limit: int) -> FloatArray:
+def _sampled(axis: FloatArray, limit: int) -> FloatArray:
     return axis[sample_of(axis.size, limit)]

@@ -33,14 +33,14 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
     for name in neglected:
         scene, choices = checked.assessing(name)
         influences[name] = estimate_influence(scene.at_nominal_load, choices, name)
-    whole = checked.request.whole_scene
+    scene = checked.request.complete_scene
     return {
-        name: None if influence is None else _influence(influence, whole)
+        name: None if influence is None else _influence(influence, scene)
         for name, influence in influences.items()
     }
 
 
 def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:
-    changes = (influence.mean, influence.peak_to_peak, influence.whole.mean, influence.whole.peak_to_peak)
+    changes = (influence.mean, influence.peak_to_peak, influence.full.mean, influence.full.peak_to_peak)
     torque, misalignment = float(scene.torque[-1]), scene.largest_misalignment
     return Influence(torque, misalignment, *(float(values[-1]) for values in changes))

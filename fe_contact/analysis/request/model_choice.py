@@ -157,7 +157,7 @@ def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, trie
     # its error is that beside the tolerance, as the plan states it: a part of what its floor counts by
     fits = fits.refined(option.level, option.slices, fits.plan.nodes, fits.mesh.reason)
     needs = f"{wished.mesh.option.name} is predicted to take {engineering(seconds, 2)} CPU s of {budget:.3g}"
-    error = f"expected error {fits.mesh.option.error.words}"
+    error = f"expected error {fits.mesh.option.error.text}"
     mesh = MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}")
     return replace(fits, mesh=mesh, wished=wished)
 
@@ -175,7 +175,7 @@ def _meshes(
 
 def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshOption) -> MeshChoice:
     dearer = f"{checked.model_name}, {chosen.option.name}"
-    reason = f"expected error {first.error.words}, tried first: at most a tenth of the work of {dearer}"
+    reason = f"expected error {first.error.text}, tried first: at most a tenth of the work of {dearer}"
     return MeshChoice(first, chosen.met, reason)
 
 
@@ -193,8 +193,8 @@ def alternative_requests(checked: Checked) -> list[Checked]:
         return [checked]
     plain = replace(request, neglected={**request.neglected, width: "left out"})
     solid = replace(request, turned_on={**request.turned_on, face: "taken"})
-    flat = [_again(plain)] if _width_is_small(checked) else []
-    return [*flat, checked, _again(solid)]
+    flat = [_rechecked(plain)] if _width_is_small(checked) else []
+    return [*flat, checked, _rechecked(solid)]
 
 
 def next_model(checked: Checked) -> Decision | None:
@@ -210,7 +210,7 @@ def next_model(checked: Checked) -> Decision | None:
     face, width = tell
     effects = (width, face) if width in request.neglected else (face,)
     models = [
-        _again(replace(request, neglected=neglected, turned_on={**reasons, name: "taken"}))
+        _rechecked(replace(request, neglected=neglected, turned_on={**reasons, name: "taken"}))
         for name in effects
     ]
     curves = expected_curves(checked)
@@ -232,7 +232,7 @@ def _width_is_small(checked: Checked) -> bool:
     return influence is not None and influence.largest <= WIDTH_SHARE * tolerance.relative
 
 
-def _again(request: Request) -> Checked:
+def _rechecked(request: Request) -> Checked:
     return checked_request(request, neglect=False)
 
 
@@ -265,7 +265,7 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     )
     if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
         return choice
-    return _again(replace(request, neglected=neglected, turned_on=turned_on)), mesh
+    return _rechecked(replace(request, neglected=neglected, turned_on=turned_on)), mesh
 
 
 def _reason(tells: bool, text: str, parts: str) -> str:

@@ -39,13 +39,13 @@ def neglected_effects(
         if total > SHARE * tolerance.relative:
             break
         bound = largest_part(
-            scene.effect(name).extent(scene), influence.whole.mean, influence.whole.peak_to_peak, tolerance
+            scene.effect(name).extent(scene), influence.full.mean, influence.full.peak_to_peak, tolerance
         )
         if bounded + bound > LARGEST_PART * tolerance.relative:
             total -= influence.largest
             continue
         bounded += bound
         # an estimate of another size than the tolerance bounds nothing
-        estimated = f"within a factor of two in most cases, at {tolerance.part_words(influence.largest)}"
+        estimated = f"within a factor of two in most cases, at {tolerance.part_text(influence.largest)}"
         neglected[name] = f"neglected: estimated, {estimated} where it is largest"
     return neglected

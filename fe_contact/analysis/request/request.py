@@ -68,7 +68,7 @@ class Request:
         return self.misalignment.size, self.center_distance_change.size
 
     @property
-    def whole_scene(self) -> ContactScene:
+    def complete_scene(self) -> ContactScene:
         """The scene that the effects assess by, before any was neglected."""
         alignments = self.misalignment, self.center_distance_change
         return ContactScene(self.pair, self.torque, self.registry, *alignments, pitches=self.pitches)
@@ -76,7 +76,7 @@ class Request:
     @property
     def scene(self) -> ContactScene:
         """The scene that the effects assess by: what is neglected is not in it."""
-        scene = self.whole_scene
+        scene = self.complete_scene
         for name in self.neglected:
             scene = scene.effect(name).without(scene) or scene
         return scene
@@ -91,7 +91,7 @@ class Request:
         return self.named("across_face"), self.named("finite_width")
 
     @property
-    def asked_choices(self) -> dict[str, str]:
+    def requested_choices(self) -> dict[str, str]:
         """Choice of each effect; an explicit model decides about the face and its finite width."""
         face, width = self.model_effects
         chosen = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
@@ -104,13 +104,13 @@ class Request:
     @property
     def model_chosen(self) -> bool:
         """Whether the caller chose the model, or one of the effects that tell the models apart."""
-        return any(self.asked_choices.get(name, "auto") != "auto" for name in self.model_effects)
+        return any(self.requested_choices.get(name, "auto") != "auto" for name in self.model_effects)
 
     @property
     def choices(self) -> dict[str, str]:
         """Choice of each effect, those that are neglected or turned on included."""
         overrides = dict.fromkeys(self.neglected, "off") | dict.fromkeys(self.turned_on, "on")
-        return self.asked_choices | overrides
+        return self.requested_choices | overrides
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""
@@ -176,5 +176,5 @@ class Checked:
         request = self.request
         if name not in request.neglected:
             return request.scene, self.decision
-        _, ledger = compose(request.whole_scene, request.asked_choices)
-        return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}
+        _, ledger = compose(request.complete_scene, request.requested_choices)
+        return request.complete_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}

@@ -24,7 +24,7 @@ def check_request(
     axes: TableAxes,
     options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
-    whole_table: bool = True,
+    check_size: bool = True,
     neglect: bool = True,
 ) -> Checked:
     """Check all inputs of a table, without computing anything.
@@ -33,7 +33,7 @@ def check_request(
 
     Parameters
     ----------
-    whole_table : bool
+    check_size : bool
         False leaves out the limit on the size of a table.
     neglect : bool
         False leaves out the decision about effects that a tolerance does not need, which takes some
@@ -44,7 +44,7 @@ def check_request(
     PlausibilityWarning
         Once for each thing about the request that is far from practice.
     """
-    checked = checked_request(Request.over(pair, axes, options), whole_table=whole_table, neglect=neglect)
+    checked = checked_request(Request.over(pair, axes, options), check_size=check_size, neglect=neglect)
     warn_of(checked.request.findings)
     return checked
 
@@ -65,10 +65,10 @@ def as_checked(
     if at is None or isinstance(at, TableAxes):
         return check_request(pair, at or TableAxes(), options, neglect=neglect)  # no axes: no loads, refused
     # what does not show in the transmission error may show in pressures and stresses
-    return check_request(pair, at.axes, options, whole_table=False, neglect=False)
+    return check_request(pair, at.axes, options, check_size=False, neglect=False)
 
 
-def checked_request(request: Request, *, whole_table: bool = True, neglect: bool = True) -> Checked:
+def checked_request(request: Request, *, check_size: bool = True, neglect: bool = True) -> Checked:
     """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`.
 
     With a tolerance, automatic effects that it does not need are then neglected.
@@ -77,13 +77,13 @@ def checked_request(request: Request, *, whole_table: bool = True, neglect: bool
     refuse_beyond_plane(request.scene, composed, ledger)
     if neglect:
         request, composed, ledger = _without_neglected(request, composed, ledger)
-    return _held(request, composed, ledger, whole_table=whole_table)
+    return _checked(request, composed, ledger, check_size=check_size)
 
 
 def neglecting(checked: Checked) -> Checked:
     """Go on from `check_request` with `neglect` false: decide which effects the tolerance does not need."""
     request, composed, ledger = _without_neglected(checked.request, checked.model, checked.ledger)
-    return checked if request is checked.request else _held(request, composed, ledger)
+    return checked if request is checked.request else _checked(request, composed, ledger)
 
 
 def _without_neglected(
@@ -98,29 +98,29 @@ def _without_neglected(
     return request, composed, ledger
 
 
-def _held(
-    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...], *, whole_table: bool = True
+def _checked(
+    request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...], *, check_size: bool = True
 ) -> Checked:
     """Refuse what the composed model of a request cannot hold."""
     if composed.across_face:
         _refuse_thin_discs(request.pair, request.options.level)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
-    cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
+    cycle = _cycle_cost(request, composed) if check_size and composed.period > 1 else None
     return Checked(request, composed, ledger, cycle)
 
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
     """Compose the model; the ledger says what was requested, and of what is neglected what the scene held."""
     composed, ledger = compose(request.scene, request.choices)
-    choices, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
-    scene = request.whole_scene
-    whole = {name: scene.effect(name).called_for(scene) for name in request.neglected}
+    choices, overrides = request.requested_choices, {**request.neglected, **request.turned_on}
+    scene = request.complete_scene
+    called_for = {name: scene.effect(name).called_for(scene) for name in request.neglected}
     return composed, tuple(
         replace(
             entry,
             choice=choices.get(entry.name, "auto"),
-            verdict=whole.get(entry.name, entry.verdict),
+            verdict=called_for.get(entry.name, entry.verdict),
             override=overrides.get(entry.name, ""),
         )
         for entry in ledger

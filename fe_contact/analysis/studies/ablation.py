@@ -103,8 +103,8 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
 
     def measured(self, entry: EffectAblation) -> Influence:
         """Return the change by neglecting an effect at the nominal load, from the two tables."""
-        whole = entry.with_effect
-        changes = (entry.mean_change, entry.peak_to_peak_change, whole.mean, whole.peak_to_peak)
+        complete = entry.with_effect
+        changes = (entry.mean_change, entry.peak_to_peak_change, complete.mean, complete.peak_to_peak)
         return Influence(
             float(self.torque[-1]), self.misalignment, *(float(values[-1]) for values in changes)
         )
@@ -157,7 +157,7 @@ def ablate(
     seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
     effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
     request = checked.request
-    misalignment = request.whole_scene.largest_misalignment
+    misalignment = request.complete_scene.largest_misalignment
     return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
 
 
@@ -180,13 +180,13 @@ def predicted_ablation(checked: Checked, only: Sequence[str] | None, cache: Path
         with suppress(*FAILURES):
             variant = checked if entry is None else toggled(checked, entry.name, "off" if entry.on else "on")
             plan = variant.planned(cache)
-            whole = variant.predicted(plan, cache, with_errors=False)
+            complete = variant.predicted(plan, cache, with_errors=False)
             made = plan.discretization
-            bodies[plan.bodies(variant.request.pair), made.recipes, made.corrected] = whole.stages[
+            bodies[plan.bodies(variant.request.pair), made.recipes, made.corrected] = complete.stages[
                 "compliance"
             ]
-            contacts.append(whole.stages["contact"])
-            memory = max(memory, whole.memory_bytes)
+            contacts.append(complete.stages["contact"])
+            memory = max(memory, complete.memory_bytes)
     return PredictedTables(sum(bodies.values()), tuple(contacts), memory)
 
 
@@ -218,7 +218,7 @@ def _figures(checked: Checked, run: Run) -> Figures:
     request = checked.request
     table = compute_database(checked, request.to_json(), run.silent)
     table.require_complete()
-    skew = checked.request.whole_scene.largest_misalignment
+    skew = checked.request.complete_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
     predicted = checked.predicted(checked.planned(run.cache), None)
     return Figures(

@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.pairs.kept_contact import KeptContact
 from fe_contact.analysis.pairs.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pairs.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.pairs.slice_stiffness import mean_stiffness, parabolic_stiffness
+from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.table_fields import table_fields, table_support
 from fe_contact.planning.plan import Plan
@@ -87,7 +87,7 @@ class _ClosedFormFidelity:
         position, pitches = np.arange(count) / count, np.arange(points.period)
         table, support = (
             [
-                KeptContact.of(point.contact.pair, *point.solve_pitches(position, load, pitches))
+                SolvedContact.of(point.contact.pair, *point.solve_pitches(position, load, pitches))
                 for point in points.places
             ]
             for load in (plan.load, plan.support)

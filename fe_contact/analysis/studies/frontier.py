@@ -128,7 +128,7 @@ def frontier(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         checked,
         _warm_up,
-        partial(_whole_table, checked),
+        partial(_complete_table, checked),
         (MeshError, SolveError),
         progress,
     )
@@ -174,7 +174,7 @@ def _warm_up(fidelities: Sequence[Fidelity]) -> None:
     warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
 
 
-def _whole_table(checked: Checked, fidelity: Fidelity) -> SteDatabase:
+def _complete_table(checked: Checked, fidelity: Fidelity) -> SteDatabase:
     table = fidelity.run(checked)
     table.require_complete()
     return table

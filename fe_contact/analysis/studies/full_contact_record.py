@@ -67,8 +67,8 @@ class FullContactRecord:
 
     def at_positions(self, count: int) -> FullContactRecord:
         """Return the record at equally spaced positions, as nearly as it has them, or at all it has."""
-        held = self.position.size
-        rows = np.unique(np.round(np.arange(min(count, held)) * held / min(count, held)).astype(int))
+        size = self.position.size
+        rows = np.unique(np.round(np.arange(min(count, size)) * size / min(count, size)).astype(int))
         return replace(
             self,
             position=self.position[rows],

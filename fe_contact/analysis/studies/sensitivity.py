@@ -89,10 +89,10 @@ def study_sensitivity(
 
 def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurve, RippleCurve]:
     """Return both curves; every table neglects what it does not need itself."""
-    whole, none = checked.request, np.zeros(1)
-    effects = {**whole.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
-    request = replace(whole, options=replace(whole.options, effects=effects), nodes_alone=True)
-    skews, changes = (np.union1d(none, axis) for axis in (whole.misalignment, whole.center_distance_change))
+    base, none = checked.request, np.zeros(1)
+    effects = {**base.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
+    request = replace(base, options=replace(base.options, effects=effects), nodes_alone=True)
+    skews, changes = (np.union1d(none, axis) for axis in (base.misalignment, base.center_distance_change))
     skewed, shifted = (
         analyze(checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run)
         for skew, change in ((skews, none), (none, changes))

@@ -23,7 +23,7 @@ def plate_bending(gear: Toothing) -> FloatArray:
     """Axial displacement (z,) of the load's place per axial force, m/N, 0, 1, ... teeth apart."""
     material, radius = gear.material, gear.root_radius
     rigidity = material.youngs_modulus * gear.face_width**3 / (12.0 * (1.0 - material.poissons_ratio**2))
-    ratio, above = gear.held_radius / radius, abs(gear.reference_radius / radius - 1.0)
+    ratio, above = gear.seat_radius / radius, abs(gear.reference_radius / radius - 1.0)
     orders = range(BENDING_HARMONICS + 1)
     amplitudes = np.array([_bent(n, ratio, above, material.poissons_ratio) for n in orders])
     return _around(gear, amplitudes * radius**2 / (math.pi * rigidity))
@@ -36,7 +36,7 @@ def antiplane_shear(gear: Toothing) -> FloatArray:
     A load is spread over half a pitch, the thickness of its tooth.
     """
     order = np.arange(1, 4 * gear.teeth + 1)
-    ratio = gear.held_radius / gear.root_radius
+    ratio = gear.seat_radius / gear.root_radius
     inner = min(ratio, 1.0 / ratio) ** (2 * order)
     spread = np.sinc(0.5 * order / gear.teeth) ** 2
     amplitudes = np.concatenate([[abs(math.log(ratio))], (1.0 - inner) / (1.0 + inner) / order * spread])

@@ -87,7 +87,7 @@ class _Weights:
     """Forces (P, m) by motion of the candidates, their sum (P,), and forces (P, n) on the slices, N."""
 
     force: FloatArray
-    held: FloatArray
+    slice_force: FloatArray
     motion: FloatArray
 
     @classmethod
@@ -106,4 +106,6 @@ class _Weights:
 
     def displacement(self, compliance: FloatArray) -> FloatArray:
         """Return the mean displacement (P,) by a compliance (P, n, n), m."""
-        return np.asarray(np.einsum("pi,pij,pj->p", self.held, compliance, self.held) / self.motion)
+        return np.asarray(
+            np.einsum("pi,pij,pj->p", self.slice_force, compliance, self.slice_force) / self.motion
+        )

@@ -24,7 +24,7 @@ class EstimatedInfluence:
     """`mean`, `peak_to_peak`: Of the static transmission error, m, at each load and the largest misalignment
     in size. Shape (L,) each.
     """
-    whole: EstimatedCurve
+    full: EstimatedCurve
     """With the effect, at the same places."""
     largest: float
     """Largest change of either in parts of the value with the effect, over all loads and both ends of the

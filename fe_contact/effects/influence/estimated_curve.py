@@ -119,17 +119,17 @@ def spread_pitches(periods: Sequence[int]) -> IntArray:
     Of all steps the one by which both gears stand most evenly at all their angles, and against each other:
     the orders up to `_EVEN` of both, their sums and differences have the least mean.
     """
-    whole = math.lcm(*periods)
-    if whole <= MAX_PITCHES:
-        return np.arange(whole)
+    common_period = math.lcm(*periods)
+    if common_period <= MAX_PITCHES:
+        return np.arange(common_period)
     rates = np.zeros(1)
     for period in {*periods} - {1}:
         rates = np.add.outer(rates, np.arange(-_EVEN, _EVEN + 1) / period).ravel()
     rates = rates[np.abs(rates) > 1e-12]
-    step, index = np.arange(1, min(whole, _MAX_STEPS)), np.arange(MAX_PITCHES)
+    step, index = np.arange(1, min(common_period, _MAX_STEPS)), np.arange(MAX_PITCHES)
     angle = 2.0 * np.pi * step[:, None, None] * rates[:, None] * index
     steadiness = np.abs(np.exp(1j * angle).mean(axis=-1)).max(axis=1)
-    return np.sort(index * step[int(steadiness.argmin())] % whole)
+    return np.sort(index * step[int(steadiness.argmin())] % common_period)
 
 
 def _uneven_pitches(pair: ParallelAxes, model: ContactModel) -> IntArray:

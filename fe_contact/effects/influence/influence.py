@@ -29,20 +29,20 @@ class Influence:
     mean: float
     peak_to_peak: float
     """`mean`, `peak_to_peak`: Change of the static transmission error, m."""
-    whole_mean: float
-    whole_peak_to_peak: float
-    """`whole_mean`, `whole_peak_to_peak`: The static transmission error with the effect, m."""
+    full_mean: float
+    full_peak_to_peak: float
+    """`full_mean`, `full_peak_to_peak`: The static transmission error with the effect, m."""
 
     @property
     def relative_mean(self) -> float:
         """Change of the mean over the mean with the effect."""
-        return self.mean / self.whole_mean
+        return self.mean / self.full_mean
 
     @property
     def relative_peak_to_peak(self) -> float | None:
         """Change of peak-to-peak over that with the effect; None where that is below `RIPPLE_FLOOR`."""
-        quiet = self.whole_peak_to_peak < RIPPLE_FLOOR
-        return None if quiet else self.peak_to_peak / self.whole_peak_to_peak
+        quiet = self.full_peak_to_peak < RIPPLE_FLOOR
+        return None if quiet else self.peak_to_peak / self.full_peak_to_peak
 
     @property
     def trifle(self) -> bool:
@@ -52,7 +52,7 @@ class Influence:
         return small and abs(self.relative_mean) < TRIFLE
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Both changes in um and %."""
         ripple = self.relative_peak_to_peak
         share = f"of less than {_UM * RIPPLE_FLOOR:g} µm" if ripple is None else f"{signed(100 * ripple)} %"
@@ -68,12 +68,12 @@ class Influence:
             "misalignment_m": self.misalignment,
             "mean_m": self.mean,
             "peak_to_peak_m": self.peak_to_peak,
-            "whole_mean_m": self.whole_mean,
-            "whole_peak_to_peak_m": self.whole_peak_to_peak,
+            "whole_mean_m": self.full_mean,
+            "whole_peak_to_peak_m": self.full_peak_to_peak,
             "relative_mean": self.relative_mean,
             "relative_peak_to_peak": self.relative_peak_to_peak,
             "trifle": self.trifle,
-            "words": self.words,
+            "words": self.text,
         }
 
 

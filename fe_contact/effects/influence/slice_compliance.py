@@ -123,7 +123,7 @@ def _of_gear(
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Displacement (n, n) of teeth by what the body under them does."""
     distance, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
-    inner, outer = sorted((gear.held_radius, gear.root_radius))
+    inner, outer = sorted((gear.seat_radius, gear.root_radius))
     depth = outer - inner
     pitch = math.pi * gear.transverse_module
     rigid = gear.base_radius**2 * torsion_compliance(inner, outer, gear.material)
@@ -132,11 +132,13 @@ def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArr
     below_tooth = max(math.log(depth / (SUNK_DEPTH * gear.normal_module)), 0.0)
     sunk = half_plane(gear) * np.where(distance == 0, below_tooth, near)
     body = gear.with_parts(model.parts)
-    whole = WEB_EXCESS * web_compliance(body) + _seat(body)
+    rigid_motion = WEB_EXCESS * web_compliance(body) + _seat(body)
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
     elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, distance)
     elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)
-    return np.asarray(elastic + transverse * whole + axial * plate_bending(gear)[distance % gear.teeth])
+    return np.asarray(
+        elastic + transverse * rigid_motion + axial * plate_bending(gear)[distance % gear.teeth]
+    )
 
 
 def _axial_shear(gear: Toothing, distance: FloatArray) -> FloatArray:
@@ -152,7 +154,7 @@ def _seat(gear: Toothing) -> float:
     """Displacement of the line of action as the rigid gear turns and shifts on an elastic seat, m/N."""
     low, high = gear.seat.ends(gear.face_width)
     stiffness = sum(k for k in gear.seat.stiffness[:2])
-    shift = 1.0 / (math.pi * gear.held_radius * (high - low) * stiffness) if stiffness > 0.0 else 0.0
+    shift = 1.0 / (math.pi * gear.seat_radius * (high - low) * stiffness) if stiffness > 0.0 else 0.0
     return seat_compliance(gear) + shift
 
 

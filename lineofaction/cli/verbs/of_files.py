@@ -112,8 +112,8 @@ def _ste(
     json: AsJson = False,
 ) -> None:
     """Print one STE curve of a database: mean, peak-to-peak, harmonics with their errors, load sharing."""
-    place = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
-    point = {"torque": torque, "force": force, **place}
+    alignment = {"misalignment_um": misalignment_um, "center_distance_change_mm": center_distance_change_mm}
+    point = {"torque": torque, "force": force, **alignment}
     ste.run_ste(database, point, at, as_table=table, as_csv=csv, as_json=json)
 
 

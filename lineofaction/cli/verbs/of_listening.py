@@ -78,9 +78,9 @@ def _listen(
     output: Annotated[
         Path | None, to_file("WAV file, or folder of one file per run; default: run.wav in the folder.")
     ] = None,
-    heard: _HeardOptions,
+    options: _HeardOptions,
     housing: _HousingOptions,
     json: AsJson = False,
 ) -> None:
     """Write runs as WAV files of stated quantity and level, to hear and to compare by ear."""
-    listen.run_listen(runs, output, views.RunView(**asdict(heard)), **asdict(housing), as_json=json)
+    listen.run_listen(runs, output, views.RunView(**asdict(options)), **asdict(housing), as_json=json)

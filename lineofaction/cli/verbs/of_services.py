@@ -17,10 +17,10 @@ from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.registry import studies_of
 
 if TYPE_CHECKING:
-    from lineofaction.cli import cache as kept
+    from lineofaction.cli import cache as cache_verbs
     from lineofaction.cli import job_tables, keys, remote, serve, stored_results, submit
 else:
-    kept, remote, serve, submit = map(Later, ("cli.cache", "cli.remote", "cli.serve", "cli.submit"))
+    cache_verbs, remote, serve, submit = map(Later, ("cli.cache", "cli.remote", "cli.serve", "cli.submit"))
     job_tables, keys, stored_results = map(Later, ("cli.job_tables", "cli.keys", "cli.stored_results"))
 
 verbs = typer.Typer()
@@ -305,7 +305,7 @@ def _reindex(
 @guarded
 def _list_cache(json: AsJson = False) -> None:
     """Print the number of files and their size, by kind."""
-    kept.run_list(as_json=json)
+    cache_verbs.run_list(as_json=json)
 
 
 @cache.command("limit", epilog="Example: loa cache limit --gb 0.5")
@@ -315,7 +315,7 @@ def _limit(
     json: AsJson = False,
 ) -> None:
     """Remove the least recently used entries until the rest fits; entries used within 10 minutes stay."""
-    kept.run_limit(gb, as_json=json)
+    cache_verbs.run_limit(gb, as_json=json)
 
 
 @cache.command("clear", epilog="Example: loa cache clear results")
@@ -327,4 +327,4 @@ def _clear(
     json: AsJson = False,
 ) -> None:
     """Remove all entries; they are computed or fetched again when needed."""
-    kept.run_clear(kinds or [], as_json=json)
+    cache_verbs.run_clear(kinds or [], as_json=json)

@@ -38,8 +38,8 @@ class StudyGroup(TyperGroup):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """Return a verb."""
-        own, study = super().get_command(ctx, cmd_name), STUDIES.get(cmd_name)
-        return own if own is not None or study is None else _command(study)
+        command, study = super().get_command(ctx, cmd_name), STUDIES.get(cmd_name)
+        return command if command is not None or study is None else _command(study)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """List the verbs by groups, each with its whole sentence."""
@@ -85,9 +85,9 @@ def _parameters(study: Study) -> Iterator[Parameter]:
         yield keyword("study", Annotated[Path | None, file], None)
     else:
         yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
-    place = "Folder, or a file" if study.folder else "File to write,"
+    target_kind = "Folder, or a file" if study.folder else "File to write,"
     names = ("-o", "--output", *study.aliases)
-    target = typer.Option(*names, help=f"{place} ending in one of {', '.join(study.accepted)}.")
+    target = typer.Option(*names, help=f"{target_kind} ending in one of {', '.join(study.accepted)}.")
     yield keyword("output", Annotated[Path | None, target], None)
     yield keyword("workers", TaskWorkers, 1)
     yield keyword("scheduler", Scheduler, None)

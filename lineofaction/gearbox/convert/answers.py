@@ -107,7 +107,7 @@ def tooth_loads_json(database: SteDatabase, point: OperatingPoint) -> Json:
     return {GEARS[loads_of_gear.gear]: _tooth_loads(loads_of_gear) for loads_of_gear in loads}
 
 
-def teeth_words(teeth: Sequence[int]) -> str:
+def teeth_text(teeth: Sequence[int]) -> str:
     """Name teeth by their numbers: "tooth 7", "teeth 1 and 10", "tooth 1 and 4 more"."""
     first, *others = teeth
     if not others:

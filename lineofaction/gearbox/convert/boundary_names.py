@@ -49,7 +49,7 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
 }
 _OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
 """What declares fields whose names mean something else in other tables."""
-_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
+_SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
 def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
@@ -133,8 +133,8 @@ def scene_field(name: str) -> str:
     parts = ["coast_flank" if part == "coast" else part for part in name.split(".")]
     head, index = _split_index(parts[-1])
     table = _OF_TABLE.get(_split_index(parts[0])[0])
-    if len(parts) == 2 and table and head in (own := _fields_of(table)):
-        return f"{parts[0]}.{own[head]}"
+    if len(parts) == 2 and table and head in (fields := _fields_of(table)):
+        return f"{parts[0]}.{fields[head]}"
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
     if (

@@ -55,10 +55,10 @@ def gear_pair(case: Case) -> ParallelAxes:
         pinion = _gear(Gear, "pinion", case)
         first = part_of(Shaft, case.pair.pinion.shaft, "pinion.shaft")
         shafts = (first, part_of(Shaft, case.pair.wheel.shaft, "wheel.shaft"))
-        facts = in_si(GearPair, case.pair)
+        fields = in_si(GearPair, case.pair)
         if case.pair.wheel.internal:
-            return InternalGearPair(pinion, _gear(RingGear, "wheel", case), shafts=shafts, **facts)
-        return GearPair(pinion, _gear(Gear, "wheel", case), shafts=shafts, **facts)
+            return InternalGearPair(pinion, _gear(RingGear, "wheel", case), shafts=shafts, **fields)
+        return GearPair(pinion, _gear(Gear, "wheel", case), shafts=shafts, **fields)
 
 
 def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[str, object]]) -> ParallelAxes:
@@ -82,14 +82,14 @@ def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[st
         return replace(pair, **gears) if gears else pair
 
 
-def _with_flank(name: str, gear: Toothed, stated: ToothingInput) -> Toothed:
+def _with_flank(name: str, gear: Toothed, figures: ToothingInput) -> Toothed:
     """Return a gear of the pair with the modification that its table states."""
 
     def plain() -> Toothed:
         return replace(gear, modification=FlankModification())
 
     with inside(name):
-        return replace(gear, modification=_modification(stated, plain))
+        return replace(gear, modification=_modification(figures, plain))
 
 
 @contextmanager
@@ -109,19 +109,19 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
     gear: ToothingInput = getattr(case.pair, name)
     hand = -kind.sign if name == "wheel" else 1
     with inside(name):
-        facts = in_si(kind, gear, case.pair)
-        facts |= {
-            "helix_angle": hand * facts["helix_angle"] + 0.0,  # -0.0 becomes 0.0
+        fields = in_si(kind, gear, case.pair)
+        fields |= {
+            "helix_angle": hand * fields["helix_angle"] + 0.0,  # -0.0 becomes 0.0
             "material": Material(**in_si(Material, gear.material or case.material)),
             "pitch_deviation": _pitch_deviation(gear),
         }
-        return kind(**facts, modification=_modification(gear, lambda: kind(**facts)))
+        return kind(**fields, modification=_modification(gear, lambda: kind(**fields)))
 
 
 def _modification(gear: ToothingInput, plain: Callable[[], Toothing]) -> FlankModification:
     """Return the modification of a gear; `plain` makes the gear without it."""
-    facts, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
-    return FlankModification(**facts | starts.lengths(facts, plain))
+    fields, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
+    return FlankModification(**fields | starts.lengths(fields, plain))
 
 
 def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:
@@ -188,14 +188,14 @@ def case_at(case: Case, point: FlankPoint) -> Case:
     elif load.normal_force_n is not None:
         load = LoadInput(normal_force_n=load.normal_force_n[-1:])
     skew, change = point.misalignment_um, point.center_distance_change_mm
-    here = ErrorsInput(
+    alignment = ErrorsInput(
         misalignment_um=(min(errors.misalignment_um, key=abs) if skew is None else skew,),
         center_distance_change_mm=(
             min(errors.center_distance_change_mm, key=abs) if change is None else change,
         ),
     )
     accuracy = case.accuracy.model_copy(update={"positions": None})  # a cycle is always the same 64
-    return case.model_copy(update={"load": load, "errors": here, "accuracy": accuracy})
+    return case.model_copy(update={"load": load, "errors": alignment, "accuracy": accuracy})
 
 
 def operating_point(case: Case) -> OperatingPoint:

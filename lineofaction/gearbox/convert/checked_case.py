@@ -80,14 +80,14 @@ class CheckedCase:
     @cached_property
     def at_point(self) -> Checked:
         """The request of the case's one load and one alignment: its table may be of any size."""
-        return self._checked(whole_table=False, neglect=False)
+        return self._checked(check_size=False, neglect=False)
 
-    def _checked(self, *, whole_table: bool = True, neglect: bool = True) -> Checked:
+    def _checked(self, *, check_size: bool = True, neglect: bool = True) -> Checked:
         from fe_contact.analysis.request.request_check import check_request  # noqa: PLC0415 (start-up time)
 
         converted = self.converted
         with boundary_errors():
-            return check_request(*converted, whole_table=whole_table, neglect=neglect)
+            return check_request(*converted, check_size=check_size, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
         """Return what a study requests of the library: made once, for its check and for its work.
@@ -112,7 +112,7 @@ class CheckedCases:
     """The cases of a scene, or the last ones of a process; equal ones are converted and checked once."""
 
     def __init__(self, maximum: int = 256) -> None:
-        self._maximum, self._kept = maximum, OrderedDict[str, CheckedCase]()
+        self._maximum, self._cases = maximum, OrderedDict[str, CheckedCase]()
 
     def of(self, case: Case) -> CheckedCase:
         """Return a validated case."""
@@ -124,11 +124,11 @@ class CheckedCases:
 
     def _of(self, inputs: Json, case: Callable[[], Case]) -> CheckedCase:
         name = json.dumps(inputs, sort_keys=True)
-        checked = self._kept.get(name)
+        checked = self._cases.get(name)
         if checked is None:
-            checked = self._kept[name] = CheckedCase(case())
-            while len(self._kept) > self._maximum:
-                self._kept.popitem(last=False)
+            checked = self._cases[name] = CheckedCase(case())
+            while len(self._cases) > self._maximum:
+                self._cases.popitem(last=False)
         return checked
 
 
@@ -148,7 +148,7 @@ def check_plain_case(case: Case) -> ParallelAxes:
     """
     pair = gear_pair(case)
     if any(
-        gear.face_width * THICK < abs(gear.root_radius - gear.held_radius)
+        gear.face_width * THICK < abs(gear.root_radius - gear.seat_radius)
         for gear in (pair.pinion, pair.wheel)
     ):
         return check_case(case)

@@ -21,13 +21,13 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, MeshTable]]:
     """Return facts and table of every mesh that states its stiffness, by name."""
     return {
-        mesh.name: (_facts(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
+        mesh.name: (_pair_geometry(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
         for index, mesh in enumerate(meshes)
         if mesh.stiffness is not None
     }
 
 
-def _facts(field: str, mesh: StiffnessMeshInput) -> PairFacts:
+def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairFacts:
     """Return the facts of the pair: base radii in the ratio of the teeth, the center distance from them."""
     pinion, wheel = mesh.teeth
     if mesh.internal and wheel <= pinion:

@@ -142,29 +142,31 @@ def complaint_of(
     Raises `BadInput`: no such shaft turns, nothing passes within the tolerance, the speed is beyond a table
     of torques, or a microphone hears nothing.
     """
-    given_complaint = scene.complaint
-    assert given_complaint is not None
-    if given_complaint.microphone_mm is not None and not any(part.has_surface for part in scene.housings):
-        value, bound = list(given_complaint.microphone_mm), "left out: no housing of the scene has a surface"
+    fields = scene.complaint
+    assert fields is not None
+    if fields.microphone_mm is not None and not any(part.has_surface for part in scene.housings):
+        value, bound = list(fields.microphone_mm), "left out: no housing of the scene has a surface"
         raise BadInput.of("complaint.microphone_mm", value, bound, _SURFACE)
     kinematics, leading = solve_kinematics(moving), leading_shaft(moving)
-    final = "" if given_complaint.road_speed_km_h is None else _final_shaft(given_complaint, scene)
+    final = "" if fields.road_speed_km_h is None else _final_shaft(fields, scene)
     with boundary_errors("complaint"):
-        own_turns = shaft_rates(moving, kinematics, given_complaint.shaft or leading)
-    shaft, speed = _shaft(given_complaint, given_complaint.shaft or leading, final, own_turns)
+        shaft_turns = shaft_rates(moving, kinematics, fields.shaft or leading)
+    shaft, speed = _shaft(fields, fields.shaft or leading, final, shaft_turns)
     with boundary_errors("complaint"):
-        parts = excitations(moving, kinematics, shaft, _harmonics(given_complaint))
-    own, turns = _as_written(parts, scene), shaft_rates(moving, kinematics, shaft)
+        parts = excitations(moving, kinematics, shaft, _harmonics(fields))
+    parts_as_written, turns = _as_written(parts, scene), shaft_rates(moving, kinematics, shaft)
     if speed is not None:
         _refuse_beyond(scene, turns, speed)
-    rate = next((excitation.rate for excitation in own if excitation.kind == MESH), turns[leading])
+    rate = next(
+        (excitation.rate for excitation in parts_as_written if excitation.kind == MESH), turns[leading]
+    )
     return _complaint(
-        given_complaint,
-        own,
+        fields,
+        parts_as_written,
         shaft,
         speed,
         turns={part.name: turns[part.name] for part in scene.shafts},
-        drivers=_drivers(own, scene),
+        drivers=_drivers(parts_as_written, scene),
         per_pitch=1.0 / rate,
         levels=levels,
         torques=torques,
@@ -217,7 +219,7 @@ def _complaint(
 
     `known` are attributes of it that follow from what the complaint is about.
     """
-    order, hertz = _heard(fields, speed)
+    order, hertz = _order_and_frequency(fields, speed)
     tolerance = TOLERANCE if fields.tolerance_percent is None else fields.tolerance_percent / 100.0
     every = passing(excitations, order)
     reach = max(tolerance, *(abs(line.distance) + SAME for line in every[:NEAREST]))
@@ -239,7 +241,7 @@ def leading_shaft(moving: Scene) -> str:
     return next((part.shaft for part in moving.references if part.speed.extreme), moving.references[0].shaft)
 
 
-def _heard(fields: ComplaintInput, speed: float | None) -> tuple[float, float | None]:
+def _order_and_frequency(fields: ComplaintInput, speed: float | None) -> tuple[float, float | None]:
     """Return the order per revolution and the frequency, Hz; either follows from the other at a speed."""
     if fields.order is None:
         assert fields.frequency_hz is not None and speed is not None  # the schema has seen to it
@@ -304,7 +306,9 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
     """Return the answer to a complaint that nothing passes: what is nearest, and how far it is."""
     name = "frequency_hz" if fields.order is None else "order"
     meshes = [line for line in complaint.passing if line.excitation.kind == MESH] or complaint.passing
-    nearest = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in grouped(meshes)[:NAMED])
+    nearest = "; ".join(
+        f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in grouped(meshes)[:NAMED]
+    )
     share = engineering(100.0 * complaint.tolerance, 3)
     bound = f"within {share} % of what passes; nearest: {nearest}"
     remedy = "Check speed, ratios and tire; or state tolerance_percent, or more orders."
@@ -318,7 +322,7 @@ def sentence(complaint: Complaint) -> str:
     if complaint.speed is not None and complaint.frequency is not None:
         speed = f"{engineering(complaint.speed / RPM, 4)} rpm"
         subject = f"{engineering(complaint.frequency, 4)} Hz at {speed} of {complaint.shaft}"
-    return f"{subject} is {words(first)} {beside(complaint, first[0])}"
+    return f"{subject} is {harmonic_label(first)} {offset_text(complaint, first[0])}"
 
 
 def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
@@ -331,7 +335,7 @@ def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
     return [tuple(group) for group in groups.values()]
 
 
-def words(alike: Sequence[Passing]) -> str:
+def harmonic_label(alike: Sequence[Passing]) -> str:
     """Name a harmonic of one part, or of several as `grouped` returns them."""
     of = alike[0].excitation
     kind = _SEVERAL[of.kind]
@@ -344,7 +348,7 @@ def words(alike: Sequence[Passing]) -> str:
     return f"{number} {alike[0].harmonic} of {f'the {of.part} of ' if of.part else ''}{kind} {names}"
 
 
-def beside(complaint: Complaint, line: Passing) -> str:
+def offset_text(complaint: Complaint, line: Passing) -> str:
     """Say where a harmonic passes, and how far from the complaint."""
     hertz = complaint.hertz(line.order)
     if hertz is None or complaint.frequency is None:

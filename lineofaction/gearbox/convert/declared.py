@@ -36,14 +36,14 @@ def in_si(kind: type[Any], *models: BaseModel) -> dict[str, Any]:
 
     Raises `RefusedValue`: a value of a part out of its bounds.
     """
-    facts: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for model in reversed(models):
         for name, field, unit in _shared_fields(cast("Hashable", kind), cast("Hashable", type(model))):
-            facts[name] = _in_unit(getattr(model, field), unit)
+            values[name] = _in_unit(getattr(model, field), unit)
         for name, fact in parts_of(kind).items():
             if fact.part is not None and (value := getattr(model, name, None)) is not None:
-                facts[name] = _parts(fact.part, value, name)
-    return facts
+                values[name] = _parts(fact.part, value, name)
+    return values
 
 
 def _parts(kind: type[Part], value: BaseModel | tuple[BaseModel, ...], name: str) -> object:

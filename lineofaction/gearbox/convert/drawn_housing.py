@@ -35,8 +35,8 @@ def drawn_housings(inputs: Json, folder: Path, announce: Callable[[str], None]) 
     points, facets = np.empty((0, 3)), np.empty((0, 3), dtype=np.int64)
     for index, housing in solid:
         announce(f"housings[{index}].{'step_file' if housing.step_file else 'mesh_file'}")
-        own_points, own_facets = _drawn(index, housing, folder, MAX_TRIANGLES // len(solid))
-        points, facets = np.vstack([points, own_points]), np.vstack([facets, own_facets + len(points)])
+        part_points, part_facets = _drawn(index, housing, folder, MAX_TRIANGLES // len(solid))
+        points, facets = np.vstack([points, part_points]), np.vstack([facets, part_facets + len(points)])
     return {"surface": packed_surface(points, facets) if solid else None}
 
 
@@ -61,7 +61,7 @@ def _drawn(index: int, housing: HousingInput, folder: Path, limit: int) -> tuple
             field_name = f"{error.field}_mm" if error.field.endswith((".size", ".place")) else error.field
             value = content.name if error.value == file.name else error.value
             raise InputError(field_name, value, error.bound, error.suggestion) from None
-    placement = Placement.of(housing.own_x_axis, housing.own_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
+    placement = Placement.of(housing.file_x_axis, housing.file_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
     return placement.points(surface.points), surface.facets
 
 

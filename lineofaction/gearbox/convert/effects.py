@@ -27,13 +27,13 @@ def trifles_title(trifles: Sized) -> str:
     return f"{len(trifles)} {effects} below {100 * TRIFLE:g} %"
 
 
-def influence_words(entry: Entry) -> str:
+def influence_text(entry: Entry) -> str:
     """Say what leaving an effect out is estimated to change; tables of older versions hold no estimate."""
     influence = entry.get("influence")
     return "not estimated" if influence is None else str(influence["words"])
 
 
-def influence_place(ledger: Iterable[Entry]) -> str:
+def influence_point(ledger: Iterable[Entry]) -> str:
     """Say at which load and misalignment the influences of a ledger are; empty if it has none."""
     for entry in ledger:
         if influence := entry.get("influence"):

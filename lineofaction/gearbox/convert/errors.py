@@ -16,7 +16,12 @@ from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from host import Unavailable, missing_extra
-from lineofaction.gearbox.convert.boundary_names import _IN_WORDS, boundary_name, case_field, scene_field
+from lineofaction.gearbox.convert.boundary_names import (
+    _SUFFIXES_IN_TEXT,
+    boundary_name,
+    case_field,
+    scene_field,
+)
 from lineofaction.gearbox.problems import BadInput, Fault, JobFailed, ServiceError
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.faults import field_remedy
@@ -37,7 +42,7 @@ class _CaseReader(Reader):
         """The case file's name of the field."""
         return case_field(self.field)
 
-    def own_unit(self, unit: str) -> Unit:
+    def field_unit(self, unit: str) -> Unit:
         """Return the unit of the field by its name, with its symbol if that is to be written."""
         of_name = unit_of(self.name) or Unit(unit)
         return of_name if unit else Unit("", of_name.factor)
@@ -50,18 +55,19 @@ class _CaseReader(Reader):
         if unit == "m":
             return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
         return next(
-            (BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == unit), Unit(unit, 1.0, unit)
+            (BY_SUFFIX[name] for name in _SUFFIXES_IN_TEXT if BY_SUFFIX[name].si == unit),
+            Unit(unit, 1.0, unit),
         )
 
-    def shown(self, value: Any) -> Any:
+    def field_value(self, value: Any) -> Any:
         """Return a value in the unit of its field, rounded to what was typed; lists and tables one by one."""
         unit = factor(self.name)
         if isinstance(value, dict):
-            return {boundary_name(key): self.at(key).shown(item) for key, item in value.items()}
+            return {boundary_name(key): self.at(key).field_value(item) for key, item in value.items()}
         if isinstance(value, list | tuple):
-            return [self.shown(item) for item in value]
+            return [self.field_value(item) for item in value]
         if isinstance(value, bool) or not isinstance(value, int | float) or unit == 1.0:
-            return super().shown(value)
+            return super().field_value(value)
         return as_typed(value, unit) if math.isfinite(value) else value
 
 
@@ -104,4 +110,4 @@ def _fault(error: RefusedValue, reader: _CaseReader) -> Fault:
     if isinstance(error, InfeasibleGeometry):
         bound = f"{bound} ({error.name})"
     remedy = error.suggestion.worded(reader).strip() or field_remedy(reader.model, reader.name)
-    return Fault(reader.name, reader.shown(error.value), bound, remedy)
+    return Fault(reader.name, reader.field_value(error.value), bound, remedy)

@@ -44,7 +44,7 @@ _PLACES = ("pair.", "load.", "errors.")
 _OF_BAND = {
     *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
 }
-_KEPT_DRAWN = 4
+_MAX_DRAWN = 4
 _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
 
 
@@ -101,19 +101,22 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
     where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
     """
     first = flanks.position - flanks.position[0] < 1.0
-    place = (flanks.position[first, None] + flanks.pair).ravel()
-    order = np.argsort(place)
+    path_position = (flanks.position[first, None] + flanks.pair).ravel()
+    order = np.argsort(path_position)
     loaded = (flanks.pressure[first] > 0.0).any(axis=-1).ravel()
-    low, high = math.floor(place[loaded].min() * _STEPS) - 1, math.ceil(place[loaded].max() * _STEPS) + 1
+    low, high = (
+        math.floor(path_position[loaded].min() * _STEPS) - 1,
+        math.ceil(path_position[loaded].max() * _STEPS) + 1,
+    )
     rows = np.arange(low, high + 1) / _STEPS
     face = np.linspace(
         flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(separation[0, 0]))
     )
 
     def laid(values: FloatArray) -> FloatArray:
-        table = values[first].reshape(place.size, -1)[order]
+        table = values[first].reshape(path_position.size, -1)[order]
         return interpolated_columns(
-            face, flanks.face_position, interpolated_columns(rows, place[order], table).T
+            face, flanks.face_position, interpolated_columns(rows, path_position[order], table).T
         ).T
 
     return {
@@ -197,8 +200,8 @@ def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
 
 def _figures_of(flank: BoundaryModel) -> dict[str, object]:
     """Return the figures that a change of a flank states."""
-    stated = {name: getattr(flank, name) for name in type(flank).model_fields}
-    return {name: value for name, value in stated.items() if value is not None}
+    figures = {name: getattr(flank, name) for name in type(flank).model_fields}
+    return {name: value for name, value in figures.items() if value is not None}
 
 
 def _add_band(
@@ -222,7 +225,7 @@ def _add_band(
         alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
         ripple = DrawnRipple.of(bodies, pair, change.torque_n_m[0], tolerances, *alignment)
     drawn[name] = ripple.further() if ripple.missing else ripple
-    while len(drawn) > _KEPT_DRAWN:
+    while len(drawn) > _MAX_DRAWN:
         drawn.popitem(last=False)
     answer["curves"][0]["band"] = _band(drawn[name], chosen)
     answer["cost"]["band_cpu_seconds"] = cpu_seconds() - begin

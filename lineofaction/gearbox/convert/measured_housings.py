@@ -30,7 +30,7 @@ SAME_LINES = 2e-5
 _RATES = {"m/N": 1, "m/(N s)": 0, "m/(N s²)": -1}
 """Derivatives in time from a response to a mobility."""
 _LISTED = 12  # nodes in a message
-_KEPT = 8
+_CACHE_SIZE = 8
 """Housings whose mobilities stay in memory: the check of a scene and its study read the file once."""
 _PLAIN = re.compile(r"\w[\w .+-]{0,99}")
 """Names that a copy of a file may have on any system."""
@@ -52,7 +52,7 @@ def read_responses(scene: SceneInput) -> None:
                 raise error.within(f"housings[{index}]") from None
 
 
-@lru_cache(maxsize=_KEPT)
+@lru_cache(maxsize=_CACHE_SIZE)
 def housing_mobility(housing: HousingInput) -> MeasuredMobility:
     """Return the mobilities of a measured housing of a scene, along the axes of its file.
 
@@ -71,7 +71,7 @@ def housing_mobility(housing: HousingInput) -> MeasuredMobility:
     for field, kind, nodes in (("seat_nodes", "reference", seats), ("point_nodes", "response", points)):
         numbers = {node: f"{field}[{index}].node" for index, node in enumerate(nodes)}
         _check_nodes(channels, where, kind, numbers)
-    axes = Placement.of(housing.own_x_axis, housing.own_z_axis, (0.0, 0.0, 0.0)).axes
+    axes = Placement.of(housing.file_x_axis, housing.file_z_axis, (0.0, 0.0, 0.0)).axes
     return _mobility_of(channels, where, seats, points, axes)
 
 

@@ -60,7 +60,7 @@ def _gear(gear: Toothing) -> Json:
     tip = profile.tip_land(np.linspace(0.0, 1.0, _TIP_POINTS)[1:-1])
     tooth = np.concatenate((right, tip, right[::-1] * (-1.0, 1.0)))
     circles = {"tip": gear.tip_radius, "root": gear.root_radius, "base": gear.base_radius}
-    circles |= {"reference": gear.reference_radius, "held": gear.held_radius, "form": gear.form_radius}
+    circles |= {"reference": gear.reference_radius, "held": gear.seat_radius, "form": gear.form_radius}
     return {
         "teeth": gear.teeth,
         # from left to right, seen from the mesh's side

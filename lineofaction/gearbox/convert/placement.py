@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.types import FloatArray
 from lineofaction.gearbox.units import MM, as_typed
 
-_OWN = {"origin_mm": np.zeros(3), "x_axis": np.eye(3)[0], "z_axis": np.eye(3)[2]}
+_IDENTITY = {"origin_mm": np.zeros(3), "x_axis": np.eye(3)[0], "z_axis": np.eye(3)[2]}
 """The fields of a file that stands as the scene does."""
 
 
@@ -39,5 +39,5 @@ class Placement:
         return {
             name: [as_typed(float(np.round(value, 9)) + 0.0) for value in values]
             for name, values in frame.items()
-            if not np.allclose(values, _OWN[name], rtol=0.0, atol=1e-9)
+            if not np.allclose(values, _IDENTITY[name], rtol=0.0, atol=1e-9)
         }

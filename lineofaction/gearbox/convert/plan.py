@@ -30,7 +30,7 @@ def costs_of(case: CheckedCase, cache: Path | None) -> list[Prediction]:
     """
     decision = case.request(_decision, cache)
     with boundary_errors():
-        return [own.predicted(cache) for own in decision.passes]
+        return [part.predicted(cache) for part in decision.passes]
 
 
 def _decision(case: CheckedCase, cache: Path | None) -> Decision:

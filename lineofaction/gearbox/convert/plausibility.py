@@ -54,7 +54,7 @@ def scene_warnings(
         findings = [finding.to_json() for finding in scene_findings(scene)]
     of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
     warnings = left_out_warnings(inputs.left_out) + measured_warnings(inputs)
-    warnings += _in_own_terms(of_file, scene_field)
+    warnings += _in_boundary_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
     return unique(warnings)
@@ -91,10 +91,10 @@ def within(warning: Json, owner: str) -> Json:
 
 def phrased_for(case: Case, findings: Iterable[Json]) -> list[Json]:
     """Return findings of a library about a case in its fields and units."""
-    return _in_own_terms(findings, _field_in(case))
+    return _in_boundary_terms(findings, _field_in(case))
 
 
-def _in_own_terms(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
+def _in_boundary_terms(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
     """Return findings of a library, as plain JSON in SI, in the fields and units of the boundary."""
     return unique(_phrased(content, name) for content in findings)
 

@@ -44,16 +44,16 @@ _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
-def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, GearTeeth]:
+def _teeth_of(scene: SceneInput, geometry: Mapping[str, PairFacts]) -> dict[str, GearTeeth]:
     """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
     by_name: dict[str, GearTeeth] = {}
     for index, mesh in enumerate(scene.meshes):
-        if mesh.wheel_drives and not facts[mesh.name].internal:
+        if mesh.wheel_drives and not geometry[mesh.name].internal:
             bound = "left out: the wheel of this case is no ring gear"
             remedy = "Give a case whose pinion is the gear that drives."
             raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, remedy)
         for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
-            name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
+            name, teeth = getattr(mesh, role), _side(geometry[mesh.name], side)
             known = by_name.setdefault(name, teeth)
             if known.teeth != teeth.teeth or not math.isclose(
                 known.base_radius, teeth.base_radius, rel_tol=PRINTED
@@ -68,17 +68,17 @@ def _teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Ge
     return by_name
 
 
-def _side(facts: PairFacts, side: int) -> GearTeeth:
+def _side(geometry: PairFacts, side: int) -> GearTeeth:
     """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
-    radius = facts.base_radius[side]
-    hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
-    diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
-    helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
-    thickness = None if facts.base_tooth_thickness is None else facts.base_tooth_thickness[side]
-    return GearTeeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring, thickness)
+    radius = geometry.base_radius[side]
+    hand = geometry.helix_hand if side == 0 or geometry.internal else -geometry.helix_hand
+    diameter = 2.0 * radius / math.cos(geometry.working_pressure_angle)
+    helix, ring = hand * geometry.base_helix_angle, geometry.internal and side == 1
+    thickness = None if geometry.base_tooth_thickness is None else geometry.base_tooth_thickness[side]
+    return GearTeeth(geometry.teeth[side], radius, helix, diameter, geometry.face_width, ring, thickness)
 
 
-def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
+def _check_center_distances(scene: SceneInput, geometry: Mapping[str, PairFacts]) -> None:
     """Refuse axes of meshing gears that are not as far apart as their database says."""
     origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
     carrier = {gear.name: gear.shaft for gear in scene.gears}
@@ -86,7 +86,7 @@ def _check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -
     for mesh in scene.meshes:
         first, second = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
         distance = math.hypot(second[0] - first[0], second[1] - first[1])
-        expected = facts[mesh.name].center_distance / MM
+        expected = geometry[mesh.name].center_distance / MM
         if not math.isclose(distance, expected, rel_tol=_SAME):
             field = f"shafts[{number[carrier[mesh.driven]]}].origin_mm"
             bound = (
@@ -145,26 +145,26 @@ def dynamic_scene(
     JobFailed
         A database has failed points.
     """
-    facts = {name: database.facts for name, database in databases.items()}
+    geometry = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
     housings = housings_of(tuple((part, reduced.get(part.name)) for part in scene.housings))
     bent = {name for name, database in databases.items() if _has_bent_shafts(database)}
-    return _moving(scene, facts, tables, housings, bent)
+    return _moving(scene, geometry, tables, housings, bent)
 
 
 def check_scene(
-    scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable] | None = None
+    scene: SceneInput, geometry: Mapping[str, PairFacts], tables: Mapping[str, MeshTable] | None = None
 ) -> Scene:
     """Return the scene on placeholders for its tables and for the matrices of solids.
 
-    `facts`, and `tables` that are closer than placeholders: by name of the mesh. Raises `BadInput`: no such
-    system exists or moves, or nothing of it passes where it is complained of.
+    `geometry`, and `tables` that are closer than placeholders: by name of the mesh. Raises `BadInput`: no
+    such system exists or moves, or nothing of it passes where it is complained of.
     """
-    tables = tables or dict.fromkeys(facts, straight_table(ANY_STIFFNESS, ANY_TEETH))
+    tables = tables or dict.fromkeys(geometry, straight_table(ANY_STIFFNESS, ANY_TEETH))
     check_measured(scene)
     housings = [placeholder(i, part) for i, part in enumerate(scene.housings) if not part.is_measured]
-    moving = _moving(scene, facts, tables, housings)
+    moving = _moving(scene, geometry, tables, housings)
     if scene.complaint is not None:
         complaint_of(scene, moving)
     return moving
@@ -172,7 +172,7 @@ def check_scene(
 
 def _moving(
     scene: SceneInput,
-    facts: Mapping[str, PairFacts],
+    geometry: Mapping[str, PairFacts],
     tables: Mapping[str, MeshTable],
     housings: Sequence[Housing],
     bent: Set[str] = frozenset(),
@@ -183,30 +183,30 @@ def _moving(
     bending of their shafts in them.
     """
     closed = _closed_forms(scene.meshes)
-    facts = {**facts, **{name: pair for name, (pair, _) in closed.items()}}
+    geometry = {**geometry, **{name: pair for name, (pair, _) in closed.items()}}
     tables = {**tables, **{name: table for name, (_, table) in closed.items()}}
     meshes = meshes_of(
         tuple((mesh, tables[mesh.name]) for mesh in scene.meshes),
-        tuple(facts[mesh.name].base_pitch for mesh in scene.meshes),
+        tuple(geometry[mesh.name].base_pitch for mesh in scene.meshes),
         tuple(mesh.name in bent for mesh in scene.meshes),
     )
-    one_of_each = _assembled(scene, facts, meshes, housings)
+    without_copies = _assembled(scene, geometry, meshes, housings)
     with named(""):
-        check_motion(one_of_each)
-    whole = _with_all_planets(scene, one_of_each)
+        check_motion(without_copies)
+    complete = _with_all_planets(scene, without_copies)
     with named(""):
-        mechanism_of(whole)
-    return whole
+        mechanism_of(complete)
+    return complete
 
 
 def _assembled(
     scene: SceneInput,
-    facts: Mapping[str, PairFacts],
+    geometry: Mapping[str, PairFacts],
     meshes: tuple[GearMesh, ...],
     housings: Sequence[Housing],
 ) -> Scene:
-    teeth = _teeth_of(scene, facts)
-    _check_center_distances(scene, facts)
+    teeth = _teeth_of(scene, geometry)
+    _check_center_distances(scene, geometry)
     with named(""), numbered_as_written(scene.housings):
         return Scene(
             **in_si(Scene, scene, scene.run, scene.accuracy),

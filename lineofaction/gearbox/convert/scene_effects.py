@@ -40,15 +40,15 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
     estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
-    shown, trifles = list[SceneEffect](), list[SceneEffect]()
+    main, trifles = list[SceneEffect](), list[SceneEffect]()
     for name, entries in effects.items():
         size, estimate = effect_size(ledger, name), estimates.get(name)
         freedoms = f"{estimate['freedoms']:+d}" if estimate else ""
-        listed = trifles if _is_trifle(entries, size, estimate) else shown
+        listed = trifles if _is_trifle(entries, size, estimate) else main
         if estimate and estimate.get("level"):
             size = size.partition(", ")[0]
         listed += _decisions((name.replace("_", " "), size or "nothing", freedoms), entries)
-    return shown, trifles
+    return main, trifles
 
 
 def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:

@@ -54,7 +54,7 @@ class GearTeeth:
     base_tooth_thickness: float | None = None
 
 
-def _each(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:
+def _parts_of_kind(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:
     """Return what makes the parts of a kind; errors are named by the place in the list."""
 
     @identity_cached
@@ -272,7 +272,7 @@ _ALONE: Mapping[str, Callable[[Any], Any]] = {
     "unbalances": _plain(Unbalance),
 }
 """What makes a part of each kind that follows from its table alone."""
-_LISTS = {kind: _each(kind, made) for kind, made in _ALONE.items()}
+_LISTS = {kind: _parts_of_kind(kind, made) for kind, made in _ALONE.items()}
 
 
 def parts_of(scene: SceneInput, teeth: tuple[GearTeeth, ...]) -> dict[str, Any]:

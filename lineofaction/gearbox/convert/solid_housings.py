@@ -101,13 +101,13 @@ def _named(field: str, housing: HousingInput) -> Iterator[None]:
         except BadInput as error:
             raise error.within(field) from None
         except InputError as error:
-            field_name = _own_name(error.field, housing)
+            field_name = _scene_name(error.field, housing)
             raise InputError(field_name, error.value, error.bound, error.suggestion) from None
         except DynamicsError as error:
             raise JobFailed(f'housing "{housing.name}": {error}') from error
 
 
-def _own_name(field: str, housing: HousingInput) -> str:
+def _scene_name(field: str, housing: HousingInput) -> str:
     """Return the scene file's name of a field of `dynamics.housings`, but for its unit."""
     for pattern, scene_name in _NAMES.items():
         field = pattern.sub(scene_name, field)
@@ -141,7 +141,7 @@ def _placed(housing: HousingInput, mesh: TetrahedralMesh) -> TetrahedralMesh:
     """Turn and move a mesh from the frame of its file into that of the scene."""
     if housing.origin_mm is None and housing.x_axis is None and housing.z_axis is None:
         return mesh
-    placement = Placement.of(housing.own_x_axis, housing.own_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
+    placement = Placement.of(housing.file_x_axis, housing.file_z_axis, housing.origin_mm or (0.0, 0.0, 0.0))
     return replace(mesh, points=placement.points(mesh.points))
 
 

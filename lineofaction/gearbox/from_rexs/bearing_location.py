@@ -95,7 +95,7 @@ def _table(row: BallBearing | RollerBearing | CatalogLine) -> Table:
     """Return a row as a scene file states it; defaults are not written out."""
     names = {BallBearing: "ball", RollerBearing: "roller", CatalogLine: "catalog"}
     values = {
-        figure.field: figure.own(value)
+        figure.field: figure.boundary_value(value)
         for figure in figures(type(row))
         if (value := getattr(row, figure.name)) != figure.default
     }

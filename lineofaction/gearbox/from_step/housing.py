@@ -13,7 +13,7 @@ from dynamics.solid_housing import MATERIALS
 from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.from_step.candidates import Bearings
-from lineofaction.gearbox.from_step.placement import Seated, found, seated
+from lineofaction.gearbox.from_step.placement import Seated, best_seating, seated
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -75,25 +75,27 @@ def step_housing(
     stands_on : str
         One of `DIRECTIONS`: outward normal of the foot in the scene.
     placement : Placement, optional
-        Default: `found` by the bores.
+        Default: `best_seating` by the bores.
     """
     bearings = _bearings(scene)
-    held = found(solid.bores, bearings) if placement is None else seated(solid.bores, bearings, placement)
-    if not held.bores:
+    seating = (
+        best_seating(solid.bores, bearings) if placement is None else seated(solid.bores, bearings, placement)
+    )
+    if not seating.bores:
         remedy = "Leave --origin-mm, --x-axis and --z-axis out: the bores say where it stands."
-        raise BadInput.of("--origin-mm", held.placement.fields, "such that a bearing is in a bore", remedy)
-    stand = _stand(solid, held.placement, stands_on)
+        raise BadInput.of("--origin-mm", seating.placement.fields, "such that a bearing is in a bore", remedy)
+    stand = _stand(solid, seating.placement, stands_on)
     fields = {
         "material": material,
-        **held.placement.fields,
+        **seating.placement.fields,
         "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": (stand.normal + 0.0).tolist()}],
-        "seats": [_seat(name, held) for name in held.bores],
+        "seats": [_seat(name, seating) for name in seating.bores],
     }
-    left_out = tuple(name for name in bearings if name not in held.bores)
+    left_out = tuple(name for name in bearings if name not in seating.bores)
     modeled = (part for part in scene.housings if not part.is_measured)
-    replaced = tuple(part.name for part in modeled if held.bores.keys() & {*part.bushings})
+    replaced = tuple(part.name for part in modeled if seating.bores.keys() & {*part.bushings})
     mass = MATERIALS[material].density * solid.volume
-    return StepHousing(fields, held, left_out, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
+    return StepHousing(fields, seating, left_out, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
 
 
 def _bearings(scene: SceneInput) -> Bearings:
@@ -106,19 +108,19 @@ def _bearings(scene: SceneInput) -> Bearings:
     return {part.name: MM * (origin[part.shaft] + np.array([0.0, 0.0, part.position_mm])) for part in parts}
 
 
-def _seat(name: str, held: Seated) -> dict[str, Any]:
+def _seat(name: str, seating: Seated) -> dict[str, Any]:
     """Return the seat of a bearing: as much of its bore as lies evenly about it."""
     return {
         "bearing": name,
-        "bore_diameter_mm": as_typed(round(held.bores[name].diameter, 9), MM),
-        "bore_length_mm": as_typed(round(even_length(held, name), 9), MM),
+        "bore_diameter_mm": as_typed(round(seating.bores[name].diameter, 9), MM),
+        "bore_length_mm": as_typed(round(even_length(seating, name), 9), MM),
     }
 
 
-def even_length(held: Seated, name: str) -> float:
+def even_length(seating: Seated, name: str) -> float:
     """Return the length of a bore that lies evenly about its bearing, m."""
-    bore = held.bores[name]
-    return float(bore.length - 2.0 * abs(bore.position[2] - held.bearings[name][2]))
+    bore = seating.bores[name]
+    return float(bore.length - 2.0 * abs(bore.position[2] - seating.bearings[name][2]))
 
 
 def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
@@ -140,8 +142,8 @@ def _stand(solid: StepSolid, placement: Placement, stands_on: str) -> Stand:
 
 
 def _faces(face: FlatFace, placement: Placement, normal: FloatArray) -> bool:
-    own = placement.axes @ np.array(face.plane.normal)
-    return bool(own @ normal > 0.0 and np.linalg.norm(np.cross(own, normal)) < _FACING)
+    direction = placement.axes @ np.array(face.plane.normal)
+    return bool(direction @ normal > 0.0 and np.linalg.norm(np.cross(direction, normal)) < _FACING)
 
 
 def _typed(point: FloatArray) -> list[float]:

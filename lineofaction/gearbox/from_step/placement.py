@@ -51,12 +51,12 @@ def placed_bore(bore: Bore, placement: Placement) -> Bore:
 def seated(bores: Sequence[Bore], bearings: Bearings, placement: Placement) -> Seated:
     """Return the bores that bearings are in; of several the one whose middle is nearest."""
     placed = [placed_bore(bore, placement) for bore in bores]
-    found = {}
+    by_bearing = {}
     for name, (x, y, z) in bearings.items():
         about = [bore for bore in placed if _holds(bore, x, y, z)]
         if about:
-            found[name] = min(about, key=lambda bore: abs(bore.position[2] - z))
-    return Seated(found, placement, bearings)
+            by_bearing[name] = min(about, key=lambda bore: abs(bore.position[2] - z))
+    return Seated(by_bearing, placement, bearings)
 
 
 def _holds(bore: Bore, x: float, y: float, z: float) -> bool:
@@ -65,25 +65,25 @@ def _holds(bore: Bore, x: float, y: float, z: float) -> bool:
     return bool(axial and centered and abs(bore.position[2] - z) < 0.5 * bore.length)
 
 
-def found(bores: Sequence[Bore], bearings: Bearings) -> Seated:
+def best_seating(bores: Sequence[Bore], bearings: Bearings) -> Seated:
     """Return the placement in which most bearings are in bores: that of the file, if no other has more.
 
     Raises `BadInput` naming ``step_file``: no placement has three bearings of two shafts in bores, or several
     are equally good.
     """
-    own = seated(bores, bearings, Placement())
-    if len(own.bores) == len(bearings):
-        return own
+    as_drawn = seated(bores, bearings, Placement())
+    if len(as_drawn.bores) == len(bearings):
+        return as_drawn
     best = sorted(
-        [own, *(seated(bores, bearings, each) for each in placements(bores, bearings))],
-        key=lambda each: each.order,
+        [as_drawn, *(seated(bores, bearings, candidate) for candidate in placements(bores, bearings))],
+        key=lambda candidate: candidate.order,
     )
     first = best[0]
     if len(first.bores) < _FEWEST or _shafts(first.bores) < 2:
         raise BadInput.of("step_file", _listed(bores), _bound(bearings), _WHERE)
-    rivals = [each for each in best if _rival(each, first)]
+    rivals = [candidate for candidate in best if _rival(candidate, first)]
     if rivals:
-        ways = "; or ".join(_options(each.placement) for each in (first, *rivals[:3]))
+        ways = "; or ".join(_options(candidate.placement) for candidate in (first, *rivals[:3]))
         bound = f"one that fits the bearings in one way only: {1 + len(rivals)} are equally good"
         raise BadInput.of("step_file", f"{len(first.bores)} bearings in bores", bound, f"Choose: {ways}.")
     return first
@@ -95,8 +95,8 @@ def _bound(bearings: Bearings) -> str:
 
 
 def _listed(bores: Sequence[Bore]) -> str:
-    shown = [f"{as_typed(bore.diameter, MM):g} at {_in_mm(bore.position)}" for bore in bores[:8]]
-    return f"{len(bores)} bores, mm: {'; '.join(shown)}" if bores else "no bore"
+    entries = [f"{as_typed(bore.diameter, MM):g} at {_in_mm(bore.position)}" for bore in bores[:8]]
+    return f"{len(bores)} bores, mm: {'; '.join(entries)}" if bores else "no bore"
 
 
 def _in_mm(position: Sequence[float] | FloatArray) -> str:

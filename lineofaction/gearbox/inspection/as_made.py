@@ -51,8 +51,8 @@ def measured_case(case: Case, text: str, name: str, of: Inspected) -> tuple[Case
     """
     chart = of.chart(case)
     cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
-    found = measured_gear(read_sheet(text, chart.gear, name), chart, name, cutoff)
-    return _with_fields(case, {of.gear: found.fields}), found
+    gear = measured_gear(read_sheet(text, chart.gear, name), chart, name, cutoff)
+    return _with_fields(case, {of.gear: gear.fields}), gear
 
 
 def drawn_case(case: Case, tolerance_class: int, seed: int = 0) -> Case:
@@ -74,10 +74,10 @@ def _gear(case: Case, name: str) -> Toothing:
 def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
     """Return the case with the fields of gears in place of those they had; it is one that can be computed."""
     content = case_json(case)
-    for name, own in fields.items():
-        replaced = {*own, *(_PITCHES if {*own} & {*_PITCHES} else ())}
-        kept = {key: value for key, value in content["pair"][name].items() if key not in replaced}
-        content["pair"][name] = {**kept, **own}
+    for name, replacement in fields.items():
+        replaced = {*replacement, *(_PITCHES if {*replacement} & {*_PITCHES} else ())}
+        unchanged = {key: value for key, value in content["pair"][name].items() if key not in replaced}
+        content["pair"][name] = {**unchanged, **replacement}
     changed = validated(Case, content)
     gear_pair(changed)
     return changed
@@ -100,7 +100,7 @@ def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> d
     }
     rows = zip(*figures.values(), strict=True)
     steps = _within(pitches.single, gear.teeth, draw)
-    walk = pitches.kept(eccentricity, np.cumsum(steps - steps.mean()))
+    walk = pitches.bounded(eccentricity, np.cumsum(steps - steps.mean()))
     return {
         "run_out": {
             "eccentricity_um": round(eccentricity / UM, 3),

@@ -22,7 +22,7 @@ _PER_CUTOFF = 2
 class Split:
     """A trace split into a line and what is left; m."""
 
-    place: FloatArray
+    coordinate: FloatArray
     """Stations, even over the length of the trace."""
     slope: float
     """Rise of the mean line from the first station to the last."""
@@ -37,7 +37,7 @@ class Split:
         return float(np.ptp(self.rest))
 
 
-def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) -> Split:
+def split(coordinate: FloatArray, values: FloatArray, cutoff: float | None = None) -> Split:
     """Filter a trace and split it.
 
     Raises `ValueError`: too few or too many points, points further apart than the cut-off, or one that is too
@@ -45,38 +45,38 @@ def split(place: FloatArray, values: FloatArray, cutoff: float | None = None) ->
 
     Parameters
     ----------
-    place, values : ndarray, shape (n,)
+    coordinate, values : ndarray, shape (n,)
         Places in order and deviations, m.
     cutoff : float, optional
         m; left out: a thirtieth of the length.
     """
-    if not 3 <= place.size <= _MAX_POINTS:
-        raise ValueError(f"a trace of 3 to {_MAX_POINTS} points; it has {place.size}")
-    length = float(place[-1] - place[0])
+    if not 3 <= coordinate.size <= _MAX_POINTS:
+        raise ValueError(f"a trace of 3 to {_MAX_POINTS} points; it has {coordinate.size}")
+    length = float(coordinate[-1] - coordinate[0])
     cutoff = length / CUTOFFS if cutoff is None else cutoff
     if cutoff < length / _MAX_CUTOFFS:
         raise ValueError(f"a trace of at most {_MAX_CUTOFFS} cut-offs; {1e3 * cutoff:.4g} mm is too short")
-    spacing = float(np.diff(place).max())
+    spacing = float(np.diff(coordinate).max())
     if spacing > cutoff * (1.0 + 1e-9):
         raise ValueError(
             f"a trace whose points are at most the cut-off {1e3 * cutoff:.4g} mm apart; "
             f"two are {1e3 * spacing:.4g} mm apart"
         )
-    stations = np.linspace(place[0], place[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
-    filtered = gaussian(place, values, stations, cutoff)
+    stations = np.linspace(coordinate[0], coordinate[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
+    filtered = gaussian(coordinate, values, stations, cutoff)
     slope, mean = np.polyfit((stations - stations[0]) / length, filtered, 1)
     rest = filtered - mean - slope * (stations - stations[0]) / length
     return Split(stations, float(slope), rest, cutoff)
 
 
-def gaussian(place: FloatArray, values: FloatArray, at: FloatArray, cutoff: float) -> FloatArray:
+def gaussian(coordinate: FloatArray, values: FloatArray, at: FloatArray, cutoff: float) -> FloatArray:
     """Return a trace (n,) at places (k,), all in m, filtered by the Gaussian of a cut-off.
 
     The weights hold lines, so that a slope passes unchanged up to the ends (ISO 16610-28); inside they are
     those of ISO 16610-21.
     """
-    way = (place - at[:, None]) / (ALPHA * cutoff)
-    weight = np.exp(-math.pi * way**2) * np.gradient(place)
+    way = (coordinate - at[:, None]) / (ALPHA * cutoff)
+    weight = np.exp(-math.pi * way**2) * np.gradient(coordinate)
     zero, one, two = (np.sum(weight * way**power, axis=1) for power in range(3))
     mean, moment = weight @ values, (weight * way) @ values
     return np.asarray((two * mean - one * moment) / (zero * two - one**2))

@@ -41,7 +41,7 @@ _ENDS = {"profile": ("da", "de"), "helix": ("ba", "be")}
 OTHER_TRACE = f"{LEFT_OUT}a trace of twist or topography"
 UNMEASURED = f"{LEFT_OUT}not measured by the machine"
 UNKNOWN = f"{LEFT_OUT}a line that is not understood"
-_BESIDE = "other table or heading"
+_OTHER = "other table or heading"
 
 
 def is_machine_file(text: str) -> bool:
@@ -89,14 +89,14 @@ class _Reader:
                 rows, at = self._rows(at)
                 points += self._pitches(_FLANKS[match["flank"]], rows)
             else:
-                title = self._beside(line, at) or title
+                title = self._title(line, at) or title
             if len(points) > MAX_POINTS:
                 raise ValueError(f"a file of at most {MAX_POINTS} points")
         if not points:
             raise ValueError("a file with a profile, a helix or pitches; it has none")
         return Sheet(tuple(points), self.account)
 
-    def _beside(self, line: str, number: int) -> str:
+    def _title(self, line: str, number: int) -> str:
         """Take a line that is neither trace nor pitch; returns the title of traces that it is."""
         if match := _BLOCK.fullmatch(line):
             self.account["heading"] += 1
@@ -110,7 +110,7 @@ class _Reader:
             self.account["heading"] += 1
         else:
             known = re.match(r"(Fuß|Kopf)kreisdurchmesser|Zahn-Nr|Z-Nr|[-+.\d\sLR]+$", line)
-            self.account[_BESIDE if known else UNKNOWN] += 1
+            self.account[_OTHER if known else UNKNOWN] += 1
         return ""
 
     def _heading(self, label: str, values: list[float], number: int) -> None:
@@ -158,14 +158,14 @@ class _Reader:
         if trace.kind == "profile":
             start, end = (self._roll(diameter, trace) for diameter in (start, end))
         else:
-            start, end = (place * MM - 0.5 * self.gear.face_width for place in (start, end))
-        for place, (line, value) in zip(np.linspace(start, end, trace.values), values, strict=True):
+            start, end = (coordinate * MM - 0.5 * self.gear.face_width for coordinate in (start, end))
+        for coordinate, (line, value) in zip(np.linspace(start, end, trace.values), values, strict=True):
             if value < _UNDEFINED:
                 self.account[UNMEASURED] += 1
                 continue
             if abs(value) > LARGEST_UM:
                 raise ValueError(f"a file of deviations up to {LARGEST_UM:g} µm; line {line} has {value:g}")
-            roll, face = (float(place), None) if trace.kind == "profile" else (None, float(place))
+            roll, face = (float(coordinate), None) if trace.kind == "profile" else (None, float(coordinate))
             yield Point(line, trace.tooth, trace.flank, trace.kind, roll, face, value * UM)
 
     def _end(self, symbol: str, trace: _Trace) -> float:
@@ -196,7 +196,7 @@ class _Reader:
             elif line.strip() and (rows or not line.strip().startswith("Zahn-Nr")):
                 break
             else:
-                self.account["comment or blank" if not line.strip() else _BESIDE] += 1
+                self.account["comment or blank" if not line.strip() else _OTHER] += 1
             at += 1
         return rows, at
 

@@ -138,17 +138,17 @@ def _splits(
     for (tooth, name), points in sorted(traces.items()):
         if name not in ("profile", "helix"):
             continue
-        rows = np.array(sorted((_place(point), point.deviation) for point in points))
+        rows = np.array(sorted((_coordinate(point), point.deviation) for point in points))
         try:
             yield (tooth, name), split(rows[:, 0], rows[:, 1], cutoff)
         except ValueError as fault:
             raise ValueError(f"{fault} ({name} of tooth {tooth})") from None
 
 
-def _place(point: Point) -> float:
-    place = point.roll if point.trace == "profile" else point.face
-    assert place is not None
-    return place
+def _coordinate(point: Point) -> float:
+    coordinate = point.roll if point.trace == "profile" else point.face
+    assert coordinate is not None
+    return coordinate
 
 
 def _surface(points: list[Point]) -> dict[str, Any]:
@@ -174,10 +174,10 @@ def _flank(
     places, rests = [], []
     for name, (length, ends) in over.items():
         trace = splits.get((tooth, name))
-        places.append(ends if trace is None else trace.place)
+        places.append(ends if trace is None else trace.coordinate)
         rests.append(np.zeros(2) if trace is None else trace.rest)
         if trace is not None:
-            rise = trace.slope / (trace.place[-1] - trace.place[0])
+            rise = trace.slope / (trace.coordinate[-1] - trace.coordinate[0])
             (entry[f"{name}_slope_um"],) = _um(np.array([rise * length]))
     return entry | {"flank_grid": _grid(places[0], places[1], np.add.outer(rests[0], rests[1]))}
 

@@ -29,9 +29,7 @@ def read_sheet(text: str, gear: Toothing, name: str) -> Sheet:
 def _refuse_repeated(points: Iterable[Point]) -> None:
     seen: dict[tuple[object, ...], int] = {}
     for point in points:
-        place = (point.tooth, point.flank, point.trace, point.roll, point.face)
-        if place in seen:
-            raise ValueError(
-                f"a file that gives each point once; line {point.line} repeats line {seen[place]}"
-            )
-        seen[place] = point.line
+        key = (point.tooth, point.flank, point.trace, point.roll, point.face)
+        if key in seen:
+            raise ValueError(f"a file that gives each point once; line {point.line} repeats line {seen[key]}")
+        seen[key] = point.line

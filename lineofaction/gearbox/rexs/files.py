@@ -74,9 +74,9 @@ def _repeated(model: Model) -> Iterator[Fault]:
     }
     for spectrum in model.spectra:
         lists[f"load spectrum {spectrum.id}, load case"] = [case.id for case in spectrum.cases]
-    for place, ids in lists.items():
+    for location, ids in lists.items():
         yield from (
-            Fault(place, number, "an id given once") for number, count in Counter(ids).items() if count > 1
+            Fault(location, number, "an id given once") for number, count in Counter(ids).items() if count > 1
         )
 
 
@@ -89,12 +89,12 @@ def _dangling(model: Model) -> Iterator[Fault]:
             for ref in relation.refs
             if ref.id not in known
         )
-    for place, part in model.all_components():
+    for location, part in model.all_components():
         if part.id not in known:
-            yield Fault(place, part.id, bound)
+            yield Fault(location, part.id, bound)
         for attribute in part.attributes:
             if attribute.kind == "reference_component" and attribute.value not in {None, *known}:
-                yield Fault(f"{place}, {attribute.id}", attribute.value, bound)
+                yield Fault(f"{location}, {attribute.id}", attribute.value, bound)
 
 
 def _cycles(model: Model) -> Iterator[Fault]:
@@ -104,19 +104,19 @@ def _cycles(model: Model) -> Iterator[Fault]:
     """
     parts: dict[int, set[int]] = {}
     for relation in model.relations:
-        whole, part = relation.of_role("assembly"), relation.of_role("part")
-        if relation.type in _ASSEMBLIES and whole is not None and part is not None:
-            parts.setdefault(whole, set()).add(part)
+        assembly, part = relation.of_role("assembly"), relation.of_role("part")
+        if relation.type in _ASSEMBLIES and assembly is not None and part is not None:
+            parts.setdefault(assembly, set()).add(part)
     holders: dict[int, set[int]] = {}
-    for whole, inner in parts.items():
+    for assembly, inner in parts.items():
         for part in inner:
-            holders.setdefault(part, set()).add(whole)
-    open_parts = {whole: len(inner) for whole, inner in parts.items()}
+            holders.setdefault(part, set()).add(assembly)
+    open_parts = {assembly: len(inner) for assembly, inner in parts.items()}
     settled = [part for part in holders if part not in parts]
     while settled:
-        for whole in holders.get(settled.pop(), ()):
-            open_parts[whole] -= 1
-            if not open_parts[whole]:
-                settled.append(whole)
-    for number in sorted(whole for whole, count in open_parts.items() if count):
+        for assembly in holders.get(settled.pop(), ()):
+            open_parts[assembly] -= 1
+            if not open_parts[assembly]:
+                settled.append(assembly)
+    for number in sorted(assembly for assembly, count in open_parts.items() if count):
         yield Fault(f"component {number}", number, "no part of itself, nor whole of one that is")

@@ -21,24 +21,24 @@ _TYPES: dict[str, tuple[type, ...]] = {
 }
 _TEXT = (str,)
 _CODED = "_coded"
-_WORDS = {dict: "a table", list: "a list", str: "a text", int: "an integer"}
+_TYPE_NAMES = {dict: "a table", list: "a list", str: "a text", int: "an integer"}
 
 
 @dataclass(slots=True)
 class _Table(Element):
     """A table of the JSON form with its place."""
 
-    place: str
+    location: str
     fields: dict[str, Any]
     line: None = None
 
     @classmethod
-    def of(cls, value: Any, place: str) -> _Table:
+    def of(cls, value: Any, location: str) -> _Table:
         """Return a table, refuse what is none."""
-        return cls(place, _typed(value, dict, place))
+        return cls(location, _typed(value, dict, location))
 
     def text(self, name: str) -> str:
-        text: str = _typed(self.fields.pop(name, None), str, f"{self.place}.{name}")
+        text: str = _typed(self.fields.pop(name, None), str, f"{self.location}.{name}")
         return text
 
     def optional_text(self, name: str) -> str | None:
@@ -48,7 +48,7 @@ class _Table(Element):
         return self.text(name)
 
     def number(self, name: str) -> int:
-        number: int = _typed(self.fields.pop(name, None), int, f"{self.place}.{name}")
+        number: int = _typed(self.fields.pop(name, None), int, f"{self.location}.{name}")
         return number
 
     def optional_number(self, name: str) -> int | None:
@@ -58,9 +58,9 @@ class _Table(Element):
         return self.number(name)
 
     def parts(self, name: str) -> list[_Table]:
-        place = f"{self.place}.{name}s"
-        entries = _typed(self.fields.pop(f"{name}s", None), list, place)
-        return [_Table.of(entry, f"{place}[{index}]") for index, entry in enumerate(entries)]
+        location = f"{self.location}.{name}s"
+        entries = _typed(self.fields.pop(f"{name}s", None), list, location)
+        return [_Table.of(entry, f"{location}[{index}]") for index, entry in enumerate(entries)]
 
     def extra(self) -> Extra:
         return tuple((name, self.text(name)) for name in list(self.fields))
@@ -76,16 +76,16 @@ class _Table(Element):
         name = self.text("id")
         kinds = [field for field in self.fields if entry_kind(field.removesuffix(_CODED)) in KINDS]
         if len(kinds) != 1:
-            raise BadInput.of(self.place, ", ".join(kinds) or None, "one value of a type of REXS")
-        place, kind = f"{self.place}, {name}", kinds[0].removesuffix(_CODED)
+            raise BadInput.of(self.location, ", ".join(kinds) or None, "one value of a type of REXS")
+        location, kind = f"{self.location}, {name}", kinds[0].removesuffix(_CODED)
         plain = self.fields.pop(kinds[0])
         code = None
         if kinds[0].endswith(_CODED):
-            body = _Table.of(plain, place)
+            body = _Table.of(plain, location)
             code = body.text("code")
             value = body._decoded(kind, code)
         else:
-            value = _value(kind, plain, place)
+            value = _value(kind, plain, location)
         unit, origin = self.optional_text("unit"), self.optional_text("origin")
         return Attribute(name, kind, value, unit, code, origin, self.extra())
 
@@ -93,10 +93,10 @@ class _Table(Element):
         """Return the value of an array or a matrix in base64."""
         entry = entry_kind(kind)
         if entry != ("integer" if code == "int32" else "floating_point") or kind == entry:
-            raise BadInput.of(self.place, code, f"a code of {kind}")
-        values = decoded(code, self.text("value"), self.place)
+            raise BadInput.of(self.location, code, f"a code of {kind}")
+        values = decoded(code, self.text("value"), self.location)
         if kind.endswith("_matrix"):
-            return rows_of(values, self.number("rows"), self.number("columns"), self.place)
+            return rows_of(values, self.number("rows"), self.number("columns"), self.location)
         return values
 
 
@@ -128,11 +128,11 @@ def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpe
     table = _Table.of(further["load_spectrum"], "model.load_spectrum")
     cases = table.parts("load_case") if "load_cases" in table.fields else []
     loads = tuple(case.load_case(types) for case in cases)
-    number, extra, whole = table.number("id"), table.extra(), None
+    number, extra, accumulation = table.number("id"), table.extra(), None
     if further.get("accumulation") is not None:
         parts = _Table.of(further["accumulation"], "model.accumulation").parts("component")
-        whole = tuple(part.component(types) for part in parts)
-    yield LoadSpectrum(number, loads, whole, extra)
+        accumulation = tuple(part.component(types) for part in parts)
+    yield LoadSpectrum(number, loads, accumulation, extra)
 
 
 def _json(data: bytes) -> Any:
@@ -153,14 +153,14 @@ def _json(data: bytes) -> Any:
         raise BadInput.of("file", "too many lists and tables in each other", "nested as a model is") from None
 
 
-def _typed(value: Any, kind: type, place: str) -> Any:
+def _typed(value: Any, kind: type, location: str) -> Any:
     """Return a value of a type; true and false are no integers."""
     if not isinstance(value, kind) or isinstance(value, bool):
-        raise BadInput.of(place, None if value is None else _shown(value), _WORDS[kind])
+        raise BadInput.of(location, None if value is None else _preview(value), _TYPE_NAMES[kind])
     return value
 
 
-def _shown(plain: Any) -> Any:
+def _preview(plain: Any) -> Any:
     return plain if isinstance(plain, (str, int, float)) else type(plain).__name__
 
 
@@ -179,33 +179,34 @@ def _no_number(text: str) -> NoReturn:
     raise BadInput.of("file", text, "a finite number")
 
 
-def _value(kind: str, plain: Any, place: str) -> Value:
+def _value(kind: str, plain: Any, location: str) -> Value:
     entry = entry_kind(kind)
     if plain is None or (isinstance(plain, str) and not plain.strip()):
         return None
     if kind == entry:
-        return _scalar(entry, plain, place)
+        return _scalar(entry, plain, location)
     if kind.endswith("_array"):
-        return tuple(_scalar(entry, part, place) for part in _list(plain, place))
+        return tuple(_scalar(entry, part, location) for part in _list(plain, location))
     return tuple(
-        tuple(_scalar(entry, part, place) for part in _list(row, place)) for row in _list(plain, place)
+        tuple(_scalar(entry, part, location) for part in _list(row, location))
+        for row in _list(plain, location)
     )
 
 
-def _scalar(kind: str, plain: Any, place: str) -> Scalar:
+def _scalar(kind: str, plain: Any, location: str) -> Scalar:
     """Return a value of a scalar kind; a floating point may be written as an integer."""
     types: Any = _TYPES.get(kind, _TEXT)
     if not isinstance(plain, types) or (isinstance(plain, bool) and bool not in types):
-        raise BadInput.of(place, _shown(plain), f"of type {kind}")
+        raise BadInput.of(location, _preview(plain), f"of type {kind}")
     value: Scalar = float(plain) if kind == "floating_point" else plain
     if isinstance(value, float) and not math.isfinite(value):
-        raise BadInput.of(place, str(value), "a finite number")
+        raise BadInput.of(location, str(value), "a finite number")
     return value
 
 
-def _list(plain: Any, place: str) -> list[Any]:
+def _list(plain: Any, location: str) -> list[Any]:
     if not isinstance(plain, list):
-        raise BadInput.of(place, type(plain).__name__, "a list")
+        raise BadInput.of(location, type(plain).__name__, "a list")
     return plain
 
 
@@ -215,10 +216,10 @@ def json_of(model: Model) -> bytes:
         raise BadInput.of("load_spectrum", f"{len(model.spectra)} spectra", "one in JSON", "Write XML.")
     table = _written(written(model))
     for spectrum in table.pop("load_spectra"):
-        whole = spectrum.pop("accumulation", None)
+        accumulation = spectrum.pop("accumulation", None)
         table["load_spectrum"] = spectrum
-        if whole is not None:
-            table["accumulation"] = {"components": whole}
+        if accumulation is not None:
+            table["accumulation"] = {"components": accumulation}
     text = json.dumps({"model": table}, ensure_ascii=False, indent=1, allow_nan=False)
     return f"{text}\n".encode()
 

@@ -122,7 +122,7 @@ class Model:
 
     def mapped(self, change: Callable[[str, Component], Component]) -> Model:
         """Return the model with what `change` makes of each place and component, load cases included."""
-        places = (place for place, _ in self.all_components())
+        places = (location for location, _ in self.all_components())
 
         def changed(parts: Iterable[Component]) -> tuple[Component, ...]:
             return tuple(change(next(places), part) for part in parts)
@@ -130,8 +130,8 @@ class Model:
         components, spectra = changed(self.components), []
         for spectrum in self.spectra:
             cases = tuple(replace(case, components=changed(case.components)) for case in spectrum.cases)
-            whole = None if spectrum.accumulation is None else changed(spectrum.accumulation)
-            spectra.append(replace(spectrum, cases=cases, accumulation=whole))
+            accumulation = None if spectrum.accumulation is None else changed(spectrum.accumulation)
+            spectra.append(replace(spectrum, cases=cases, accumulation=accumulation))
         return replace(self, components=components, spectra=tuple(spectra))
 
     def all_components(self) -> Iterator[tuple[str, Component]]:
@@ -139,10 +139,10 @@ class Model:
         yield from ((f"component {component.id}", component) for component in self.components)
         for spectrum in self.spectra:
             for case in spectrum.cases:
-                place = f"load spectrum {spectrum.id}, load case {case.id}"
-                yield from ((f"{place}, component {part.id}", part) for part in case.components)
-            place = f"load spectrum {spectrum.id}, accumulation"
-            yield from ((f"{place}, component {part.id}", part) for part in spectrum.accumulation or ())
+                location = f"load spectrum {spectrum.id}, load case {case.id}"
+                yield from ((f"{location}, component {part.id}", part) for part in case.components)
+            location = f"load spectrum {spectrum.id}, accumulation"
+            yield from ((f"{location}, component {part.id}", part) for part in spectrum.accumulation or ())
 
 
 @dataclass(frozen=True)

@@ -142,17 +142,17 @@ def written(model: Model) -> Written:
         "components": [_component(part) for part in model.components],
         "load_spectra": [_spectrum(spectrum) for spectrum in model.spectra],
     }
-    return Written("model", _stated(known, model.extra), groups)
+    return Written("model", _present_fields(known, model.extra), groups)
 
 
-def _stated(fields: Mapping[str, str | int | None], extra: Extra) -> dict[str, str | int]:
+def _present_fields(fields: Mapping[str, str | int | None], extra: Extra) -> dict[str, str | int]:
     return {name: value for name, value in fields.items() if value is not None} | dict(extra)
 
 
 def _named(
     part: Relation | Reference | Component | LoadCase | LoadSpectrum, *names: str
 ) -> dict[str, str | int]:
-    return _stated({name: getattr(part, name) for name in names}, part.extra)
+    return _present_fields({name: getattr(part, name) for name in names}, part.extra)
 
 
 def _relation(relation: Relation) -> Written:

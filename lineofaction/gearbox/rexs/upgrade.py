@@ -25,13 +25,13 @@ class Change:
 
     version: str
     """The version that changed it."""
-    place: str
+    location: str
     """The component, and its load case."""
     item: str
     """Name of the attribute, or type of the component, before."""
-    kept: bool
+    unchanged: bool
     """Whether it stays as it was, since the newer version has nothing that says the same."""
-    words: str
+    text: str
     """What became of it, or why it is kept."""
 
 
@@ -60,21 +60,21 @@ def _version_number(version: str) -> int:
 
 
 def _component(
-    place: str, component: Component, step: _Step, version: str, changes: list[Change]
+    location: str, component: Component, step: _Step, version: str, changes: list[Change]
 ) -> Component:
     if component.type in step["components"]["removed"]:
-        changes.append(Change(version, place, component.type, True, "components of this type are gone"))
+        changes.append(Change(version, location, component.type, True, "components of this type are gone"))
         return component
     names = {attribute.id for attribute in component.attributes}
     attributes = []
     for attribute in component.attributes:
         for change in (_unit, _kind, _enum):
-            attribute, words, former = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
-            if words:
-                changes.append(Change(version, place, attribute.id, former, words))
-        name, words = _name(component.type, attribute.id, step, names)
-        if words:
-            changes.append(Change(version, place, attribute.id, name == attribute.id, words))
+            attribute, text, former = change(attribute, step)  # noqa: PLW2901  # the attribute as it goes
+            if text:
+                changes.append(Change(version, location, attribute.id, former, text))
+        name, text = _name(component.type, attribute.id, step, names)
+        if text:
+            changes.append(Change(version, location, attribute.id, name == attribute.id, text))
         attributes.append(replace(attribute, id=name))
     return replace(component, attributes=tuple(attributes))
 

@@ -27,7 +27,7 @@ KINDS = (
     "file_reference",
     "date_time",
 )
-_SHOWN = ("floating_point", "boolean")
+_EVIDENT_KINDS = ("floating_point", "boolean")
 
 CODES = {"float32": "f", "float64": "d", "int32": "i"}
 """The codes of REXS, little-endian, with the letters of `array`."""
@@ -36,28 +36,28 @@ _INTEGER = re.compile(r"[+-]?\d{1,19}")
 _MAX_INTEGER = 2**63
 
 
-def integer_of(text: str, place: str) -> int:
+def integer_of(text: str, location: str) -> int:
     """Return an integer of at most 64 bits."""
     plain = text.strip()
     if not _INTEGER.fullmatch(plain) or abs(int(plain)) >= _MAX_INTEGER:
-        raise BadInput.of(place, text, "an integer of at most 64 bits")
+        raise BadInput.of(location, text, "an integer of at most 64 bits")
     return int(plain)
 
 
-def _float_of(text: str, place: str) -> float:
+def _float_of(text: str, location: str) -> float:
     try:
         number = float(text) if "_" not in text else math.nan
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise BadInput.of(place, text, "a finite number")
+        raise BadInput.of(location, text, "a finite number")
     return number
 
 
-def _boolean_of(text: str, place: str) -> bool:
+def _boolean_of(text: str, location: str) -> bool:
     plain = text.strip().lower()
     if plain not in ("true", "false"):
-        raise BadInput.of(place, text, "true or false")
+        raise BadInput.of(location, text, "true or false")
     return plain == "true"
 
 
@@ -69,10 +69,10 @@ OF_TEXT: dict[str, Callable[[str, str], Scalar]] = {
 }
 
 
-def scalar_of(kind: str, text: str, place: str) -> Scalar:
+def scalar_of(kind: str, text: str, location: str) -> Scalar:
     """Return the value of a text of a scalar kind."""
     read = OF_TEXT.get(kind)
-    return text if read is None else read(text, place)
+    return text if read is None else read(text, location)
 
 
 def entry_kind(kind: str) -> str:
@@ -92,7 +92,7 @@ def kind_of(attribute: str, texts: Sequence[str]) -> str:
     listed = owners("kinds").get(attribute)
     if listed and _all_of(listed, texts):
         return listed
-    return next((kind for kind in _SHOWN if _all_of(kind, texts)), "string")
+    return next((kind for kind in _EVIDENT_KINDS if _all_of(kind, texts)), "string")
 
 
 def _all_of(kind: str, texts: Sequence[str]) -> bool:
@@ -119,19 +119,19 @@ def text_of(value: Scalar) -> str:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def decoded(code: str, text: str, place: str) -> Array:
+def decoded(code: str, text: str, location: str) -> Array:
     """Return the numbers of a base64 text."""
     if code not in CODES:
-        raise BadInput.of(place, code, "one of " + ", ".join(CODES))
+        raise BadInput.of(location, code, "one of " + ", ".join(CODES))
     numbers = array.array(CODES[code])
     try:
         numbers.frombytes(base64.b64decode("".join(text.split()), validate=True))
     except (ValueError, binascii.Error):
-        raise BadInput.of(place, text[:40], f"base64 of whole {code} numbers") from None
+        raise BadInput.of(location, text[:40], f"base64 of whole {code} numbers") from None
     if sys.byteorder == "big":
         numbers.byteswap()
     if code != "int32" and not all(map(math.isfinite, numbers)):
-        raise BadInput.of(place, "a number that is not finite", "finite numbers")
+        raise BadInput.of(location, "a number that is not finite", "finite numbers")
     return tuple(numbers)
 
 
@@ -143,8 +143,8 @@ def coded(code: str, values: Sequence[Scalar]) -> str:
     return base64.b64encode(numbers.tobytes()).decode("ascii")
 
 
-def rows_of(values: Array, rows: int, columns: int, place: str) -> tuple[Array, ...]:
+def rows_of(values: Array, rows: int, columns: int, location: str) -> tuple[Array, ...]:
     """Return the rows of a matrix of which base64 holds all values, row by row."""
     if rows < 0 or columns < 0 or rows * columns != len(values):
-        raise BadInput.of(place, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
+        raise BadInput.of(location, f"{rows} x {columns}", f"the size of a matrix of {len(values)} values")
     return tuple(values[start : start + columns] for start in range(0, len(values), columns or 1))

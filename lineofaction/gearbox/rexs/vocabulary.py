@@ -44,7 +44,7 @@ def units() -> dict[str, _SiUnit]:
     return {name: _SiUnit(**unit) for name, unit in table("units").items()}
 
 
-def si_value(value: float, unit: str | None, expected: str, place: str) -> float:
+def si_value(value: float, unit: str | None, expected: str, location: str) -> float:
     """Return a value in SI.
 
     Raises `BadInput`: the unit is none of REXS, or of another quantity.
@@ -55,14 +55,14 @@ def si_value(value: float, unit: str | None, expected: str, place: str) -> float
         As the file has them.
     expected : str
         A unit of the value's quantity, as the schema has it.
-    place : str
+    location : str
         Component and attribute, for the error.
     """
     written = units().get("none" if unit is None else unit)
     wanted = units()[expected]
     if written is None or written.si != wanted.si:
         fit = ", ".join(name for name, unit_row in units().items() if unit_row.si == wanted.si and name)
-        raise BadInput.of(f"{place}, unit", unit, f"one of {fit}")
+        raise BadInput.of(f"{location}, unit", unit, f"one of {fit}")
     return value * written.factor + written.offset
 
 
@@ -71,7 +71,7 @@ def listed_unit(name: str) -> str | None:
     return owners("quantities").get(name)
 
 
-def quantity(component: Component, name: str, place: str) -> float | None:
+def quantity(component: Component, name: str, location: str) -> float | None:
     """Return a number of a component in SI, None where the file gives none.
 
     Raises `BadInput`: the value is no number, is given twice, or its unit belongs to another quantity.
@@ -82,32 +82,32 @@ def quantity(component: Component, name: str, place: str) -> float | None:
         Of a model of the newest version.
     name : str
         An attribute of `quantities.toml`.
-    place : str
+    location : str
         The component, for the error.
     """
-    attribute = _only(component, name, place)
-    return None if attribute is None else _number(attribute.value, attribute, f"{place}, {name}")
+    attribute = _only(component, name, location)
+    return None if attribute is None else _number(attribute.value, attribute, f"{location}, {name}")
 
 
-def quantities(component: Component, name: str, place: str) -> tuple[float, ...] | None:
+def quantities(component: Component, name: str, location: str) -> tuple[float, ...] | None:
     """Return an array of numbers of a component in SI, as `quantity` a number."""
-    attribute = _only(component, name, place)
+    attribute = _only(component, name, location)
     if attribute is None:
         return None
     if not isinstance(attribute.value, tuple):
-        raise BadInput.of(f"{place}, {name}", attribute.value, "an array of numbers")
-    return tuple(_number(entry, attribute, f"{place}, {name}") for entry in attribute.value)
+        raise BadInput.of(f"{location}, {name}", attribute.value, "an array of numbers")
+    return tuple(_number(entry, attribute, f"{location}, {name}") for entry in attribute.value)
 
 
-def _only(component: Component, name: str, place: str) -> Attribute | None:
+def _only(component: Component, name: str, location: str) -> Attribute | None:
     """Return the attribute of a name, None if there is none or it has no value."""
     named = [attribute for attribute in component.attributes if attribute.id == name]
     if len(named) > 1:
-        raise BadInput.of(f"{place}, {name}", f"{len(named)} values", "given once")
+        raise BadInput.of(f"{location}, {name}", f"{len(named)} values", "given once")
     return named[0] if named and named[0].value is not None else None
 
 
-def _number(value: object, attribute: Attribute, place: str) -> float:
+def _number(value: object, attribute: Attribute, location: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise BadInput.of(place, value, "a number")
-    return si_value(float(value), attribute.unit, owners("quantities")[attribute.id], place)
+        raise BadInput.of(location, value, "a number")
+    return si_value(float(value), attribute.unit, owners("quantities")[attribute.id], location)

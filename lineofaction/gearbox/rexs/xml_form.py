@@ -26,7 +26,7 @@ from lineofaction.gearbox.rexs.values import (
 )
 
 _MAX_DEPTH = 32
-_SHOWN = 60
+_PREVIEW = 60
 """Characters of a line that is not well-formed."""
 
 _ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1", "windows-1252")
@@ -49,32 +49,32 @@ class _XmlElement(Element):
     line: int
     fields: dict[str, str]
     inside: list[_XmlElement] = field(default_factory=list)
-    words: list[str] = field(default_factory=list)
+    characters: list[str] = field(default_factory=list)
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         return f"line {self.line}, {self.name}"
 
     def content(self) -> str:
         """Return the text directly inside, empty if it is blank."""
-        text = "".join(self.words)
+        text = "".join(self.characters)
         return text if text.strip() else ""
 
     def text(self, name: str) -> str:
         text = self.fields.pop(name, None)
         if text is None:
-            raise BadInput.of(f"{self.place}, {name}", None, "given")
+            raise BadInput.of(f"{self.location}, {name}", None, "given")
         return text
 
     def optional_text(self, name: str) -> str | None:
         return self.fields.pop(name, None)
 
     def number(self, name: str) -> int:
-        return integer_of(self.text(name), f"{self.place}, {name}")
+        return integer_of(self.text(name), f"{self.location}, {name}")
 
     def optional_number(self, name: str) -> int | None:
         text = self.fields.pop(name, None)
-        return None if text is None else integer_of(text, self.place)
+        return None if text is None else integer_of(text, self.location)
 
     def parts(self, name: str) -> list[_XmlElement]:
         return self.groups({name: None})[name]
@@ -88,16 +88,16 @@ class _XmlElement(Element):
         for part in self.inside:
             name = part.name.rpartition(":")[2]
             if name not in groups:
-                raise BadInput.of(part.place, part.name, "one of " + ", ".join(known))
+                raise BadInput.of(part.location, part.name, "one of " + ", ".join(known))
             groups[name].append(part)
             if known[name] is not None and len(groups[name]) > 1:
-                raise BadInput.of(part.place, part.name, "given once")
+                raise BadInput.of(part.location, part.name, "given once")
         return groups
 
     def group(self, name: str) -> list[_XmlElement]:
         """Return the elements of a group, which has no fields of its own."""
         for field_name in self.fields:
-            raise BadInput.of(self.place, field_name, "left out: a group has no fields")
+            raise BadInput.of(self.location, field_name, "left out: a group has no fields")
         return self.parts(name)
 
     def attribute(self) -> Attribute:
@@ -105,7 +105,7 @@ class _XmlElement(Element):
         shapes = self.groups({"array": 1, "matrix": 1, "array_of_arrays": 1})
         bodies = [part for group in shapes.values() for part in group]
         if len(bodies) > 1 or (bodies and self.content()):
-            raise BadInput.of(self.place, name, "one value, array or matrix")
+            raise BadInput.of(self.location, name, "one value, array or matrix")
         is_kind = entry_kind(self.fields.get(_KIND_FIELD, "")) in KINDS
         kind_name = self.fields.pop(_KIND_FIELD) if is_kind else None
         kind, value, code = bodies[0]._shaped(name, kind_name) if bodies else self._scalar(name, kind_name)
@@ -118,40 +118,40 @@ class _XmlElement(Element):
         if not text:
             return kind_name or kind_of(name, []), None, None
         kind = entry_kind(kind_name) if kind_name else kind_of(name, [text])
-        return kind, scalar_of(kind, text, f"{self.place}, {name}"), None
+        return kind, scalar_of(kind, text, f"{self.location}, {name}"), None
 
     def _shaped(self, name: str, kind_name: str | None) -> tuple[str, Value, str | None]:
         """Return kind, value and code of an array, a matrix or an array of arrays."""
-        place = f"{self.place}, {name}"
+        location = f"{self.location}, {name}"
         code = self.fields.get("code")
         if code is not None:
-            return self._coded(code, place)
+            return self._coded(code, location)
         is_array = self.name == "array"
         bodies = [self] if is_array else self.parts("r" if self.name == "matrix" else "array")
-        texts = [["".join(cell.words) for cell in body.parts("c")] for body in bodies]
+        texts = [["".join(cell.characters) for cell in body.parts("c")] for body in bodies]
         kind = entry_kind(kind_name) if kind_name else kind_of(name, [text for row in texts for text in row])
-        rows = tuple(tuple(scalar_of(kind, text, place) for text in row) for row in texts)
+        rows = tuple(tuple(scalar_of(kind, text, location) for text in row) for row in texts)
         if is_array:
             return f"{kind}_array", rows[0], None
         return f"{kind}_matrix" if self.name == "matrix" else f"array_of_{kind}_arrays", rows, None
 
-    def _coded(self, code: str, place: str) -> tuple[str, Value, str]:
+    def _coded(self, code: str, location: str) -> tuple[str, Value, str]:
         """Return kind, value and code of an array or matrix in base64."""
         if self.inside or self.name == "array_of_arrays":
-            raise BadInput.of(place, self.name, "an array or a matrix in base64, or one of elements")
-        values = decoded(code, "".join(self.words), place)
+            raise BadInput.of(location, self.name, "an array or a matrix in base64, or one of elements")
+        values = decoded(code, "".join(self.characters), location)
         kind = "integer" if code == "int32" else "floating_point"
         if self.name == "array":
             return f"{kind}_array", values, code
         rows, columns = self.number("rows"), self.number("columns")
-        return f"{kind}_matrix", rows_of(values, rows, columns, place), code
+        return f"{kind}_matrix", rows_of(values, rows, columns, location), code
 
     def spectrum(self) -> LoadSpectrum:
         parts = self.groups({"load_case": None, "accumulation": 1})
         cases = tuple(case.load_case({}) for case in parts["load_case"])
         groups = [group.group("component") for group in parts["accumulation"]]
-        whole = tuple(part.component({}) for part in groups[0]) if groups else None
-        return LoadSpectrum(self.number("id"), cases, whole, self.extra())
+        accumulation = tuple(part.component({}) for part in groups[0]) if groups else None
+        return LoadSpectrum(self.number("id"), cases, accumulation, self.extra())
 
 
 def read_xml(data: bytes) -> Model:
@@ -164,7 +164,7 @@ def read_xml(data: bytes) -> Model:
     """
     root = _root(data)
     if root.name.rpartition(":")[2] != "model":
-        raise BadInput.of(root.place, root.name, "model, the root of a REXS file")
+        raise BadInput.of(root.location, root.name, "model, the root of a REXS file")
     parts = root.groups({"relations": 1, "components": 1, "load_spectrum": None})
     return root.model(
         (part.relation() for group in parts["relations"] for part in group.group("relation")),
@@ -178,10 +178,10 @@ def _root(data: bytes) -> _XmlElement:
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
-        words = expat.errors.messages.get(error.code, "unknown")
-        bound = f"well-formed XML, which line {error.lineno} is not ({words})"
+        reason = expat.errors.messages.get(error.code, "unknown")
+        bound = f"well-formed XML, which line {error.lineno} is not ({reason})"
         lines = data.splitlines()[error.lineno - 1 : error.lineno]
-        first_line = lines[0].strip()[:_SHOWN].decode(errors="replace") if lines else ""
+        first_line = lines[0].strip()[:_PREVIEW].decode(errors="replace") if lines else ""
         raise BadInput.of("file", first_line, bound, "REXS is XML, JSON or a ZIP of them.") from None
     return builder.root.inside[0]
 
@@ -215,13 +215,13 @@ class _Builder:
         self._open.append(element)
 
     def _characters(self, text: str) -> None:
-        self._open[-1].words.append(text)
+        self._open[-1].characters.append(text)
 
     def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
         del version, standalone
         if encoding is not None and encoding.lower() not in _ENCODINGS:
             known = f"one of {', '.join(_ENCODINGS)}"
-            raise BadInput.of("encoding", encoding[:_SHOWN], known, "Write UTF-8.")
+            raise BadInput.of("encoding", encoding[:_PREVIEW], known, "Write UTF-8.")
 
     def _document_type(self, name: str, *rest: object) -> NoReturn:
         del rest

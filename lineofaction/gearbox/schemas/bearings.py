@@ -13,14 +13,14 @@ from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.bearings.seat import Bushing, PlanetBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name, Number, SeatRows, refuse
-from lineofaction.gearbox.schemas.rules import both, exactly_one_of, given, left_out, stated
+from lineofaction.gearbox.schemas.rules import all_of, both, exactly_one_of, left_out, required
 from lineofaction.gearbox.units import MRAD, UM
 
 ROWS = ("ball", "roller", "catalog")
 _TILTS_OR_NOT = {
     "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
-    "then": both(given("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
-    "else": both(given("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
+    "then": both(required("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
+    "else": both(required("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
 }
 _Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 
@@ -44,7 +44,7 @@ class CatalogLineInput(BoundaryModel):
 class RollingBearingInput(BoundaryModel):
     """One row of rolling elements between a shaft and the ground, by its geometry."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*ROWS)))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of(*ROWS)))
 
     name: Name = Field(description="Name of the bearing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
@@ -126,7 +126,7 @@ class BearingInput(BoundaryModel):
     class SpringCurveInput(BearingLawInput):
         """A bearing's force by displacement in one direction."""
 
-        model_config = ConfigDict(json_schema_extra=stated(_TILTS_OR_NOT))
+        model_config = ConfigDict(json_schema_extra=all_of(_TILTS_OR_NOT))
 
         direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
             description="Direction of displacement and force", examples=["x"]

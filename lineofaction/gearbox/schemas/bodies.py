@@ -19,14 +19,14 @@ from lineofaction.gearbox.schemas.model import (
     Name,
     refuse,
 )
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 _PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
 PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
 LENGTHS_AGREE = 1e-6  # relative
 
 
-@with_fields(declared_in(Inertia, all_given=True))
+@with_fields(declared_in(Inertia, required=True))
 class InertiaInput(BoundaryModel):
     """Inertia of a body of revolution about its own center of mass."""
 
@@ -84,7 +84,7 @@ class PlanetsInput(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _one_each(self) -> Self:
+    def _lists_by_planet(self) -> Self:
         for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
             values = getattr(self, field)
             if values is not None and len(values) != self.number:
@@ -107,7 +107,7 @@ class DiscInput(BoundaryModel):
             default=0.0, ge=0.0, le=1e5, description="Bore in mm", examples=[40.0]
         )
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("inertia", "cylinder")))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("inertia", "cylinder")))
 
     name: Name = Field(description="Name of the disc", examples=["flywheel"])
     shaft: Name = Field(description="The shaft that carries it", examples=["input"])

@@ -15,7 +15,7 @@ from lineofaction.gearbox.schemas.gear import SHARED, GearInput, MaterialInput
 from lineofaction.gearbox.schemas.headlines import in_brief
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, refuse, refuse_unsorted
 from lineofaction.gearbox.schemas.report import ReportInput
-from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of, exactly_one_of
 
 Load = Annotated[float, Field(ge=1e-9, le=1e9)]  # smaller ones underflow where they are squared
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
@@ -49,7 +49,7 @@ class PairInput(_PairFigures):
 class LoadInput(BoundaryModel):
     """Loads of the table: torques on the driving gear or normal forces."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("torque_n_m", "normal_force_n")))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("torque_n_m", "normal_force_n")))
 
     torque_n_m: Loads | None = Field(
         default=None,
@@ -130,7 +130,7 @@ class Case(BoundaryModel):
         """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
 
         model_config = ConfigDict(
-            json_schema_extra=stated(
+            json_schema_extra=all_of(
                 at_most_one_of("level", "tolerance"), at_most_one_of("level", "time_budget_s")
             )
         )
@@ -234,7 +234,7 @@ class Case(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _heard_of_pair(self) -> Self:
+    def _complaint_of_pair(self) -> Self:
         """Refuse a complaint about other shafts, or about what a pair has not."""
         for name in ("shaft", "final_shaft", "bearing", "microphone_mm"):
             value = None if self.complaint is None else getattr(self.complaint, name)

@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, Strict, model_validator
 
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, refuse, refuse_unsorted
-from lineofaction.gearbox.schemas.rules import at_most_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of
 
 Value = Annotated[float, Field(ge=-1e15, le=1e15)]
 Values = Listed[Value]
@@ -19,7 +19,7 @@ Teeth = Annotated[int, Field(ge=1, le=100_000)]
 class PeriodicInput(BoundaryModel):
     """A value over a base pitch: constant, the sum of harmonics, or tabulated."""
 
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of("amplitude", "position")))
+    model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of("amplitude", "position")))
 
     value: Values = Field(
         min_length=1,

@@ -7,7 +7,7 @@ from typing import Any, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.model import BoundaryModel, Point, refuse
-from lineofaction.gearbox.schemas.rules import at_most_one_of, exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of, exactly_one_of
 
 WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
 """What is heard, and at which speed: one of each."""
@@ -105,7 +105,7 @@ class ComplaintFields(BoundaryModel):
 class ComplaintInput(ComplaintFields):
     """A complaint: a frequency at a road speed or at a shaft's speed, or an order."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*WHATS), at_most_one_of(*SPEEDS)))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of(*WHATS), at_most_one_of(*SPEEDS)))
 
     @model_validator(mode="after")
     def _one_question(self) -> Self:
@@ -131,16 +131,16 @@ class ComplaintInput(ComplaintFields):
         return self
 
 
-def with_options(stated_one: ComplaintInput | None, options: ComplaintFields) -> dict[str, Any]:
+def with_options(complaint: ComplaintInput | None, options: ComplaintFields) -> dict[str, Any]:
     """Return the fields of a complaint with those of options before them, not yet validated.
 
     An option also replaces the field that it is an alternative to.
     """
-    own = {} if stated_one is None else stated_one.model_dump(exclude_none=True)
+    fields = {} if complaint is None else complaint.model_dump(exclude_none=True)
     typed = options.model_dump(exclude_none=True, include=set(ComplaintFields.model_fields))
     for names in (WHATS, SPEEDS):
         if typed.keys() & set(names):
-            own = {name: value for name, value in own.items() if name not in names}
+            fields = {name: value for name, value in fields.items() if name not in names}
     if "speed_rpm" in typed:
-        own = {name: value for name, value in own.items() if name not in OF_ROAD}
-    return own | typed
+        fields = {name: value for name, value in fields.items() if name not in OF_ROAD}
+    return fields | typed

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 Cells: TypeAlias = dict[str, str]
 Nodes: TypeAlias = dict[tuple[float, float], float]
-_SHOWN = 40
+_PREVIEW = 40
 """Characters of a cell that a message shows."""
 
 
@@ -22,7 +22,7 @@ class CsvRows:
     """The lines of a file."""
 
     heading: list[str]
-    held: list[tuple[int, str]]
+    data_lines: list[tuple[int, str]]
     """The others that are neither blank nor comments, which start with #, after their number from 1."""
     lines: int
     """All of them."""
@@ -30,11 +30,11 @@ class CsvRows:
     @property
     def silent(self) -> int:
         """Blank lines and comments."""
-        return self.lines - len(self.held) - 1
+        return self.lines - len(self.data_lines) - 1
 
     def rows(self) -> Iterator[tuple[int, Cells]]:
         """Yield number and cells of each row, by the heading and without spaces around them."""
-        for number, line in self.held:
+        for number, line in self.data_lines:
             cells = _cells(line)
             if len(cells) != len(self.heading):
                 count = len(self.heading)
@@ -45,14 +45,14 @@ class CsvRows:
 def csv_rows(text: str, maximum: int) -> CsvRows:
     """Return the rows of a file of at most so many."""
     lines = text.removeprefix("\ufeff").splitlines()
-    held = [
+    data_lines = [
         (n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")
     ]
-    if not held:
+    if not data_lines:
         raise ValueError("a CSV file with a heading and a row per point; it is empty")
-    if len(held) > maximum + 1:
+    if len(data_lines) > maximum + 1:
         raise ValueError(f"a file of at most {maximum} points")
-    return CsvRows(_cells(held[0][1]), held[1:], len(lines))
+    return CsvRows(_cells(data_lines[0][1]), data_lines[1:], len(lines))
 
 
 def number_in(row: Cells, column: str, line: int) -> float:
@@ -63,18 +63,18 @@ def number_in(row: Cells, column: str, line: int) -> float:
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        shown = f"{cell[:_SHOWN]!r}" if cell else "nothing"
-        raise ValueError(f"a file of finite numbers; line {line} holds {shown} in {column}")
+        preview = f"{cell[:_PREVIEW]!r}" if cell else "nothing"
+        raise ValueError(f"a file of finite numbers; line {line} holds {preview} in {column}")
     return value
 
 
-def whole_grid(nodes: Nodes, names: tuple[str, str]) -> tuple[list[float], list[float], list[list[float]]]:
+def complete_grid(nodes: Nodes, names: tuple[str, str]) -> tuple[list[float], list[float], list[list[float]]]:
     """Return the axes of values at nodes, by `names` in messages, and the values in rows."""
     first, second = (sorted({node[axis] for node in nodes}) for axis in (0, 1))
     missing = len(first) * len(second) - len(nodes)
     if missing:
-        place = next((a, b) for a in first for b in second if (a, b) not in nodes)
-        where = ", ".join(f"{name} = {value:.12g}" for name, value in zip(names, place, strict=True))
+        missing_node = next((a, b) for a in first for b in second if (a, b) not in nodes)
+        where = ", ".join(f"{name} = {value:.12g}" for name, value in zip(names, missing_node, strict=True))
         of = len(first) * len(second)
         raise ValueError(f"a complete grid: {missing} of {of} nodes are missing, the first at {where}")
     return first, second, [[nodes[a, b] for b in second] for a in first]

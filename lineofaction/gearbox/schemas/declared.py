@@ -46,7 +46,7 @@ class Figure:
         return BY_SUFFIX.get(suffix_of(self.what), Unit())
 
     @property
-    def words(self) -> str:
+    def label(self) -> str:
         """The name in words."""
         return self.name.replace("_", " ")
 
@@ -59,7 +59,7 @@ class Figure:
         number = int if self.what.kind is Kind.COUNT else float
         ends = {name: getattr(bound, name) for name in ("gt", "ge", "lt", "le")}
         return Interval(
-            **{name: None if end is None else self.own(number(end)) for name, end in ends.items()}
+            **{name: None if end is None else self.boundary_value(number(end)) for name, end in ends.items()}
         )
 
     @property
@@ -73,7 +73,7 @@ class Figure:
         number = Annotated[plain, *self.limits]
         return number | None if self.default is None else number
 
-    def own(self, value: Any) -> Any:
+    def boundary_value(self, value: Any) -> Any:
         """Return a value in SI in the unit of the boundary, without the noise of the conversion."""
         return as_typed(value, self.unit.factor) if isinstance(value, float) else value
 
@@ -90,16 +90,16 @@ class Figure:
         along = [direction.name.lower() for direction in self.what.along if direction.name]
         extra: Any = {"x-kind": self.what.kind.value, "x-along": along}
         field = Field(
-            default=... if self.default is MISSING else self.own(self.default),
+            default=... if self.default is MISSING else self.boundary_value(self.default),
             description=self.with_unit(self.what.description),
-            examples=[self.own(self.what.example)],
+            examples=[self.boundary_value(self.what.example)],
             json_schema_extra=extra if self.marked else None,
             exclude_if=self._unsaid if self.what.later else None,
         )
         return self.accepted, field
 
     def _unsaid(self, value: Any) -> bool:
-        return bool(value == self.own(self.default))
+        return bool(value == self.boundary_value(self.default))
 
 
 def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
@@ -112,16 +112,16 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
     )
 
 
-def declared_in(kind: type[Any], *, all_given: bool = False, marked: bool = True) -> Fields:
-    """Return the declared fields of a dataclass as those of a model; `all_given`: numbers have no default."""
-    own = (replace(each, marked=marked) for each in figures(kind))
-    own = (replace(each, default=MISSING) if all_given else each for each in own)
-    return {**as_fields(own), **parts_in(parts_of(kind))}
+def declared_in(kind: type[Any], *, required: bool = False, marked: bool = True) -> Fields:
+    """Return the declared fields of a dataclass as those of a model; `required`: numbers have no default."""
+    declared = (replace(figure, marked=marked) for figure in figures(kind))
+    declared = (replace(figure, default=MISSING) if required else figure for figure in declared)
+    return {**as_fields(declared), **parts_in(parts_of(kind))}
 
 
-def as_fields(own: Iterable[Figure]) -> Fields:
+def as_fields(declared: Iterable[Figure]) -> Fields:
     """Return figures as fields of a model."""
-    return {figure.field: figure.as_field() for figure in own}
+    return {figure.field: figure.as_field() for figure in declared}
 
 
 def parts_of(kind: type[Any]) -> Mapping[str, Declared]:
@@ -135,7 +135,9 @@ def parts_in(parts: Mapping[str, Declared]) -> Fields:
 
 
 def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
-    example = _EXAMPLES.get(part) or {own.field: own.own(own.what.example) for own in figures(part)}
+    example = _EXAMPLES.get(part) or {
+        figure.field: figure.boundary_value(figure.what.example) for figure in figures(part)
+    }
     several = fact.kind is Kind.PARTS
     field = Field(
         default=() if several else None,
@@ -151,17 +153,17 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
 @cache
 def _model_of(part: Any) -> Any:
     name, doc = f"{part.__name__}Input", str(part.__doc__).partition("\n")[0]
-    facts: Any = declared_in(part)
-    return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **facts)
+    members: Any = declared_in(part)
+    return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **members)
 
 
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
     """Return a decorator that adds fields, as (type, field) by name, to a model."""
 
     def added(model: type[Model]) -> type[Model]:
-        facts: Any = dict(further)
+        members: Any = dict(further)
         return create_model(
-            model.__name__, __base__=model, __module__=model.__module__, __doc__=model.__doc__, **facts
+            model.__name__, __base__=model, __module__=model.__module__, __doc__=model.__doc__, **members
         )
 
     return added

@@ -13,21 +13,23 @@ from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
 from lineofaction.gearbox.schemas.gear import ToothingInput
 from lineofaction.gearbox.schemas.model import refuse
-from lineofaction.gearbox.schemas.rules import both, given, left_out, stated
+from lineofaction.gearbox.schemas.rules import all_of, both, left_out, required
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
 """What is a ring gear's own, or otherwise than an external gear's."""
-_DEFAULTS = {figure.field: figure.own(figure.default) for figure in RING if figure.default is not MISSING}
+_DEFAULTS = {
+    figure.field: figure.boundary_value(figure.default) for figure in RING if figure.default is not MISSING
+}
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
-_RING_HAS = both(given("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
-_GEAR_HAS = both(given("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
+_RING_HAS = both(required("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
+_GEAR_HAS = both(required("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
 
 
 def _of_either_kind(schema: dict[str, Any]) -> None:
     """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
-    schema |= stated({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
+    schema |= all_of({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     for name, value in _DEFAULTS.items():
         schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
 

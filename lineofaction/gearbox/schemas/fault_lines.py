@@ -39,14 +39,14 @@ def line_of_field(text: str, field: str) -> int | None:
 
 def _placed(fault: Fault, file: InputFile) -> Fault:
     """Return a fault with its place, if it has none and the file is TOML that holds it."""
-    own = fault.field.partition("[")[0]
-    if fault.place or file.path.suffix == ".json" or any(o.path.startswith(own) for o in file.overrides):
+    part = fault.field.partition("[")[0]
+    if fault.location or file.path.suffix == ".json" or any(o.path.startswith(part) for o in file.overrides):
         return fault
     try:
         line = line_of_field(file.path.read_text(encoding="utf-8"), fault.field)
     except (OSError, UnicodeDecodeError):
         return fault
-    return fault if line is None else replace(fault, place=f"{file.path}:{line}")
+    return fault if line is None else replace(fault, location=f"{file.path}:{line}")
 
 
 def _lines(text: str) -> Iterator[tuple[str, int]]:

@@ -68,7 +68,7 @@ def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -
     if item["type"] == "refused":
         field = _dotted([*loc, *str(context["field"]).split(".")])
         return Fault(field, context["value"], context["bound"], context["suggestion"])
-    parent, info = _place(model, loc)
+    parent, info = _field_at(model, loc)
     value = None if item["type"] == "missing" else item.get("input")
     return Fault(_dotted(loc), value, _bound(item, info), _suggestion(item, parent, info, loc))
 
@@ -82,7 +82,7 @@ def _dotted(loc: Loc) -> str:
     return text or "input"
 
 
-def _place(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | None, FieldInfo | None]:
+def _field_at(model: type[BaseModel] | None, loc: Loc) -> tuple[type[BaseModel] | None, FieldInfo | None]:
     """Model that holds the last named field of `loc`, and that field if it exists."""
     current, info = model, None
     for index, part in enumerate(loc):
@@ -119,9 +119,9 @@ def _constraints(info: FieldInfo | None) -> dict[str, float]:
     return limits
 
 
-def _metadata(own: Iterable[object], annotation: object) -> Iterable[object]:
+def _metadata(constraints: Iterable[object], annotation: object) -> Iterable[object]:
     """Metadata of a field, its `Annotated` parts unfolded, down to the elements of a list."""
-    for item in own:
+    for item in constraints:
         yield from getattr(item, "metadata", None) or [item]
     for argument in get_args(annotation):
         yield from _metadata(getattr(argument, "__metadata__", ()), argument)
@@ -130,8 +130,8 @@ def _metadata(own: Iterable[object], annotation: object) -> Iterable[object]:
 def _range(limits: Mapping[str, float]) -> str:
     if "ge" in limits and "le" in limits:
         return f"from {limits['ge']:g} to {limits['le']:g}"
-    words = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
-    return " and ".join(f"{words[name]} {limits[name]:g}" for name in words if name in limits)
+    comparisons = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
+    return " and ".join(f"{comparisons[name]} {limits[name]:g}" for name in comparisons if name in limits)
 
 
 def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
@@ -168,7 +168,7 @@ def _suggestion(
 def field_remedy(model: type[BaseModel], field: str) -> str:
     """Return what the model says about a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if nothing."""
     loc = [part for part in field.replace("[", ".").replace("]", "").split(".") if not part.isdigit()]
-    return _described(_place(model, loc)[1])
+    return _described(_field_at(model, loc)[1])
 
 
 def _described(info: FieldInfo | None) -> str:

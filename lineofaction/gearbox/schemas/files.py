@@ -14,7 +14,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.flank_grid_files import with_flank_grids
 from lineofaction.gearbox.schemas.load_signals import with_load_signals
-from lineofaction.gearbox.schemas.named_files import Find, Table, own_name, read_text
+from lineofaction.gearbox.schemas.named_files import Find, Table, base_name, read_text
 from lineofaction.gearbox.signals.endings import UNIVERSAL
 from lineofaction.gearbox.units import MM, as_typed
 
@@ -59,12 +59,12 @@ def _written_out(
         raise BadInput.of(field, name, f"left out when {others} is given", "Keep one of them.")
     if named[0] not in read:
         raise BadInput.of(field, name, "left out: a service opens no netCDF files of its callers", _BY_CLIENT)
-    own = {key: value for key, value in housing.items() if key != named[0] or key == MODES_FILE}
+    inline = {key: value for key, value in housing.items() if key != named[0] or key == MODES_FILE}
     file = find(name, field)
     if (named[0], file) not in contents:
         contents[named[0], file] = READERS[named[0]](file, field)
     below, above = contents[named[0], file]
-    return below | own | above
+    return below | inline | above
 
 
 def _matrices(file: Path, field: str) -> Content:
@@ -101,7 +101,7 @@ def _modes(file: Path, field: str) -> Content:
     return derived | {"seat_positions_mm": places}, present
 
 
-def _whole(file: Path, field: str) -> Content:
+def _content(file: Path, field: str) -> Content:
     """Return a file whose content goes along: a solid, or measured responses."""
     name = field.rpartition(".")[2]
     suffixes = _CONTENT_SUFFIXES[name]
@@ -145,7 +145,7 @@ def _contents(housing: Table) -> Iterator[tuple[str, str, str, FileContentInput]
     """Yield the fields that name the files of a housing, how the names begin and end, and their content."""
     for field in _CONTENT_SUFFIXES:
         if isinstance(content := housing.get(field), dict):
-            path = Path(own_name(content["name"]))
+            path = Path(base_name(content["name"]))
             yield field, path.stem, path.suffix, FileContentInput(**content)
     rows = housing.get(ROWS)
     if rows is not None and not any(f"{part}_matrix" in housing for part in ("damping", "mass")):
@@ -157,7 +157,7 @@ def _contents(housing: Table) -> Iterator[tuple[str, str, str, FileContentInput]
 READERS: dict[str, Callable[[Path, str], Content]] = {
     MATRIX_FILE: _matrices,
     MODES_FILE: _modes,
-    **dict.fromkeys(_CONTENT_SUFFIXES, _whole),
+    **dict.fromkeys(_CONTENT_SUFFIXES, _content),
 }
 """What reads the files that a housing names, by the field that names them."""
 SENT = READERS.keys() - {MODES_FILE}

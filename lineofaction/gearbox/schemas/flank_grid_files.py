@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.csv_rows import Nodes, csv_rows, number_in, whole_grid
+from lineofaction.gearbox.schemas.csv_rows import Nodes, complete_grid, csv_rows, number_in
 from lineofaction.gearbox.schemas.named_files import Find, Table
 
 FIELD = "flank_grid_csv"
@@ -71,7 +71,7 @@ def flank_grid(text: str, field: str, name: str) -> Table:
         Of the form of `FlankGridInput`.
     """
     try:
-        axes = whole_grid(_nodes(text), (COLUMNS[0], COLUMNS[1]))
+        axes = complete_grid(_nodes(text), (COLUMNS[0], COLUMNS[1]))
     except ValueError as fault:
         raise BadInput.of(field, name, str(fault), _HELP) from None
     return dict(zip(COLUMNS, axes, strict=True))

@@ -7,14 +7,14 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
-from lineofaction.gearbox.schemas.rules import at_most_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of
 from lineofaction.gearbox.schemas.spelling import Spelling
 
 
 class FlankPoint(BoundaryModel):
     """One load and one alignment; what is left out is taken from the case."""
 
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of("torque_n_m", "normal_force_n")))
+    model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of("torque_n_m", "normal_force_n")))
 
     torque_n_m: Annotated[float | None, Spelling("--torque")] = Field(
         default=None,

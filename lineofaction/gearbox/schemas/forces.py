@@ -20,14 +20,14 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     refuse_unsorted,
 )
-from lineofaction.gearbox.schemas.rules import at_least_one_of, at_most_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_least_one_of, at_most_one_of
 
 
 @with_fields(declared_in(AppliedForce))
 class ForceInput(BoundaryModel):
     """A force and moment on a shaft: constant, by time, by a shaft's speed, or by a shaft's angle."""
 
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of(*BY), at_least_one_of(*ACTING)))
+    model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of(*BY), at_least_one_of(*ACTING)))
 
     name: Name = Field(description="Name of the force", examples=["belt"])
     shaft: Name = Field(description="The shaft it acts on", examples=["input"])
@@ -102,10 +102,10 @@ class ForceInput(BoundaryModel):
     @model_validator(mode="after")
     def _one_course(self) -> Self:
         """One course, its lists of one length."""
-        stated_by = [name for name in BY if getattr(self, name) is not None]
-        if len(stated_by) > 1:
-            refuse(stated_by[1], stated_by, f"left out beside {stated_by[0]}", "Give one course.")
-        by = stated_by[0] if stated_by else None
+        courses = [name for name in BY if getattr(self, name) is not None]
+        if len(courses) > 1:
+            refuse(courses[1], courses, f"left out beside {courses[0]}", "Give one course.")
+        by = courses[0] if courses else None
         points = getattr(self, by) if by in ("time_s", "speed_rpm") else None
         _as_many("factor", self.factor, by or "time_s", points)
         refuse_unsorted(str(by), points)

@@ -111,7 +111,7 @@ class ToothingInput(_ToothingFigures):
         return self
 
 
-Stated = TypeVar("Stated", bound=ToothingInput)
+ToothingT = TypeVar("ToothingT", bound=ToothingInput)
 
 
 @with_fields(as_fields(of_gear(Gear)))
@@ -119,20 +119,20 @@ class GearInput(ToothingInput):
     """One external gear."""
 
 
-def with_figures(gear: Json, own: Json) -> Json:
+def with_figures(gear: Json, figures: Json) -> Json:
     """Return the table of a gear with figures of its flanks; a length replaces where the relief starts."""
-    replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
-    return {name: value for name, value in gear.items() if name not in replaced} | own
+    replaced = {field for name in figures if name in _STARTS for field in _start_fields(_STARTS[name])}
+    return {name: value for name, value in gear.items() if name not in replaced} | figures
 
 
-def with_flank(gear: Stated, own: Mapping[str, object]) -> Stated:
+def with_flank(gear: ToothingT, figures: Mapping[str, object]) -> ToothingT:
     """Return a gear with figures of its flanks, which are within the bounds of their fields.
 
     A length replaces where the relief starts.
     """
-    replaced = {field for name in own if name in _STARTS for field in _start_fields(_STARTS[name])}
+    replaced = {field for name in figures if name in _STARTS for field in _start_fields(_STARTS[name])}
     left_out = {field: type(gear).model_fields[field].get_default() for field in replaced}
-    return gear.model_copy(update=left_out | dict(own))
+    return gear.model_copy(update=left_out | dict(figures))
 
 
 def has_extent(gear: ToothingInput, relief: str) -> bool:

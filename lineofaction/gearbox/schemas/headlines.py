@@ -22,20 +22,20 @@ def in_brief(kind: type[Model]) -> type[Model]:
 def headlines(model: BaseModel) -> tuple[str, list[Row]]:
     """Return the name of a model and a row for each table or value that it states."""
     return type(model).__name__.removesuffix("Input"), [
-        (name, _words(value)) for name, value in _stated(model)
+        (name, _text(value)) for name, value in _fields(model)
     ]
 
 
-def _stated(model: BaseModel) -> list[tuple[str, object]]:
+def _fields(model: BaseModel) -> list[tuple[str, object]]:
     return [
         (name, getattr(model, name)) for name in type(model).model_fields if name in model.model_fields_set
     ]
 
 
-def _words(value: object) -> str:
+def _text(value: object) -> str:
     """Return a table by the values that it states, parts by their names or number."""
     if isinstance(value, BaseModel):
-        parts = sorted(_stated(value), key=lambda entry: not isinstance(entry[1], BaseModel))  # gears first
+        parts = sorted(_fields(value), key=lambda entry: not isinstance(entry[1], BaseModel))  # gears first
         return ", ".join(f"{name} {_short(part)}" for name, part in parts)
     if isinstance(value, list | tuple) and value and isinstance(value[0], BaseModel):
         return described_value([str(getattr(part, "name", type(part).__name__)) for part in value])

@@ -10,7 +10,7 @@ from dynamics.solid_housing import MATERIALS, Material, SeatWall
 from dynamics.temperatures import Temperatures
 from lineofaction.gearbox.schemas.declared import declared_in, figures, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name, Point, refuse
-from lineofaction.gearbox.schemas.rules import given, stated
+from lineofaction.gearbox.schemas.rules import all_of, required
 
 _THREE = Field(min_length=3, max_length=3)
 Direction = Annotated[Listed[Annotated[float, Field(ge=-1.0, le=1.0)]], _THREE]
@@ -32,8 +32,10 @@ def material_by_name(value: object) -> object:
 
 def _figures_of(value: object, *, later: bool) -> object:
     if isinstance(value, str) and value in MATERIALS:
-        own = (figure for figure in figures(Material) if later or not figure.what.later)
-        return {figure.field: figure.own(getattr(MATERIALS[value], figure.name)) for figure in own}
+        declared = (figure for figure in figures(Material) if later or not figure.what.later)
+        return {
+            figure.field: figure.boundary_value(getattr(MATERIALS[value], figure.name)) for figure in declared
+        }
     return value
 
 
@@ -81,8 +83,8 @@ class HousingFootInput(BoundaryModel):
     """A face of the housing that stays plane: fixed, or on a mount."""
 
     model_config = ConfigDict(
-        json_schema_extra=stated(
-            {"anyOf": [given("point_mm", "normal"), given("low_mm", "high_mm"), given("group")]}
+        json_schema_extra=all_of(
+            {"anyOf": [required("point_mm", "normal"), required("low_mm", "high_mm"), required("group")]}
         )
     )
 

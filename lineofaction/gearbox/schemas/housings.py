@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.housing_solid import (
     material_by_name,
 )
 from lineofaction.gearbox.schemas.model import BoundaryModel, HousingRows, Listed, Name, Point, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 SOURCES = ("step_file", "mesh_file")
 """Fields that name the file of a solid."""
@@ -102,7 +102,7 @@ class HousingInput(_MatrixHousing):
         )
 
     model_config = ConfigDict(
-        json_schema_extra=stated(exactly_one_of("stiffness_matrix", *SOURCES, RESPONSES))
+        json_schema_extra=all_of(exactly_one_of("stiffness_matrix", *SOURCES, RESPONSES))
     )
 
     modes: int
@@ -217,12 +217,12 @@ class HousingInput(_MatrixHousing):
         return self.is_solid or self.modes_file is not None
 
     @property
-    def own_x_axis(self) -> tuple[float, ...]:
+    def file_x_axis(self) -> tuple[float, ...]:
         """Direction of the x axis of the file in the scene."""
         return self.x_axis or (1.0, 0.0, 0.0)
 
     @property
-    def own_z_axis(self) -> tuple[float, ...]:
+    def file_z_axis(self) -> tuple[float, ...]:
         """Direction of the z axis of the file in the scene."""
         return self.z_axis or (0.0, 0.0, 1.0)
 
@@ -320,10 +320,10 @@ class HousingInput(_MatrixHousing):
         for axis in _AXES:
             if getattr(self, axis) is not None and not any(getattr(self, axis)):
                 refuse(axis, list(getattr(self, axis)), "a direction: not all zero")
-        across = sum(x * z for x, z in zip(self.own_x_axis, self.own_z_axis, strict=True))
-        if abs(across) > PERPENDICULAR * math.hypot(*self.own_x_axis) * math.hypot(*self.own_z_axis):
-            bound = f"perpendicular to z_axis, {list(self.own_z_axis)}"
-            refuse("x_axis", list(self.own_x_axis), bound, "Give both where the file is turned.")
+        across = sum(x * z for x, z in zip(self.file_x_axis, self.file_z_axis, strict=True))
+        if abs(across) > PERPENDICULAR * math.hypot(*self.file_x_axis) * math.hypot(*self.file_z_axis):
+            bound = f"perpendicular to z_axis, {list(self.file_z_axis)}"
+            refuse("x_axis", list(self.file_x_axis), bound, "Give both where the file is turned.")
 
 
 def _bearing(seat: Any) -> str | None:

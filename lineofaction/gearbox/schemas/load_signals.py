@@ -92,13 +92,13 @@ def with_load_signals(table: Table, find: Find, *, read: bool) -> Table:
     return changed
 
 
-def _written_out(part: object, course: _Course, find: Find, place: str, *, read: bool) -> object:
+def _written_out(part: object, course: _Course, find: Find, path: str, *, read: bool) -> object:
     if not isinstance(part, dict) or FIELD not in part:
         return part
-    field = f"{place}.{FIELD}"
-    stated = [name for name in course.others if name in part]
-    if stated:
-        raise BadInput.of(f"{place}.{stated[0]}", part[stated[0]], f"left out beside {FIELD}", "Keep one.")
+    field = f"{path}.{FIELD}"
+    others = [name for name in course.others if name in part]
+    if others:
+        raise BadInput.of(f"{path}.{others[0]}", part[others[0]], f"left out beside {FIELD}", "Keep one.")
     try:
         signal = LoadSignalInput.model_validate(part[FIELD])
     except ValidationError as error:
@@ -108,8 +108,8 @@ def _written_out(part: object, course: _Course, find: Find, place: str, *, read:
             field, signal.file, "left out: a service opens no recordings of its callers", _BY_CLIENT
         )
     time, values = _series(signal, course, find, field)
-    own = {name: value for name, value in part.items() if name != FIELD}
-    return own | {"time_s": time.tolist(), course.field: values.tolist()}
+    fields = {name: value for name, value in part.items() if name != FIELD}
+    return fields | {"time_s": time.tolist(), course.field: values.tolist()}
 
 
 def _series(

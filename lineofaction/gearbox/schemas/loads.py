@@ -20,7 +20,7 @@ from lineofaction.gearbox.schemas.model import (
     refuse,
     refuse_unsorted,
 )
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 Orders = Annotated[tuple[Annotated[float, Field(gt=0.0, le=1e4)], ...], Strict(False)]
 Vector = Annotated[tuple[Number, ...], Field(min_length=3, max_length=3), Strict(False)]
@@ -32,7 +32,7 @@ BY = ("time_s", "speed_rpm", "orders", "turn_factor")
 class DriveInput(BoundaryModel):
     """A shaft whose speed or angle is imposed over time."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("speed_rpm", "angle_deg")))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("speed_rpm", "angle_deg")))
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])

@@ -11,7 +11,7 @@ from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.closed_form_meshes import CoastFlankInput, StiffnessMeshInput
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import HASH, BoundaryModel, Name, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 _SOURCES = ("case", "case_file", "database_file", "database_hash", "stiffness")
 
@@ -53,7 +53,7 @@ class _TabledMesh(BoundaryModel):
 class MeshInput(_TabledMesh):
     """Two gears in mesh and the source of their force: an STE database or a closed form."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_SOURCES)))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of(*_SOURCES)))
 
     coast_flank: CoastFlankInput | None = Field(
         default=None,

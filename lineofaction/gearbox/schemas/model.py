@@ -47,7 +47,7 @@ CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
 CouplingRows = Annotated[Listed[CouplingRow], Field(min_length=6, max_length=6)]
 Json = dict[str, Any]
 _LEFT_OUT: Json = {"type": "null"}
-_GIVEN: Json = {"not": _LEFT_OUT}
+_NOT_NULL: Json = {"not": _LEFT_OUT}
 _NAMED = "x-named"
 
 
@@ -100,8 +100,8 @@ def _looked_first(node: dict[str, Any]) -> bool:
 
 def _not_longer(data: Any, maximum: int) -> Any:
     if isinstance(data, list | tuple | dict) and len(data) > maximum:
-        facts = {"field_type": "List", "max_length": maximum, "actual_length": len(data)}
-        raise PydanticKnownError("too_long", facts)
+        context = {"field_type": "List", "max_length": maximum, "actual_length": len(data)}
+        raise PydanticKnownError("too_long", context)
     return data
 
 
@@ -135,10 +135,10 @@ def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoRet
     )
 
 
-def refuse_unsorted(field: str, values: Sequence[float] | None, shown: int | None = None) -> None:
-    """Refuse a list that is not strictly increasing; its first `shown` values are said."""
+def refuse_unsorted(field: str, values: Sequence[float] | None, count: int | None = None) -> None:
+    """Refuse a list that is not strictly increasing; its first `count` values are said."""
     if values is not None and any(later <= earlier for earlier, later in pairwise(values)):
-        refuse(field, list(values)[:shown], "strictly increasing", "Sort the list and drop repeats.")
+        refuse(field, list(values)[:count], "strictly increasing", "Sort the list and drop repeats.")
 
 
 if TYPE_CHECKING:

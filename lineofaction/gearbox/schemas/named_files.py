@@ -16,12 +16,12 @@ Table = dict[str, Any]
 _LARGEST_FILE = 16_000_000
 
 
-def beside(folder: Path) -> Find:
+def in_folder(folder: Path) -> Find:
     """Return what finds files by their names relative to a folder."""
     return lambda name, _field: folder / name
 
 
-def own_name(name: str) -> str:
+def base_name(name: str) -> str:
     """Return the name of a file without its folders, of any system."""
     return _FOLDERS.split(name)[-1]
 

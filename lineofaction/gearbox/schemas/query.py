@@ -27,7 +27,7 @@ VALIDITY = ("lifted_off", "above_table", "outside_misalignment", "outside_center
 _List = (Strict(False), Field(min_length=1, max_length=MAX_POINTS, fail_fast=True))
 
 
-def validity_words(flags: int) -> str:
+def validity_text(flags: int) -> str:
     """Return flags in words, such as inside or above_table+outside_misalignment."""
     return "+".join(word for bit, word in enumerate(VALIDITY) if flags >> bit & 1) or "inside"
 

@@ -13,7 +13,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.fault_lines import located
 from lineofaction.gearbox.schemas.faults import faults_of
 from lineofaction.gearbox.schemas.files import READERS, written_out
-from lineofaction.gearbox.schemas.named_files import beside, read_text
+from lineofaction.gearbox.schemas.named_files import in_folder, read_text
 from lineofaction.gearbox.schemas.toml import toml_table
 
 M = TypeVar("M", bound=BaseModel)
@@ -77,4 +77,4 @@ def read_model(model: type[M], source: Path | InputFile) -> M:
     table = read_table(file)
     _check_kind(model, table, file.path)
     with located(file):
-        return validated(model, written_out(table, beside(file.folder), READERS))
+        return validated(model, written_out(table, in_folder(file.folder), READERS))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.schemas.model import _GIVEN, _LEFT_OUT, Json
+from lineofaction.gearbox.schemas.model import _LEFT_OUT, _NOT_NULL, Json
 
 
-def stated(*rules: Json) -> Json:
+def all_of(*rules: Json) -> Json:
     """Return what a model adds to its schema (``json_schema_extra``): all rules hold."""
     return {"allOf": list(rules)}
 
@@ -22,18 +22,18 @@ def at_most_one_of(*names: str) -> Json:
 
 def at_least_one_of(*names: str) -> Json:
     """Return the rule that one or more of some fields are given."""
-    return {"anyOf": [given(name) for name in names]}
+    return {"anyOf": [required(name) for name in names]}
 
 
-def own_or_factor(*names: str) -> Json:
+def values_or_factor(*names: str) -> Json:
     """Return the rule that one or more of some fields are given, or a factor on all of them."""
-    of_factor = both(given("factor"), left_out(*names))
+    of_factor = both(required("factor"), left_out(*names))
     return {"oneOf": [of_factor, at_least_one_of(*names) | left_out("factor")]}
 
 
-def given(*names: str) -> Json:
+def required(*names: str) -> Json:
     """Return the schema of tables that have some fields."""
-    return {"required": list(names), "properties": dict.fromkeys(names, _GIVEN)}
+    return {"required": list(names), "properties": dict.fromkeys(names, _NOT_NULL)}
 
 
 def left_out(*names: str) -> Json:
@@ -48,4 +48,4 @@ def both(first: Json, second: Json) -> Json:
 
 
 def _with(name: str, *names: str) -> Json:
-    return both(given(name), left_out(*(other for other in names if other != name)))
+    return both(required(name), left_out(*(other for other in names if other != name)))

@@ -165,7 +165,7 @@ class SceneInput(BoundaryModel):
         shafts = [shaft.name for shaft in self.shafts]
         for field, name in _named(self, "shafts"):
             _refuse_unknown(field, name, shafts)
-        _refuse_beside_shafts(self)
+        _refuse_off_shafts(self)
         bushings = [*(part.name for part in self.bushings), *(part.name for part in self.rolling_bearings)]
         pins = [part.name for part in self.planet_bearings]
         for index, housing in enumerate(self.housings):
@@ -224,7 +224,7 @@ def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: li
         refuse("complaint.torque_n_m", complaint.torque_n_m, bound, "Change the loads.")
 
 
-def _refuse_beside_shafts(scene: SceneInput) -> None:
+def _refuse_off_shafts(scene: SceneInput) -> None:
     """Refuse a part whose position lies beyond an end of its shaft."""
     lengths = {shaft.name: shaft.length_mm for shaft in scene.shafts}
     for kind in PLACED:

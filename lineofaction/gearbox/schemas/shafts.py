@@ -11,7 +11,7 @@ from dynamics.shafts.shaft import Shaft
 from lineofaction.gearbox.schemas.bodies import LENGTHS_AGREE, InertiaInput
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Listed, Name, Point, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 
 @with_fields(declared_in(BeamSection))
@@ -25,7 +25,7 @@ class SectionInput(BoundaryModel):
 class ShaftInput(BoundaryModel):
     """A shaft parallel to the z axis; with sections, or a diameter, it can bend and twist."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("diameter_mm", "sections", "inertia")))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("diameter_mm", "sections", "inertia")))
 
     name: Name = Field(description="Name of the shaft", examples=["input"])
     length_mm: float

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import HASH, BoundaryModel, Row, refuse, refuse_unsorted
-from lineofaction.gearbox.schemas.rules import both, exactly_one_of, given, left_out, stated
+from lineofaction.gearbox.schemas.rules import all_of, both, exactly_one_of, left_out, required
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import Spelling
 
@@ -17,7 +17,7 @@ Speed = Annotated[float, Field(ge=0.0, le=1e7)]
 TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
 Orders = Annotated[int, Field(ge=1, le=100)]
 RunHash = Annotated[str, Field(pattern=HASH)]
-_OF_RUN = both(given("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
+_OF_RUN = both(required("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
 _OVER_SPEEDS = both(
     left_out("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}}
 )
@@ -45,7 +45,7 @@ class OverSpeeds(BoundaryModel):
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:
-        refuse_unsorted("speed_rpm", self.speed_rpm, shown=8)
+        refuse_unsorted("speed_rpm", self.speed_rpm, count=8)
         return self
 
 
@@ -64,7 +64,7 @@ class OverOrders(OverSpeeds):
 class OverSpeedsOrRun(OverOrders):
     """Inputs of a study of mesh orders in the linear response over speeds, or in a run at its own speeds."""
 
-    model_config = ConfigDict(json_schema_extra=stated({"oneOf": [_OF_RUN, _OVER_SPEEDS]}))
+    model_config = ConfigDict(json_schema_extra=all_of({"oneOf": [_OF_RUN, _OVER_SPEEDS]}))
 
     speed_rpm: Row[TurningSpeed] = Field(
         default=(),
@@ -81,8 +81,8 @@ class OverSpeedsOrRun(OverOrders):
     @model_validator(mode="after")
     def _speeds_or_run(self) -> Self:
         if self.run is not None and self.speed_rpm:
-            shown = list(self.speed_rpm)[:8]
-            refuse("speed_rpm", shown, "left out with a run", "The run has its own speeds.")
+            first = list(self.speed_rpm)[:8]
+            refuse("speed_rpm", first, "left out with a run", "The run has its own speeds.")
         if self.run is None and not self.speed_rpm:
             refuse("speed_rpm", [], "at least one speed, if no run is given", "For example 300, 600 and 900.")
         return self
@@ -91,7 +91,7 @@ class OverSpeedsOrRun(OverOrders):
 class CaseOrScene(BoundaryModel):
     """A case or a scene, one of both."""
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of("case", "scene")))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("case", "scene")))
 
     case: Case | None = Field(default=None, description="The case, as in a case file; alternative to a scene")
     scene: SceneInput | None = Field(

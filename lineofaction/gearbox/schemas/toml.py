@@ -43,13 +43,13 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
 
 def _fault(field: str, text: str, message: str) -> Fault:
     """Return what is wrong with a TOML text, with the line and what is expected there."""
-    words, at, where = message.partition(" (at line ")
+    reason, at, where = message.partition(" (at line ")
     number = where.partition(",")[0]
     if not at or not number.isdigit():
         return Fault(field, None, "well-formed TOML", f"{message}.")
     line = text.splitlines()[int(number) - 1].strip() if int(number) <= len(text.splitlines()) else ""
     bound = f"well-formed TOML, which line {number} is not"
-    return Fault(field, line or None, bound, f"{words}. {_FORM}")
+    return Fault(field, line or None, bound, f"{reason}. {_FORM}")
 
 
 def toml_text(content: Mapping[str, Any]) -> str:

@@ -55,8 +55,8 @@ class Channel:
             raise BadInput.of(field, self.name, "a channel of finite real numbers", remedy)
         rises = np.diff(self.abscissa) > 0.0
         if not (np.all(np.isfinite(self.abscissa)) and np.all(rises)):
-            place = int(np.argmin(rises)) + 1
-            bound = f"a channel whose time rises; at sample {place} it does not"
+            sample = int(np.argmin(rises)) + 1
+            bound = f"a channel whose time rises; at sample {sample} it does not"
             raise BadInput.of(field, self.name, bound, "Export one recording, in the order of time.")
         return self.abscissa, np.asarray(self.values, dtype=np.float64)
 
@@ -66,9 +66,11 @@ class Channel:
         `unit` takes the place of the file's. Raises `BadInput` as `series` does, or the unit is of another
         quantity or none.
         """
-        found: MeasuredUnit = required_unit(f"unit of {field} {self.name}", unit or self.unit, quantity)
+        measured_unit: MeasuredUnit = required_unit(
+            f"unit of {field} {self.name}", unit or self.unit, quantity
+        )
         time, values = self.series(field)
-        return time, found.factor * values
+        return time, measured_unit.factor * values
 
 
 def uniform_rate(field: str, name: str, time: FloatArray) -> float:

@@ -117,22 +117,22 @@ def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str
         if "channels" not in answer:
             raise BadInput.of(field, path.name, f"{noun} that can be read", "Export it again.")
         with np.load(copy.with_name("channels.npz"), allow_pickle=False) as arrays:
-            return tuple(_channel(facts, arrays, i) for i, facts in enumerate(answer["channels"]))
+            return tuple(_channel(fields, arrays, i) for i, fields in enumerate(answer["channels"]))
 
 
-def _channel(facts: dict[str, Any], arrays: Any, index: int) -> Channel:
+def _channel(fields: dict[str, Any], arrays: Any, index: int) -> Channel:
     """Return a channel of what the child wrote, which foreign bytes may have misled."""
     values = arrays[f"values_{index}"]
-    if (even := facts["even"]) is None:
+    if (even := fields["even"]) is None:
         abscissa = np.asarray(arrays[f"abscissa_{index}"], dtype=np.float64)
     else:
         abscissa = even[0] + even[1] * np.arange(values.size)
-    name, unit, label = (_printable(str(facts[key])) for key in ("name", "unit", "label"))
+    name, unit, label = (_printable(str(fields[key])) for key in ("name", "unit", "label"))
     if values.ndim != 1 or values.shape != abscissa.shape or values.dtype.kind not in "iufc":
         raise BadInput.of("measured", name, "a channel with a number for each time", "Export it again.")
-    over = facts["over"] if facts["over"] in _OVER else ""
-    direction = facts["direction"] if facts["direction"] in _DIRECTIONS else ""
-    nodes = tuple(map(int, facts["nodes"]))
+    over = fields["over"] if fields["over"] in _OVER else ""
+    direction = fields["direction"] if fields["direction"] in _DIRECTIONS else ""
+    nodes = tuple(map(int, fields["nodes"]))
     return Channel(name, unit, abscissa, values, over, label, direction, nodes)
 
 

@@ -53,8 +53,8 @@ def turns_of_pulses(field: str, channel: Channel, per_turn: float, time: FloatAr
     between = np.diff(pulses)
     jumps = np.maximum(between[1:] / between[:-1], between[:-1] / between[1:])
     if jumps.max() > _UNEVEN:
-        place = float(pulses[int(np.argmax(jumps)) + 1])
-        bound = f"a channel of even pulses; near {place:.6g} s one is lost, or one too many"
+        pulse = float(pulses[int(np.argmax(jumps)) + 1])
+        bound = f"a channel of even pulses; near {pulse:.6g} s one is lost, or one too many"
         raise BadInput.of(field, channel.name, bound, "Cut the recording there.")
     turned = PchipInterpolator(pulses, np.arange(pulses.size) / per_turn, extrapolate=False)
     return np.asarray(turned(time), dtype=np.float64)

@@ -39,7 +39,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
         written = [_written(index, channel) for index, channel in enumerate(channels)]
         arrays = {name: values for _, parts in written for name, values in parts.items()}
         np.savez("channels.npz", allow_pickle=False, **arrays)
-        return {"channels": [facts for facts, _ in written]}
+        return {"channels": [fields for fields, _ in written]}
     except UnusableFile as error:
         return {"fault": [error.value, error.bound, error.remedy]}
     except MemoryError:
@@ -57,8 +57,10 @@ def _written(index: int, channel: RawChannel) -> tuple[dict[str, Any], dict[str,
     arrays = {f"values_{index}": channel.values}
     if even is None:
         arrays[f"abscissa_{index}"] = channel.abscissa
-    facts = {name: getattr(channel, name) for name in ("name", "unit", "over", "label", "direction", "nodes")}
-    return facts | {"even": even}, arrays
+    fields = {
+        name: getattr(channel, name) for name in ("name", "unit", "over", "label", "direction", "nodes")
+    }
+    return fields | {"even": even}, arrays
 
 
 def _main() -> None:

@@ -64,7 +64,7 @@ class Hull:
         """Return the surface that a result has among its facts."""
         kinds = (("points", "<f4", float), ("facets", "<u2", np.int64))
         points, facets = (
-            np.frombuffer(base64.b64decode(written[name]), kind).reshape(-1, 3).astype(own)
-            for name, kind, own in kinds
+            np.frombuffer(base64.b64decode(written[name]), kind).reshape(-1, 3).astype(dtype)
+            for name, kind, dtype in kinds
         )
         return cls(written["name"], points, facets)

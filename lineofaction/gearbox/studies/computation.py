@@ -169,7 +169,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         """Say what of a result was not found; empty if nothing is missing."""
         return ""
 
-    def kept(self, _result: Result, _means: Means) -> Mapping[str, Path]:
+    def stored_runs(self, _result: Result, _means: Means) -> Mapping[str, Path]:
         """Return the runs in `Means.folder`, by the hash that they are stored under."""
         return {}
 

@@ -24,19 +24,23 @@ class Work(NamedTuple):
     """Pieces of the same work: their name in the plural, CPU seconds of each, and how many."""
 
     name: str
-    each: float
+    piece_seconds: float
     pieces: float = 1.0
 
     @property
     def seconds(self) -> float:
         """CPU seconds of all pieces."""
-        return self.each * self.pieces
+        return self.piece_seconds * self.pieces
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Say the work: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
-        each = engineering(self.each, 2)
-        return f"{self.name} {each} s" if self.pieces == 1.0 else f"{self.pieces:.0f} {self.name} at {each} s"
+        piece_seconds = engineering(self.piece_seconds, 2)
+        return (
+            f"{self.name} {piece_seconds} s"
+            if self.pieces == 1.0
+            else f"{self.pieces:.0f} {self.name} at {piece_seconds} s"
+        )
 
 
 @dataclass(frozen=True)
@@ -56,14 +60,14 @@ class StudyCost:
         return sum(part.seconds for part in self.parts)
 
     @property
-    def words(self) -> str:
+    def text(self) -> str:
         """Say the cost: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
-        whole = self.seconds
+        total = self.seconds
         memory = f", {engineering(self.bytes / 2**30, 2)} GiB" if self.bytes else ""
-        parts = ", ".join(part.words for part in self._by_name if part.seconds > _SMALL * whole)
-        hours = f" ({engineering(whole / 3600.0, 2)} h)" if whole > LONG else ""
+        parts = ", ".join(part.text for part in self._by_name if part.seconds > _SMALL * total)
+        hours = f" ({engineering(total / 3600.0, 2)} h)" if total > LONG else ""
         return (
-            f"about {engineering(whole, 2)} CPU s{hours}{memory}: {parts}{self.remedy and f'. {self.remedy}'}"
+            f"about {engineering(total, 2)} CPU s{hours}{memory}: {parts}{self.remedy and f'. {self.remedy}'}"
         )
 
     @property

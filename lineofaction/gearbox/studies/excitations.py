@@ -23,7 +23,7 @@ from lineofaction.gearbox.studies.bodies import UNIT
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
-BESIDE_MESH = 6
+OFF_MESH = 6
 """Orders beside the mesh orders that are listed of a mesh."""
 
 
@@ -34,7 +34,7 @@ def excitations_of(response: HarmonicResponse, system: System, subject: TabledSc
     Copies of a planet excite as the one that the scene names. An error that the table does not state is None.
     """
     rate = mesh_frequencies(system, np.ones(1))[:, 0]
-    step = rate / next((own for own in rate if own), 1.0)
+    step = rate / next((frequency for frequency in rate if frequency), 1.0)
     rows: list[Json] = []
     for mesh, table in subject.databases.items():
         index = response.mesh.index(mesh)
@@ -82,36 +82,36 @@ def _of_mesh(
         "load_moment": (response.load_moment, force * errors.load_arm),
         "friction_force": (response.friction_force, slides * errors.friction),
     }
-    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.beside_mesh}
+    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.off_mesh}
 
     def row(at: int, harmonic: int | None) -> Json:
         excites: Json = {"mesh": response.mesh[mesh], "torque": torque, "harmonic": harmonic}
         excites["order"] = float(response.order[at])
         for name, (values, error) in by_name.items():
-            own = unknown[name] if harmonic is None else float(error[harmonic - 1])
+            known_error = unknown[name] if harmonic is None else float(error[harmonic - 1])
             excites[name] = float(abs(values[mesh, at]))
-            excites[f"error_of_{name}"] = own if np.isfinite(own) else None
+            excites[f"error_of_{name}"] = known_error if np.isfinite(known_error) else None
         return excites
 
     multiple = response.order / step
-    whole = np.isclose(multiple, np.rint(multiple), rtol=1e-6)
+    is_harmonic = np.isclose(multiple, np.rint(multiple), rtol=1e-6)
     for harmonic in range(1, errors.load_arm.size + 1):
-        for at in np.flatnonzero(whole & (np.rint(multiple) == harmonic))[:1].tolist():
+        for at in np.flatnonzero(is_harmonic & (np.rint(multiple) == harmonic))[:1].tolist():
             yield row(at, harmonic)
-    size = np.where(whole, 0.0, np.abs(response.static_transmission_error[mesh]))
-    for at in np.argsort(-size, kind="stable")[:BESIDE_MESH].tolist():
-        if size[at] > np.nan_to_num(errors.beside_mesh):
+    size = np.where(is_harmonic, 0.0, np.abs(response.static_transmission_error[mesh]))
+    for at in np.argsort(-size, kind="stable")[:OFF_MESH].tolist():
+        if size[at] > np.nan_to_num(errors.off_mesh):
             yield row(at, None)
 
 
-def with_facts_of_scene(result: Result, subject: TabledScene) -> Result:
-    """Return a result with the `facts_of_scene` among its facts."""
+def with_scene_metadata(result: Result, subject: TabledScene) -> Result:
+    """Return a result with the `scene_metadata` among its facts."""
     changed: Any = result
-    known: Result = replace(changed, facts={**changed.facts, **facts_of_scene(subject)})
+    known: Result = replace(changed, facts={**changed.facts, **scene_metadata(subject)})
     return known
 
 
-def facts_of_scene(subject: TabledScene) -> Json:
+def scene_metadata(subject: TabledScene) -> Json:
     """Return what a result says of its scene.
 
     Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
@@ -129,7 +129,7 @@ def facts_of_scene(subject: TabledScene) -> Json:
     return known | {"complaint": complaint_at_loads(assemble(subject.scene), subject).marks}
 
 
-def order_names(order: FloatArray, facts: Json) -> list[str]:
+def order_names(order: FloatArray, metadata: Json) -> list[str]:
     """Return what each order of a result is (`bounds.order_name`); none of files without `turning`."""
-    turning = facts.get("turning")
-    return [] if turning is None else [order_name(each, **turning) for each in order.tolist()]
+    turning = metadata.get("turning")
+    return [] if turning is None else [order_name(value, **turning) for value in order.tolist()]

@@ -37,32 +37,32 @@ def rows(result: Any, names: tuple[str, ...]) -> dict[str, Row]:
     return {name: Row(result, index) for index, name in enumerate(names)}
 
 
-def figures_of(model: type[Part], *sources: Any, **own: Any) -> Json:
+def figures_of(model: type[Part], *sources: Any, **members: Any) -> Json:
     """Return a result as a model of figures has it.
 
     A figure ``speed_rpm`` is the member ``speed_rpm`` of the first source that has one, or its member
     ``speed``, which is in SI; or what its `Source` says. A name without unit that several figures share is
     none of theirs. A part is made of its own source, or of several and a mapping of its own members as a
     tuple. A number that is not finite is None where None may stand; a figure that may be missing is left out
-    where it is None. Raises `AttributeError`: no source has a figure; `TypeError`: a member of `own` is none
+    where it is None. Raises `AttributeError`: no source has a figure; `TypeError`: one of `members` is none
     of the model's figures, or might be several.
 
     Parameters
     ----------
     *sources : object or mapping
         Results, and documents of them.
-    **own
+    **members
         Members before those of the sources.
     """
-    if unknown := ", ".join(sorted(own.keys() - _names(model))):
+    if unknown := ", ".join(sorted(members.keys() - _names(model))):
         raise TypeError(f"not the name of one figure of {model.__name__}: {unknown}")
     document = {}
     for figure in _declared(model):
-        value, convert = figure.found(own, sources)
+        value, convert = figure.lookup(members, sources)
         source, kind = figure.source, figure.field.annotation
-        shown = source.turned(value) if source and source.document else _figure(kind, value, convert)
-        if figure.field.is_required() or shown is not None:
-            document[figure.key] = shown
+        entry = source.turned(value) if source and source.document else _figure(kind, value, convert)
+        if figure.field.is_required() or entry is not None:
+            document[figure.key] = entry
     return document
 
 
@@ -76,20 +76,20 @@ class _Declared:
     field: FieldInfo
     source: Source | None
 
-    def found(self, own: Json, sources: tuple[Any, ...]) -> tuple[Any, Callable[[Any], Any]]:
+    def lookup(self, members: Json, sources: tuple[Any, ...]) -> tuple[Any, Callable[[Any], Any]]:
         """Return the value of the figure, and what turns it into its unit."""
         convert = _unit(self.name)[1]
-        if self.name in own:
-            return own[self.name], _same
-        if self.bare in own:
-            return own[self.bare], convert
-        for each in sources:
-            if self.source is None and (value := _member(each, self.name)) is not _MISSING:
+        if self.name in members:
+            return members[self.name], _same
+        if self.bare in members:
+            return members[self.bare], convert
+        for candidate in sources:
+            if self.source is None and (value := _member(candidate, self.name)) is not _MISSING:
                 return value, _same
-            value = _member(each, self.bare)
+            value = _member(candidate, self.bare)
             if self.source:
                 of = self.source.of
-                value = of(each) if callable(of) else reduce(_member, of.split("."), each)
+                value = of(candidate) if callable(of) else reduce(_member, of.split("."), candidate)
             if value is not _MISSING:
                 return value, convert
         if self.source and self.source.missing is not REQUIRED:
@@ -112,7 +112,7 @@ def _declared(model: type[Part]) -> tuple[_Declared, ...]:
             bare[name] if shared[bare[name]] == 1 else "",
             field.alias or name,
             field,
-            next((each for each in field.metadata if isinstance(each, Source)), None),
+            next((entry for entry in field.metadata if isinstance(entry, Source)), None),
         )
         for name, field in fields.items()
     )
@@ -152,8 +152,10 @@ def _figure(kind: Any, value: Any, convert: Callable[[Any], Any]) -> Any:
         return None
     parts = get_args(kind)
     if isinstance(kind, type) and issubclass(kind, Part):
-        *sources, own = value if isinstance(value, tuple) and not hasattr(value, "_fields") else (value, {})
-        return figures_of(kind, *sources, **own)
+        *sources, members = (
+            value if isinstance(value, tuple) and not hasattr(value, "_fields") else (value, {})
+        )
+        return figures_of(kind, *sources, **members)
     if isinstance(value, np.ndarray) and (not _holds_none(kind) or _is_finite(value)):
         return convert(value).tolist()
     if get_origin(kind) in (list, tuple):

@@ -17,7 +17,7 @@ from dynamics.influence import decide_effects, response_influences, sized_ledger
 from dynamics.influence.neglected_check import response_cost
 from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
-from dynamics.noise import HousingRadiation, kept_radiation
+from dynamics.noise import HousingRadiation, cached_radiation
 from dynamics.orders import BearingOrders, bearing_orders
 from dynamics.results import RunResult
 from dynamics.scene import Scene
@@ -50,7 +50,7 @@ def radiation_of(
     body: ReducedHousing, model: PanelModel, frequency: FloatArray, means: Means
 ) -> HousingRadiation:
     """Return the radiation of a housing by a model at frequencies, Hz, kept by its content."""
-    return kept_radiation(
+    return cached_radiation(
         body,
         model,
         frequency.ravel(),
@@ -102,8 +102,8 @@ def response_of(
     """
     scene = subject.scene if quantity is None else replace(subject.scene, quantity=quantity)
     response, system = sized_response(scene, inputs, means)
-    facts = response.facts | {"excitations": excitations_of(response, system, subject)}
-    return replace(response, facts=facts)
+    metadata = response.facts | {"excitations": excitations_of(response, system, subject)}
+    return replace(response, facts=metadata)
 
 
 def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[ForcedResponse, System]:
@@ -119,10 +119,10 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
         began = cpu_seconds()
         influences = decision.influences or sized(decision.scene)
     seconds = cpu_seconds() - began + decision.taken.cpu_seconds
-    facts = response.facts
-    ledger = sized_ledger(facts["effect_ledger"], decision.automatic, influences)
-    known = {"effect_ledger": ledger, "seconds": {**facts["seconds"], "influence_estimates": seconds}}
-    return replace(response, facts=facts | known), system
+    metadata = response.facts
+    ledger = sized_ledger(metadata["effect_ledger"], decision.automatic, influences)
+    known = {"effect_ledger": ledger, "seconds": {**metadata["seconds"], "influence_estimates": seconds}}
+    return replace(response, facts=metadata | known), system
 
 
 def predicted_response(
@@ -149,8 +149,8 @@ def predicted_response(
         return StudyCost(parts)
     began = cpu_seconds()
     assemble(before)
-    each = cpu_seconds() - began + speed.size * cost.speed
-    return StudyCost((*parts, Work("responses of the band", each, further(before))))
+    per_response = cpu_seconds() - began + speed.size * cost.speed
+    return StudyCost((*parts, Work("responses of the band", per_response, further(before))))
 
 
 def predicted_forces(
@@ -173,9 +173,9 @@ def require_surface(scene: SceneInput) -> None:
 
 def other_housings(housings: Iterable[Housing], run: RunResult) -> tuple[str, ...]:
     """Return the names of housings with mass in which a run did not move."""
-    moved = {part["name"]: part for part in run.case.get("housings", ())}
+    run_housings = {part["name"]: part for part in run.case.get("housings", ())}
     massive = (housing for housing in housings if housing.mass is not None)
-    return tuple(housing.name for housing in massive if not _same(housing, moved.get(housing.name)))
+    return tuple(housing.name for housing in massive if not _same(housing, run_housings.get(housing.name)))
 
 
 def _same(housing: Housing, part: Json | None) -> bool:

@@ -42,8 +42,8 @@ class UnitMotion:
         """Return stations evenly spaced along each shaft, m, and the motion there, (count, 6)."""
         sampled = {}
         for index, name in enumerate(self.shafts):
-            own = self.shaft == index
-            known, motion = self.position[own], self.motion[own]
+            of_shaft = self.shaft == index
+            known, motion = self.position[of_shaft], self.motion[of_shaft]
             along = np.linspace(known[0], known[-1], count)
             columns = [np.interp(along, known, column) for column in motion.T]
             sampled[name] = along, np.stack(columns, axis=-1)

@@ -33,11 +33,11 @@ def runs_cost(
     if cost is None or before is None:
         return None
     try:
-        times, beside = runs(before)
+        times, extra_seconds = runs(before)
     except (InputError, SolveError):
         return None
-    each = cost.seconds * float(np.mean(times)) + beside if times else 0.0
-    return StudyCost((Work("runs", each, len(times)),))
+    per_run = cost.seconds * float(np.mean(times)) + extra_seconds if times else 0.0
+    return StudyCost((Work("runs", per_run, len(times)),))
 
 
 def run_cost(scene: SceneInput, runs: int = 1, receipt: Receipt | None = None) -> StudyCost | None:

@@ -66,8 +66,8 @@ def scene_in_motion(written: SceneText) -> Scene | None:
     pairs = _pairs(scene)
     if pairs is None:
         return None
-    facts = {name: PairFacts.of(pair) for name, pair in pairs.items()}
-    return check_scene(scene, facts, {name: _usual_table(pair) for name, pair in pairs.items()})
+    geometry = {name: PairFacts.of(pair) for name, pair in pairs.items()}
+    return check_scene(scene, geometry, {name: _usual_table(pair) for name, pair in pairs.items()})
 
 
 def _usual_table(pair: ParallelAxes) -> PlainTable:

@@ -54,8 +54,8 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
         if (surface := housing.surface) is not None:
             used, corners = np.unique(surface.triangles[:, :3], return_inverse=True)
             fine = DrawnSurface(surface.points[used], corners.reshape(-1, 3))
-            drawn, kept = fine.reduced(MAX_FACETS)
-            yield Hull(name, drawn.points, drawn.facets), used[kept]
+            drawn, node_index = fine.reduced(MAX_FACETS)
+            yield Hull(name, drawn.points, drawn.facets), used[node_index]
 
 
 def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.float32]:
@@ -67,15 +67,15 @@ def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.f
 
     number = {name: column for column, name in enumerate(freedom)}
     parts = {part.name: part for part in subject.scene.housings}
-    moved = [np.zeros((0, 3, len(freedom)), dtype=np.float32)]
+    motions = [np.zeros((0, 3, len(freedom)), dtype=np.float32)]
     for hull, nodes in _hulls(subject):
         body, motion = subject.housings[hull.name], np.zeros((len(nodes), 3, len(freedom)), dtype=np.float32)
         if f"{hull.name}.mode_1" in number and body.surface is not None:
             modal = modal_housing(parts[hull.name])
             columns = [number[f"{hull.name}.{kind}"] for kind in modal.kinds]
             motion[..., columns] = body.surface.motion[nodes] @ (scene_axes(body) @ modal.rows)
-        moved.append(motion)
-    every = np.concatenate(moved)
+        motions.append(motion)
+    every = np.concatenate(motions)
     return every if np.any(every) else np.empty((0, 3, 0), dtype=np.float32)
 
 
@@ -158,8 +158,8 @@ def _radii_of_cases(subject: TabledScene) -> dict[str, tuple[float, float]]:
         except BadInput:  # a table of another version, or one that no case here made
             continue
         names = (mesh.driven, mesh.driver) if written[name].wheel_drives else (mesh.driver, mesh.driven)
-        for gear, own in zip(names, (pair.pinion, pair.wheel), strict=True):
-            radii[gear] = (own.tip_radius, own.root_radius)
+        for gear, toothing in zip(names, (pair.pinion, pair.wheel), strict=True):
+            radii[gear] = (toothing.tip_radius, toothing.root_radius)
     return radii
 
 

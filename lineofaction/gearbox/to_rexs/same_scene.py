@@ -37,8 +37,10 @@ def check_same_scene(unit: OpenedUnit, result: GearboxDeflection) -> None:
     _refuse(_difference(_bodies(scene_of(unit.scene)), _bodies(result.scene), "scene"))
     pairs = {case.name: case.case.pair.model_dump(mode="json") for case in unit.cases}
     for name, part in unit.parts.meshes.items():
-        own = pairs[part.case]
-        _refuse(_difference(own, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair'))
+        unit_pair = pairs[part.case]
+        _refuse(
+            _difference(unit_pair, result.cases.get(name, {}).get("pair"), f'case of mesh "{name}", pair')
+        )
     _check_load_cases(unit, result.deflection.cases)
 
 
@@ -71,11 +73,13 @@ def _bodies(scene: Json) -> Json:
 
 def _refuse(difference: tuple[str, Any, Any] | None) -> None:
     if difference is not None:
-        path, own, other = difference
-        raise BadInput.of(f"rexs, {path}", _shown(own), f"{_shown(other)}, as in the deflection", _REMEDY)
+        path, value, other = difference
+        raise BadInput.of(
+            f"rexs, {path}", _rounded(value), f"{_rounded(other)}, as in the deflection", _REMEDY
+        )
 
 
-def _shown(value: Any) -> Any:
+def _rounded(value: Any) -> Any:
     """Return a value without the rounding of its computation."""
     return float(f"{value:.10g}") if isinstance(value, float) else value
 
@@ -91,11 +95,11 @@ def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None
             raise BadInput.of(
                 f'load case "{case.name}"', case.status, "converged", "Its figures say nothing."
             )
-        own = known[case.name]
-        _check_load(own, case)
+        load_case = known[case.name]
+        _check_load(load_case, case)
         forces = {part.name: _vectors(part.force.tolist(), part.moment.tolist()) for part in case.forces}
         path = f'load case "{case.name}", forces'
-        _refuse(_difference(_forces_under(unit, own), forces, path))
+        _refuse(_difference(_forces_under(unit, load_case), forces, path))
 
 
 def _forces_under(unit: OpenedUnit, case: LoadCase) -> Json:
@@ -108,13 +112,13 @@ def _vectors(force: Iterable[float], moment: Iterable[float]) -> Json:
     return {"force_n": list(force), "moment_n_m": list(moment)}
 
 
-def _check_load(own: LoadCase, case: CaseDeflection) -> None:
-    if own.direction != case.direction:
-        _refuse((f'load case "{case.name}", direction', own.direction, case.direction))
+def _check_load(load_case: LoadCase, case: CaseDeflection) -> None:
+    if load_case.direction != case.direction:
+        _refuse((f'load case "{case.name}", direction', load_case.direction, case.direction))
     numbers = {
-        "torque_n_m": (own.torque_n_m, case.torque),
-        "speed_rpm": (own.speed_rpm, case.speed / RPM),
-        "share": (own.share, case.share),
+        "torque_n_m": (load_case.torque_n_m, case.torque),
+        "speed_rpm": (load_case.speed_rpm, case.speed / RPM),
+        "share": (load_case.share, case.share),
     }
     for item, (first, second) in numbers.items():
         if not math.isclose(first, second, rel_tol=LOAD):

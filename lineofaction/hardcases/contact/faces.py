@@ -124,7 +124,7 @@ def _duplicates() -> Sequence[Measured]:
     case = posed(nominal_pair())
     positions = np.array([0.3, 0.3, 0.0, 0.97, 0.3, 0.0, 0.5, 0.5])
     problem, together = case.solve(positions)
-    apart = [case.ste(np.array([x]))[0, 0] for x in positions]
+    single = [case.ste(np.array([x]))[0, 0] for x in positions]
     groups = [together.deflection[positions == x, 0] for x in np.unique(positions)]
     return (
         *soundness(problem, together),
@@ -133,7 +133,7 @@ def _duplicates() -> Sequence[Measured]:
         ),
         Measured(
             "asked together or alone, difference in m",
-            float(np.abs(together.deflection[:, 0] - apart).max()),
+            float(np.abs(together.deflection[:, 0] - single).max()),
             maximum=1e-20,
         ),
     )

@@ -80,14 +80,14 @@ def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     carried = np.tile(alone.force[:, 0] > 0.0, (20, 1))
     single = carried.sum(axis=1) == 1
     ahead = single & np.any(carried & (meeting == 5), axis=1)
-    apart = single & ~np.any(np.isfinite(problem.candidates.gap) & (np.abs(meeting % 20 - 5) <= 1), axis=1)
+    separate = single & ~np.any(np.isfinite(problem.candidates.gap) & (np.abs(meeting % 20 - 5) <= 1), axis=1)
     change = solution.deflection[:, 0] - np.tile(alone.deflection[:, 0], 20)
     share = solution.force[:, 0].max(axis=1) / solution.force[:, 0].sum(axis=1)
     return (
         *soundness(problem, solution),
         Measured("share of the tooth that is ahead, least", float(share[ahead].min()), minimum=1.0),
         Measured("its STE off the shifted curve, m", largest(change[ahead] + shift), maximum=1e-15),
-        Measured("STE far from it, change in m", largest(change[apart]), maximum=1e-15),
+        Measured("STE far from it, change in m", largest(change[separate]), maximum=1e-15),
         Measured("all teeth ahead: STE off the shifted curve, m", largest(shifted), maximum=1e-15),
         Measured("positions with the one tooth alone", float(ahead.sum()), minimum=5.0),
     )

@@ -34,7 +34,7 @@ class GapAbout:
     curvature: Array
     low: Array
     high: Array
-    place: Array
+    coordinate: Array
     jump: Array
     bend: Array
 
@@ -74,8 +74,8 @@ def _pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, 
     """
     extra = (1,) * (center.ndim - 1)
     angle = [np.full(center.shape, -0.5 * np.pi), np.full(center.shape, 0.5 * np.pi)]
-    for k in range(about.place.shape[1]):
-        position = about.place[:, k].reshape(-1, *extra)
+    for k in range(about.coordinate.shape[1]):
+        position = about.coordinate[:, k].reshape(-1, *extra)
         angle.append(np.arcsin(np.clip((position - center) / half, -1.0, 1.0)))
     bounds = np.sort(np.stack(angle), axis=0)
     slope, first, mean = np.zeros((3, *center.shape))
@@ -100,8 +100,8 @@ def _gap_at(about: GapAbout, x: Array) -> Array:
     """Gap in m at x (..., n, ...), the contacts along axis 1."""
     lift = (1, -1) + (1,) * (x.ndim - 2)
     value = about.slope.reshape(lift) * x + 0.5 * about.curvature.reshape(lift) * x**2
-    for k in range(about.place.shape[1]):
-        position = about.place[:, k].reshape(lift)
+    for k in range(about.coordinate.shape[1]):
+        position = about.coordinate[:, k].reshape(lift)
         depth = np.maximum(np.where(position >= 0.0, x - position, position - x), 0.0)
         value += about.jump[:, k].reshape(lift) * depth + 0.5 * about.bend[:, k].reshape(lift) * depth**2
     return value
@@ -110,18 +110,18 @@ def _gap_at(about: GapAbout, x: Array) -> Array:
 def _root(function: Callable[[Array], Array], low: Array, high: Array, tolerance: Array) -> Array:
     """Zeros between bounds of rising functions, by false position (Illinois); a bound where there is none."""
     at_low, at_high = function(low), function(high)
-    held = (at_low >= 0.0) | (at_high <= 0.0)
+    bracketed = (at_low >= 0.0) | (at_high <= 0.0)
     middle = np.where(at_low >= 0.0, low, high)
     side = np.zeros(low.shape)
     for _ in range(100):
         change = np.where(at_high > at_low, at_high - at_low, 1.0)
-        following = np.where(held, middle, np.clip(high - at_high * (high - low) / change, low, high))
+        following = np.where(bracketed, middle, np.clip(high - at_high * (high - low) / change, low, high))
         value = function(following)
         rising = value > 0.0
         at_low = np.where(rising, np.where(side > 0.0, 0.5 * at_low, at_low), value)
         at_high = np.where(rising, value, np.where(side < 0.0, 0.5 * at_high, at_high))
         low, high = np.where(rising, low, following), np.where(rising, following, high)
-        settled = held | (np.abs(following - middle) <= tolerance) | (value == 0.0)
+        settled = bracketed | (np.abs(following - middle) <= tolerance) | (value == 0.0)
         side, middle = np.where(rising, 1.0, -1.0), following
         if np.all(settled):
             break

@@ -29,20 +29,20 @@ def soundness(
     total = solution.status.size
     chosen = np.unique(np.linspace(0, total - 1, min(compared, total)).astype(int))
     points = [tuple(map(int, np.unravel_index(i, solution.status.shape))) for i in chosen]
-    apart = [_disagreement(problem, solution, position, load) for position, load in points]
+    differences = [_disagreement(problem, solution, position, load) for position, load in points]
     return (
         Measured("failed points", float(np.count_nonzero(solution.status)), maximum=0.0),
         Measured("largest residual", float(solution.residuals.max()), maximum=LARGEST_RESIDUAL),
         Measured("most iterations", float(solution.iterations.max()), maximum=MAX_ITERATIONS),
-        Measured("two solvers apart", max(apart), maximum=LARGEST_DISAGREEMENT),
+        Measured("two solvers apart", max(differences), maximum=LARGEST_DISAGREEMENT),
     )
 
 
 def _disagreement(problem: ContactProblem, solution: ContactSolution, position: int, load: int) -> float:
     """Return the difference of both solvers' deflection over the elastic deflection."""
     answer = solve(_plain(problem, position, solution.force[position, load]), float(solution.load[load]))
-    here = float(solution.deflection[position, load])
-    return abs(answer.deflection - here) / (here - float(solution.no_load[position]))
+    deflection = float(solution.deflection[position, load])
+    return abs(answer.deflection - deflection) / (deflection - float(solution.no_load[position]))
 
 
 def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem:
@@ -51,12 +51,12 @@ def _plain(problem: ContactProblem, position: int, force: FloatArray) -> Problem
     Bodies that tilt yield as they do under the `force` that is to be confirmed.
     """
     c = problem.candidates
-    point, here = problem_at(point_problems(problem), position)
-    state = pressed_state(point, force[here])
+    point, candidates = problem_at(point_problems(problem), position)
+    state = pressed_state(point, force[candidates])
     move(point, state)
     fill_yielding(point, state)
     blend = np.array([motions(point, one) for one in np.eye(len(point.bodies))]).T
-    real = np.isin(np.arange(c.pair.size), here)
+    real = np.isin(np.arange(c.pair.size), candidates)
     motion = c.motion_arm[position, real]
     row = position % len(problem.compliance)
     return Problem(

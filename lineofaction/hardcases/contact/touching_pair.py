@@ -43,7 +43,7 @@ def _relief_that_touches() -> Sequence[Measured]:
     rise, widening = np.diff(ste), np.diff(reliefs)
     rounding = 1e-14 * ste.max()
     raised = _raised(*solved[_NUDGES.size // 2])
-    checks = [soundness(*each) for each in (*solved, raised)]
+    checks = [soundness(*solution) for solution in (*solved, raised)]
     entering = np.sort(raised[1].force[0], axis=1)[:, -2] / raised[1].load
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),

@@ -109,7 +109,10 @@ def _impacts() -> Sequence[Measured]:
     runs = {
         (method, tolerance): _thrown(method, tolerance) for method in METHODS for tolerance in (coarse, fine)
     }
-    off = {key: rms(_place(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL)) for key, run in runs.items()}
+    off = {
+        key: rms(_transmission_error(run) - bounce(run.time, _BACKLASH, _SPEED, NATURAL))
+        for key, run in runs.items()
+    }
     energy = {
         key: (abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum())) / (0.5 * MASS * _SPEED**2))
         for key, run in runs.items()
@@ -117,11 +120,13 @@ def _impacts() -> Sequence[Measured]:
     depth = _SPEED / NATURAL
     # an error of one tolerance at an impact is one of speed, which every flight after it makes more of
     grown = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
-    apart = rms(_place(runs[METHODS[0], fine]) - _place(runs[METHODS[1], fine]))
+    difference = rms(
+        _transmission_error(runs[METHODS[0], fine]) - _transmission_error(runs[METHODS[1], fine])
+    )
     return (
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            apart / (2.0 * 1e-2 * grown), maximum=1.0,
+            difference / (2.0 * 1e-2 * grown), maximum=1.0,
         ),
         Measured("off the closed form, likewise", max(off[m, coarse] for m in METHODS) / grown, maximum=1.0),
         Measured(
@@ -150,6 +155,6 @@ def _thrown(method: str, tolerance: float) -> Trajectory:
     )
 
 
-def _place(run: Trajectory) -> FloatArray:
+def _transmission_error(run: Trajectory) -> FloatArray:
     """Return the transmission error: the one freedom is a rotation that lags by it."""
     return np.asarray(run.q[:, 0] * BASE_RADIUS)

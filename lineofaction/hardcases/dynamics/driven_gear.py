@@ -70,12 +70,12 @@ def _ringing(rate: float) -> Callable[[FloatArray], FloatArray]:
     """
     square = NATURAL**2 - rate**2 + 2j * _DAMPING * NATURAL * rate
     steady = _WAVE * NATURAL**2 / square
-    decay, own = _DAMPING * NATURAL, NATURAL * math.sqrt(1.0 - _DAMPING**2)
+    decay, damped = _DAMPING * NATURAL, NATURAL * math.sqrt(1.0 - _DAMPING**2)
     cosine = _WAVE - steady.real
-    sine = (decay * cosine + rate * steady.imag) / own
+    sine = (decay * cosine + rate * steady.imag) / damped
 
     def exact(time: FloatArray) -> FloatArray:
-        rest = np.exp(-decay * time) * (cosine * np.cos(own * time) + sine * np.sin(own * time))
+        rest = np.exp(-decay * time) * (cosine * np.cos(damped * time) + sine * np.sin(damped * time))
         return np.asarray(DEFLECTION + (steady * np.exp(1j * rate * time)).real + rest)
 
     return exact
@@ -143,11 +143,11 @@ def _tolerances() -> Sequence[Measured]:
 
 def _many_steps(method: str) -> Sequence[Measured]:
     """Ring on without damping at a fixed place for ten million steps, and for ten times fewer."""
-    tenth, whole = (_drift(method, steps) for steps in (_MANY // 10, _MANY))
-    in_proportion = whole / (10.0 * tenth + _ROUNDING)
+    tenth, drift = (_drift(method, steps) for steps in (_MANY // 10, _MANY))
+    in_proportion = drift / (10.0 * tenth + _ROUNDING)
     return (
         Measured("steps", float(_MANY)),
-        Measured("energy drift", whole, maximum=1e-6),
+        Measured("energy drift", drift, maximum=1e-6),
         Measured("drift over ten times that of a tenth of the steps", in_proportion, maximum=1.1),
     )
 

@@ -27,7 +27,7 @@ _BACKLASH, _WAVE = 20e-6, 30e-6
     "In chaotic rattle one bit lost at an interruption is another motion a few impacts later.",
     "Interrupted every seventh block and taken up again, all series are those of the whole run, bit by bit.",
 )
-def _taken_up_again() -> Sequence[Measured]:
+def _resumed_run() -> Sequence[Measured]:
     """Cancel a chaotic rattle every few blocks and resume it, until it has ended."""
     scene = torsional(
         spring(_WAVE), speed=1000.0 * RPM, torque=0.0, back=coast(_BACKLASH, _WAVE),
@@ -36,12 +36,12 @@ def _taken_up_again() -> Sequence[Measured]:
     )  # fmt: skip
     figures: list[Measured] = []
     for method in METHODS:
-        own = by_method(scene, method)
+        scene_of_method = by_method(scene, method)
         with tempfile.TemporaryDirectory() as folder:
-            whole, parts = Path(folder, "whole.nc"), Path(folder, "parts.nc")
-            simulate_to_file(own, whole)
-            legs = _in_legs(own, parts)
-            unbroken, resumed = (RunResult.from_netcdf(path) for path in (whole, parts))
+            unbroken_file, parts = Path(folder, "whole.nc"), Path(folder, "parts.nc")
+            simulate_to_file(scene_of_method, unbroken_file)
+            legs = _in_legs(scene_of_method, parts)
+            unbroken, resumed = (RunResult.from_netcdf(path) for path in (unbroken_file, parts))
         extra = abs(unbroken.statistics.accepted - resumed.statistics.accepted)
         changed = [
             name

@@ -54,19 +54,21 @@ def common_figures(runs: _Runs, scene: Scene) -> tuple[Measured, ...]:
     its motion makes more of an error than one tolerance, to these.
     """
     first, second = (run.dynamic_transmission_error for run in runs.both)
-    apart, tolerance = rms(first - second), scene.integration.tolerance
+    difference, tolerance = rms(first - second), scene.integration.tolerance
     audits = [run.energy for run in runs.both if run.energy is not None]
     energy = Measured(
         "energy missing, over what was turned over", max(audit.relative for audit in audits), LARGEST_MISSING
     )
     if not scene.integration.estimate_error:
         return (
-            Measured("two integrators apart, rms over both tolerances", apart / (2.0 * tolerance), 1.0),
+            Measured("two integrators apart, rms over both tolerances", difference / (2.0 * tolerance), 1.0),
             energy,
         )
     errors = [_measured_error(run) for run in runs.both]
     return (
-        Measured("two integrators apart, rms over their measured errors", apart / sum(errors), LARGEST_RATIO),
+        Measured(
+            "two integrators apart, rms over their measured errors", difference / sum(errors), LARGEST_RATIO
+        ),
         Measured("larger measured error over the tolerance", max(errors) / tolerance, LARGEST_GROWTH),
         energy,
     )

@@ -64,7 +64,7 @@ def _both_sweeps() -> Sequence[Measured]:
         for side, values in enumerate(sweeps)
         for w in _CONVERGED
     )
-    apart = max(
+    difference = max(
         abs(first[w] / second[w] - 1.0)
         for first, second in zip(by_method["implicit"], by_method["explicit"], strict=True)
         for w in _CONVERGED
@@ -72,7 +72,7 @@ def _both_sweeps() -> Sequence[Measured]:
     up, down = _fold(_JUMP_UP, 0.65, 0.9), _fold(_JUMP_DOWN, 0.9, 0.65)
     return (
         Measured("rms off the converged numbers, worst of 32", off, maximum=5e-4),
-        Measured("two integrators apart, rms relative", apart, maximum=1e-5),
+        Measured("two integrators apart, rms relative", difference, maximum=1e-5),
         Measured("jump up, off 0.8285", abs(up - _JUMP_UP), maximum=3e-4),
         Measured("jump down, off 0.7080", abs(down - _JUMP_DOWN), maximum=3e-4),
     )

@@ -32,10 +32,10 @@ def _out_of_memory() -> Sequence[Measured]:
     """Run the large job with little memory."""
     outcome = aftermath(LARGE, settle=lambda _seconds: {"memory_limit_mb": MEMORY_MB})
     job = outcome.job
-    stated = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
+    is_explained = f"{MEMORY_MB} MB (LOA_MEMORY_LIMIT_MB)" in job.message and "coarser level" in job.message
     return (
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the limit and what to try", float(stated), minimum=1.0),
+        Measured("names the limit and what to try", float(is_explained), minimum=1.0),
         *outcome.figures,
     )
 
@@ -55,11 +55,13 @@ def _past_the_deadline() -> Sequence[Measured]:
 
     outcome = aftermath(LONG, settle=settle)
     job = outcome.job
-    stated = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
+    is_explained = f"The deadline of {allowed[0]:g} s (LOA_DEADLINE_S) passed" in job.message
     return (
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
         Measured(
-            "names the deadline and what to try", float(stated and "coarser" in job.message), minimum=1.0
+            "names the deadline and what to try",
+            float(is_explained and "coarser" in job.message),
+            minimum=1.0,
         ),
         Measured("deadline, s", allowed[0]),
         *outcome.figures,

@@ -79,11 +79,11 @@ def _killing(command: str, times: int) -> tuple[Aftermath, int]:
 )
 def _mesher_killed() -> Sequence[Measured]:
     outcome, killed = _killing(MESHER_COMMAND, 1)
-    stated = "gmsh worker: killed by SIGKILL" in outcome.job.message
+    is_explained = "gmsh worker: killed by SIGKILL" in outcome.job.message
     return (
         Measured("meshers killed", float(killed), 1.0, 1.0),
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("says that the mesh failed, and how", float(stated), minimum=1.0),
+        Measured("says that the mesh failed, and how", float(is_explained), minimum=1.0),
         *outcome.figures,
     )
 
@@ -114,11 +114,11 @@ def _worker_killed_always() -> Sequence[Measured]:
     """Kill every worker in mid-mesh."""
     outcome, killed = _killing(WORKER_COMMAND, 2)
     message = outcome.job.message
-    stated = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
+    is_explained = "ended by SIGKILL" in message and message.endswith("That was attempt 2 of 2.")
     return (
         Measured("workers killed", float(killed), 2.0, 2.0),
         Measured("failed at the last attempt", float(outcome.ended_as("failed", 2)), minimum=1.0),
-        Measured("says what ended it, and how often it was tried", float(stated), minimum=1.0),
+        Measured("says what ended it, and how often it was tried", float(is_explained), minimum=1.0),
         *outcome.figures,
     )
 

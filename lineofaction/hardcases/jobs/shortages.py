@@ -39,21 +39,21 @@ while True:
 )
 def _disk_full() -> Sequence[Measured]:
     """Let no write of the worker succeed, then submit the job again."""
-    held: list[int] = []
+    limited: list[int] = []
 
     def fill(service: JobService, _job: Job) -> None:
-        for pid in service.processes(WORKER_COMMAND) if not held else ():
+        for pid in service.processes(WORKER_COMMAND) if not limited else ():
             with suppress(ProcessLookupError):
                 limit_file_size(pid, 0)
-                held.append(pid)
+                limited.append(pid)
 
     outcome = aftermath(MEDIUM, fill, resubmit=True)
-    stated = "no space left" in outcome.job.message and "Make room" in outcome.job.message
+    is_explained = "no space left" in outcome.job.message and "Make room" in outcome.job.message
     off = np.inf if outcome.errors is None else largest_difference(outcome.errors, python_ste())
     return (
-        Measured("workers without room", float(len(held)), 1.0, 1.0),
+        Measured("workers without room", float(len(limited)), 1.0, 1.0),
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the cause and what to try", float(stated), minimum=1.0),
+        Measured("names the cause and what to try", float(is_explained), minimum=1.0),
         Measured("submitted again with room, off that of Python, m", off, maximum=0.0),
         *outcome.figures,
     )
@@ -83,10 +83,10 @@ def _greedy_mesher() -> Sequence[Measured]:
                 greed.unlink(missing_ok=True)
 
         outcome = aftermath(MEDIUM, after, settle)
-    stated = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
+    is_explained = "ran out of memory" in outcome.job.message and "coarser level" in outcome.job.message
     return (
         Measured("memory the mesher was seen with, MB", maximum[0], maximum=float(MEMORY_MB), minimum=64.0),
         Measured("failed at the first attempt", float(outcome.ended_as("failed", 1)), minimum=1.0),
-        Measured("names the mesher's memory and what to try", float(stated), minimum=1.0),
+        Measured("names the mesher's memory and what to try", float(is_explained), minimum=1.0),
         *outcome.figures,
     )

@@ -26,12 +26,12 @@ def _loads(result: FlankChange) -> tuple[str, ...]:
 def _change_figure(result: FlankChange) -> Figure:
     change = result.change_quantiles[:, :, 0]
     worst = int(np.argmax(change[1]))
-    heard = f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds"
+    quantity = f"{result.quantity.replace('_', ' ')}, {result.over_speeds.replace('_', ' ')} over the speeds"
     return Figure(
         key="change",
         title="Levels of the pairs before and after",
         caption=f"{len(result.deviation)} pairs, deviating alike before (dashed) and after. All orders of "
-        f"{result.mesh} together: {heard}.",
+        f"{result.mesh} together: {quantity}.",
         alternative=f"The median change is {change[1, worst]:+.1f} dB at {_loads(result)[worst]}.",
         content=(_levels_panel(result), _change_panel(result)),
     )

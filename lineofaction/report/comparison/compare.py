@@ -52,8 +52,8 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.run.levels import DEPTH, largest_orders, order_blocks
 from lineofaction.report.run.signals import ORDERS, amplitude_spectrum, spectrum_window
-from lineofaction.report.run.sound import Heard, heard_runs, sound_of
-from lineofaction.report.run.view import SCALES, RunView, along_direction, decibels, run_axis, shown_signal
+from lineofaction.report.run.sound import RunSignal, run_signals, sound_of
+from lineofaction.report.run.view import SCALES, RunView, along_direction, decibels, run_axis, selected_signal
 
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
@@ -65,7 +65,7 @@ NAMES = ("first", "second")
 
 
 @dataclass(frozen=True)
-class _Side(Heard):
+class _Side(RunSignal):
     """One of the runs, with the run along the direction shown, and blocks over mesh orders."""
 
     seen: RunResult
@@ -74,7 +74,7 @@ class _Side(Heard):
 
 def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
     """Put the comparison of two runs by their names together, or of one with what was measured."""
-    sides = tuple(_side(heard) for heard in heard_runs(runs, view))
+    sides = tuple(_side(run_signal) for run_signal in run_signals(runs, view))
     signal = sides[0].signal
     highest = int(min(side.blocks.line[-1] for side in sides))
     chosen = signal.orders or largest_orders(signal, sides[0].blocks)
@@ -92,9 +92,9 @@ def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOr
     return Page(f"{' and '.join(runs)} compared", lead, headlines, tuple(sections))
 
 
-def _side(heard: Heard) -> _Side:
-    seen = along_direction(heard.run, heard.signal)
-    return _Side(heard.name, heard.run, heard.signal, seen, order_blocks(seen, heard.signal))
+def _side(source: RunSignal) -> _Side:
+    seen = along_direction(source.run, source.signal)
+    return _Side(source.name, source.run, source.signal, seen, order_blocks(seen, source.signal))
 
 
 def _differences(sides: tuple[_Side, ...], orders: tuple[int, ...]) -> Iterator[Difference]:
@@ -150,15 +150,15 @@ def _spectra(sides: tuple[_Side, ...], measured: MeasuredOrders | None) -> Figur
         window = spectrum_window(side.run.time)
         frequency, amplitude = amplitude_spectrum(side.seen, side.signal, window)
         order = frequency / float(np.median(side.run.mesh_frequency[side.signal.mesh, window]))
-        shown = order <= ORDERS + 0.5
-        lines.append(Line(side.name, order[shown], np.maximum(amplitude[shown], 1e-12), color, width=1.2))
+        inside = order <= ORDERS + 0.5
+        lines.append(Line(side.name, order[inside], np.maximum(amplitude[inside], 1e-12), color, width=1.2))
     signal = sides[0].signal
     caption = "90 to 95 % of the duration, over multiples of the mesh frequency in its middle; "
     caption += f"{signal.scale} values."
     if measured is not None:
         measured.require(signal.quantity.unit)
-        shown = measured.order <= ORDERS + 0.5
-        drawn = measured.order[shown], measured.amplitude[shown]
+        inside = measured.order <= ORDERS + 0.5
+        drawn = measured.order[inside], measured.amplitude[inside]
         lines.append(Line("measured", *drawn, palette.INK, "dash", 1.2))
         caption += " Measured: as read."
     top = max(float(line.y.max()) for line in lines)
@@ -199,7 +199,7 @@ def compare(
     if len(measured) > 1 or not results or not len(results) + len(measured) >= 2 or len(results) > 2:
         raise BadInput.of("files", ", ".join(map(str, files)) or None, _BOUND, _REMEDY)
     if measured and (recording := _recording(measured[0])) is not None:
-        return _beside_recording(results, recording, view, measurement)
+        return _compared_with_recording(results, recording, view, measurement)
     return _compare_results(results, view, measured, torque)
 
 
@@ -212,7 +212,7 @@ def _recording(file: Path) -> Recording | None:
     return recording if len(over_time) == len(recording.channels) else None
 
 
-def _beside_recording(
+def _compared_with_recording(
     results: dict[str, Path], recording: Recording, view: RunView, measurement: Measurement
 ) -> Page:
     """Compare the one run of some result files with a recording."""
@@ -229,28 +229,28 @@ def _beside_recording(
 
 
 def _compare_folders(folders: Sequence[Path], view: RunView, torque: float | None) -> Page:
-    held = {name: _comparable(folder) for name, folder in named_files(folders)}
-    first, second = held.values()
+    by_folder = {name: _comparable(folder) for name, folder in named_files(folders)}
+    first, second = by_folder.values()
     if not (shared := [name for name in first if name in second]):
-        what = "; ".join(f"{folder} has {', '.join(own) or 'none'}" for folder, own in held.items())
+        what = "; ".join(f"{folder} has {', '.join(files) or 'none'}" for folder, files in by_folder.items())
         kind = "two folders with an STE database or a run of one name"
         raise BadInput.of("files", what, kind, f"Name two files. {_REMEDY}")
     pages = {
         name.replace("_", " "): _compare_results(
-            {folder: own[name] for folder, own in held.items()}, view, torque=torque
+            {folder: files[name] for folder, files in by_folder.items()}, view, torque=torque
         )
         for name in shared
     }
     alone = sorted(first.keys() ^ second.keys())
     rest = f"; in one folder alone: {', '.join(alone)}" if alone else ""
     page = bound(pages)
-    return replace(page, title=f"{' and '.join(held)} compared", lead=f"{page.lead}{rest}")
+    return replace(page, title=f"{' and '.join(by_folder)} compared", lead=f"{page.lead}{rest}")
 
 
 def _comparable(folder: Path) -> dict[str, Path]:
     """Return the tables and runs in a folder by their names."""
-    own = {file.relative_to(folder).with_suffix("").as_posix(): file for file in results_in(folder)}
-    return {name: file for name, file in own.items() if stored_study(file_attributes(file)) is None}
+    files = {file.relative_to(folder).with_suffix("").as_posix(): file for file in results_in(folder)}
+    return {name: file for name, file in files.items() if stored_study(file_attributes(file)) is None}
 
 
 def _compare_results(
@@ -279,7 +279,7 @@ def _page(
     first = next(iter(runs.values()))
     driver = first.case["meshes"][0]["driver"]
     teeth = next(int(gear["teeth"]) for gear in first.case["gears"] if gear["name"] == driver)
-    measured = _measured(files, teeth, shown_signal(first, view).quantity.unit) if files else None
+    measured = _measured(files, teeth, selected_signal(first, view).quantity.unit) if files else None
     if measured is not None and not isinstance(measured, MeasuredOrders):
         raise BadInput.of("measured", "a curve over position", "an order spectrum beside a run")
     return compare_runs(runs, view, measured)

@@ -85,11 +85,11 @@ def level_differences(
 
 
 def _difference(
-    order: int, powers: tuple[OrderPower, OrderPower], stated: float, span: tuple[float, float]
+    order: int, powers: tuple[OrderPower, OrderPower], step_error: float, span: tuple[float, float]
 ) -> LevelDifference:
     computed, measured = map(_error, powers)
     amplitude = math.sqrt(2.0 * max(powers[0].power, 0.0))
-    by_steps = 2.0 * _DB * stated / amplitude if amplitude > 0.0 else 0.0
+    by_steps = 2.0 * _DB * step_error / amplitude if amplitude > 0.0 else 0.0
     return LevelDifference(
         order,
         (_level(powers[0]), _level(powers[1])),

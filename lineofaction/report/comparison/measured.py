@@ -58,7 +58,7 @@ class Difference:
         return math.hypot(self.first.error, self.second.error)
 
     @property
-    def is_shown(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether the difference is larger than its error."""
         return abs(self.value) > self.error
 
@@ -67,7 +67,7 @@ class Difference:
         """The conclusion in words."""
         if math.isnan(self.error):
             return "no error stated"
-        if not self.is_shown:
+        if not self.is_significant:
             return "not shown to differ"
         return "the second is larger" if self.value > 0.0 else "the second is smaller"
 
@@ -78,7 +78,7 @@ class Difference:
     @property
     def between(self) -> str:
         """Both values, and by how much the second differs: a signed number alone reads as a value."""
-        before, after = (number(each.value, 3) for each in (self.first, self.second))
+        before, after = (number(estimate.value, 3) for estimate in (self.first, self.second))
         return f"{before} to {after} {self.first.unit}, by {self._bare}"
 
     @property

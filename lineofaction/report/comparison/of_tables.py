@@ -27,7 +27,7 @@ from lineofaction.report.pair import pair_title
 from lineofaction.report.ste.curves import aligned, um_of
 
 HARMONICS = 3  # in the table of differences
-SHOWN_HARMONICS = 8
+MAX_HARMONICS = 8
 _UM = 1e6
 
 Named = dict[str, SteDatabase]
@@ -43,14 +43,18 @@ def compare_tables(
     Raises `BadInput`: they have no torque in common, or not that one, or measured orders in another unit.
     """
     torques = _common(tuple(tables.values()))
-    shown = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
+    ripple_torque = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
     curves = {load: _curves(tables, load) for load in torques}
     differences = tuple(_differences(curves))
     orders = measured if isinstance(measured, MeasuredOrders) else None
     figures = [
-        _ripples(_curves(tables, shown), shown, measured if isinstance(measured, MeasuredCurve) else None),
+        _ripples(
+            _curves(tables, ripple_torque),
+            ripple_torque,
+            measured if isinstance(measured, MeasuredCurve) else None,
+        ),
         *([_over_torque(curves)] if len(torques) > 1 else []),
-        _harmonics(_curves(tables, shown), shown, orders),
+        _harmonics(_curves(tables, ripple_torque), ripple_torque, orders),
     ]
     listed = (differences_table(differences, tuple(tables)),) if differences else ()
     sections = [Section("Transmission errors", figures=tuple(figures), tables=listed)]
@@ -134,25 +138,25 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
         for (name, curve), color in zip(curves.items(), COLORS, strict=False)
     ]
     caption = "STE less its mean. Bands: half the error of peak-to-peak on either side."
-    words = [f"Peak to peak: {_peak_to_peak(curves, torque)}."] if len(curves) == 2 else []
+    findings = [f"Peak to peak: {_peak_to_peak(curves, torque)}."] if len(curves) == 2 else []
     if measured is not None:
         name = next(iter(curves))
-        moved = aligned_to(measured, _ripple(curves[name]))
+        match = aligned_to(measured, _ripple(curves[name]))
         lines.append(
-            Line("measured", position, _twice(moved.ripple), palette.INK, "dash", band=measured.spread)
+            Line("measured", position, _twice(match.ripple), palette.INK, "dash", band=measured.spread)
         )
         caption += (
-            f" Measured: mean of {measured.pitches} base pitches, less its mean, moved by {moved.shift:.3f} "
+            f" Measured: mean of {measured.pitches} base pitches, less its mean, moved by {match.shift:.3f} "
             "base pitches to where it is most like the first curve. Its band is the standard deviation of "
             "single base pitches."
         )
-        words.append(_how_alike(name, curves[name], moved))
+        findings.append(_how_alike(name, curves[name], match))
     across = Axis("position of the driving gear, base pitches", limits=(0.0, 2.0))
     return Figure(
         key="ripples",
         title=f"Ripple at {torque:g} N m",
         caption=caption,
-        alternative=" ".join(words),
+        alternative=" ".join(findings),
         content=(Panel(across, Axis("STE less its mean, µm"), tuple(lines)),),
     )
 
@@ -161,12 +165,12 @@ def _twice(ripple: FloatArray) -> FloatArray:
     return np.concatenate([ripple, ripple, ripple[:1]])
 
 
-def _how_alike(name: str, curve: Curve, moved: Aligned) -> str:
-    own, other = _um(curve.peak_to_peak), float(np.ptp(moved.ripple))
+def _how_alike(name: str, curve: Curve, match: Aligned) -> str:
+    computed, ripple_measured = _um(curve.peak_to_peak), float(np.ptp(match.ripple))
     return (
-        f"Measured {number(other, 3)} µm peak to peak, {name} {number(own.value, 3)} ± "
-        f"{number(own.error, 2)} µm; {number(moved.rms, 2)} µm rms between them, "
-        f"correlation {moved.correlation:.2f}."
+        f"Measured {number(ripple_measured, 3)} µm peak to peak, {name} {number(computed.value, 3)} ± "
+        f"{number(computed.error, 2)} µm; {number(match.rms, 2)} µm rms between them, "
+        f"correlation {match.correlation:.2f}."
     )
 
 
@@ -181,32 +185,32 @@ def _over_torque(curves: dict[float, dict[str, Curve]]) -> Figure:
         key="ripple_over_torque",
         title="Peak-to-peak STE over torque",
         caption="Bands: the errors.",
-        alternative=_where_shown(curves) if len(names) == 2 else "",
+        alternative=_significant_torques(curves) if len(names) == 2 else "",
         content=(ripple_panel(Axis("torque on the driving gear, N m"), tuple(lines)),),
     )
 
 
-def _where_shown(curves: dict[float, dict[str, Curve]]) -> str:
-    shown = [one for load, by_name in curves.items() if (one := _peak_to_peak(by_name, load)).is_shown]
-    where = f": {', '.join(one.where for one in shown)}" if shown else ""
+def _significant_torques(curves: dict[float, dict[str, Curve]]) -> str:
+    above = [one for load, by_name in curves.items() if (one := _peak_to_peak(by_name, load)).is_significant]
+    where = f": {', '.join(one.where for one in above)}" if above else ""
     return (
-        f"The difference is larger than its error at {len(shown)} of {len(curves)} torques{where}. Its error "
+        f"The difference is larger than its error at {len(above)} of {len(curves)} torques{where}. Its error "
         "is the root of the sum of both errors squared."
     )
 
 
 def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders | None) -> Figure:
-    order = np.arange(1.0, SHOWN_HARMONICS + 1.0)
+    order = np.arange(1.0, MAX_HARMONICS + 1.0)
     lines, columns = [], {}
     for index, (name, curve) in enumerate(curves.items()):
-        amplitudes = [_um(one) for one in curve.harmonics[:SHOWN_HARMONICS]]
+        amplitudes = [_um(one) for one in curve.harmonics[:MAX_HARMONICS]]
         value = np.array([one.value for one in amplitudes])
         lines.append(Line(name, order + 0.16 * index - 0.08, value, COLORS[index], width=0.0, markers=True))
         columns[f"{name}, µm"] = [f"{one.value:.3f} ± {one.error:.3f}" for one in amplitudes]
     caption = "Amplitudes of the mesh harmonics of STE."
     if measured is not None:
         measured.require("µm")
-        inside = measured.order <= SHOWN_HARMONICS + 0.5
+        inside = measured.order <= MAX_HARMONICS + 0.5
         drawn = measured.order[inside], measured.amplitude[inside]
         lines.append(Line("measured", *drawn, palette.INK, width=1.2))
         columns["measured, µm"] = [number(measured.near(float(k)), 3) for k in order]

@@ -36,7 +36,7 @@ from lineofaction.report.run.view import (
     Signal,
     along_direction,
     decibels,
-    shown_signal,
+    selected_signal,
     speed_axis,
 )
 
@@ -97,7 +97,7 @@ def compare_recording(
     no direction, or both pass no common speed.
     """
     name, run = named
-    signal = shown_signal(run, view)
+    signal = selected_signal(run, view)
     channel, direction = _channel(recording, signal, measurement)
     signal = replace(signal, direction=_direction(signal, direction))
     teeth = _driver_teeth(run, signal.mesh)
@@ -124,14 +124,14 @@ def _channel(recording: Recording, signal: Signal, measurement: Measurement) -> 
     return channel, channel.direction
 
 
-def _direction(signal: Signal, stated: str) -> str:
+def _direction(signal: Signal, declared: str) -> str:
     """Return along which direction a bearing is compared: a sensor measures along one."""
     if signal.quantity.part != "bearing":
         return ""
-    if not (signal.direction or stated):
+    if not (signal.direction or declared):
         remedy = "Say along which the sensor measures: --direction x."
         raise BadInput.of("direction", None, "x, y, z or principal beside a recording", remedy)
-    return signal.direction or stated
+    return signal.direction or declared
 
 
 def _driver_teeth(run: RunResult, mesh: int) -> int:
@@ -202,13 +202,13 @@ def _orders(sides: tuple[_Side, _Side], signal: Signal) -> tuple[int, ...]:
 def _receipt_errors(run: RunResult, signal: Signal, orders: tuple[int, ...]) -> dict[int, float]:
     """Return the stated errors of a run by order, peak in the signal's unit; 0 where it states none."""
     name = _ERRORS.get(signal.quantity.series, "")
-    stated = [
+    errors = [
         source[name]
         for source in run.receipt.get("error", {}).values()
         if isinstance(source, dict) and name in source
     ]
     return {
-        order: signal.quantity.factor * math.hypot(*(of[order - 1] for of in stated if len(of) >= order), 0.0)
+        order: signal.quantity.factor * math.hypot(*(of[order - 1] for of in errors if len(of) >= order), 0.0)
         for order in orders
     }
 

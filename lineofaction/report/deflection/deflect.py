@@ -19,7 +19,7 @@ from lineofaction.report.drawing.figure import Axis, Bars, Dash, Figure, HeatMap
 from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
-CAUSE_WORDS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
+CAUSE_LABELS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
 COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 LOADED = 1e-3  # of the largest pressure: less is blank
@@ -50,10 +50,10 @@ def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
 def _mesh_table(result: GearboxDeflection) -> Table:
     """List every mesh under every load case, the worst mesh first; of the causes those that act."""
     acting = np.any([mesh.causes for case in result.deflection.cases for mesh in case.meshes], axis=0)
-    flanks = {(own.mesh, own.case): own for own in result.flanks}
+    flanks = {(flanks.mesh, flanks.case): flanks for flanks in result.flanks}
     head = (
         *("mesh", "load case", "torque, N m", "misalignment, µm"),
-        *(words for words, acts in zip(CAUSE_WORDS, acting, strict=True) if acts),
+        *(label for label, acts in zip(CAUSE_LABELS, acting, strict=True) if acts),
         *("K_Hbeta", "STE peak-to-peak, µm", "largest pressure, MPa"),
     )
     rows = tuple(
@@ -83,15 +83,15 @@ def _force_table(result: GearboxDeflection) -> Table | None:
 
 def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: BoolArray) -> tuple[str, ...]:
     mesh = _mesh_of(case, name)
-    own = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
+    columns = (name, _titled(case), number(case.torque), number(mesh.misalignment / UM, 3))
     parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
     if flanks is None:
-        return (*own, *parts, "none", "none", "none")
+        return (*columns, *parts, "none", "none", "none")
     ripple = number(flanks.peak_to_peak / UM, 3)
     if np.isfinite(flanks.peak_to_peak_error):
         ripple += f" ± {number(flanks.peak_to_peak_error / UM, 1)}"
     pressure = number(1e-6 * flanks.largest_pressure, 4)
-    return (*own, *parts, number(flanks.face_load_factor, 3), ripple, pressure)
+    return (*columns, *parts, number(flanks.face_load_factor, 3), ripple, pressure)
 
 
 def _titled(case: CaseDeflection) -> str:
@@ -113,15 +113,15 @@ def _bearing_table(result: GearboxDeflection) -> Table:
         "speed, rpm": lambda bearing: number(bearing["speed_rpm"]),
         "radial, N": lambda bearing: number(bearing["radial_force_n"]),
         "axial, N": lambda bearing: number(bearing["axial_force_n"]),
-        "radial: elastic, µm": lambda bearing: _moved(bearing["elastic_um"]),
-        "clearance, µm": lambda bearing: _moved(bearing["clearance_um"]),
-        "seat, µm": lambda bearing: _moved(bearing["seat_um"]),
+        "radial: elastic, µm": lambda bearing: _displacement_text(bearing["elastic_um"]),
+        "clearance, µm": lambda bearing: _displacement_text(bearing["clearance_um"]),
+        "seat, µm": lambda bearing: _displacement_text(bearing["seat_um"]),
         "life, h": _life_text,
     }
     return Table.of("Bearings under the load cases, means over the mesh cycle", listed, columns)
 
 
-def _moved(vector: list[float]) -> str:
+def _displacement_text(vector: list[float]) -> str:
     return number(np.hypot(vector[0], vector[1]), 3)
 
 
@@ -183,16 +183,16 @@ def _face_load_figure(result: GearboxDeflection) -> Figure | None:
     names = [
         name
         for name in _meshes_worst_first(result)
-        if any(own.mesh == name and np.isfinite(own.face_load_factor) for own in result.flanks)
+        if any(flanks.mesh == name and np.isfinite(flanks.face_load_factor) for flanks in result.flanks)
     ]
     if not names:
         return None
     panels = []
     for name in names:
-        own = [part for part in result.flanks if part.mesh == name]
+        flanks = [part for part in result.flanks if part.mesh == name]
         lines = tuple(
             Line(part.case, part.face_position / MM, part.face_load * MM, COLORS[k % 4], _DASHES[k // 4 % 2])
-            for k, part in enumerate(own)
+            for k, part in enumerate(flanks)
         )
         panels.append(Panel(Axis("face position, mm"), Axis("load, N/mm"), lines, title=name))
     largest = max(result.flanks, key=lambda part: np.nan_to_num(part.face_load_factor))
@@ -211,15 +211,15 @@ def _pattern_figure(result: GearboxDeflection) -> Figure | None:
     panels, texts = [], []
     for name in _meshes_worst_first(result):
         case = _worst_case(result, name)
-        own = next((p for p in result.flanks if (p.mesh, p.case) == (name, case.name)), None)
-        if own is None or not np.isfinite(own.face_load_factor):
+        flanks = next((p for p in result.flanks if (p.mesh, p.case) == (name, case.name)), None)
+        if flanks is None or not np.isfinite(flanks.face_load_factor):
             continue
-        pattern = np.where(own.pattern > LOADED * own.pattern.max(), own.pattern, np.nan) / 1e6
+        pattern = np.where(flanks.pattern > LOADED * flanks.pattern.max(), flanks.pattern, np.nan) / 1e6
         top, label = float(np.nanmax(pattern)), "largest pressure, MPa"
-        shade = HeatMap(own.face_position / MM, own.roll_length / MM, pattern, label, top)
+        shade = HeatMap(flanks.face_position / MM, flanks.roll_length / MM, pattern, label, top)
         axes = Axis("face position, mm"), Axis("roll length of the pinion, mm")
         panels.append(Panel(*axes, title=f"{name}, {case.name}", shade=shade))
-        texts.append(f"{name}: {number(1e-6 * own.largest_pressure, 4)} MPa.")
+        texts.append(f"{name}: {number(1e-6 * flanks.largest_pressure, 4)} MPa.")
     if not panels:
         return None
     return Figure(

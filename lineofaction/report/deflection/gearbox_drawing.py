@@ -58,8 +58,8 @@ def _gear_names(outline: Outline) -> tuple[_GearName, ...]:
     names: list[_GearName] = []
     for k, text in enumerate(outline.gears):
         written = np.vstack([np.empty((0, 2)), *(name.points for name in names)])
-        places = [_at(text, center[k] + radius[k] * way, way, size) for way in WAYS]
-        names.append(max(places, key=lambda place: _room(place.points, center, radius, written)))
+        positions = [_at(text, center[k] + radius[k] * way, way, size) for way in WAYS]
+        names.append(max(positions, key=lambda position: _room(position.points, center, radius, written)))
     return tuple(names)
 
 
@@ -83,14 +83,14 @@ def gearbox_drawing(result: GearboxDeflection, case: CaseDeflection) -> Figure:
     """Draw the gearbox and its axes as one load case bends them, exaggerated."""
     outline = result.outline
     scale = _exaggeration(outline, case)
-    panels, words = [_along(outline, case, _view_direction(outline, case), scale)], ALONG
+    panels, caption = [_along(outline, case, _view_direction(outline, case), scale)], ALONG
     if outline.gears:
         panels.append(_end_view(outline, case, scale))
-        words += AGAINST
+        caption += AGAINST
     return Figure(
         key="deflected_gearbox",
         title=f'The gearbox under the load case "{case.name}"',
-        caption=f"To scale; deflections {scale:g} times enlarged. {words}",
+        caption=f"To scale; deflections {scale:g} times enlarged. {caption}",
         alternative=_finding(case),
         content=tuple(panels),
     )
@@ -108,8 +108,8 @@ def _exaggeration(outline: Outline, case: CaseDeflection) -> float:
     largest = largest_motion(case)
     if largest == 0.0:
         return 1.0
-    apart = float(np.max(np.ptp(outline.origin[:, :2], axis=0)))
-    wanted = DRAWN * max(float(np.max(outline.length)), apart) / largest
+    axis_distance = float(np.max(np.ptp(outline.origin[:, :2], axis=0)))
+    wanted = DRAWN * max(float(np.max(outline.length)), axis_distance) / largest
     power = 10.0 ** math.floor(math.log10(wanted))
     return max(step * power for step in STEPS if step * power <= wanted)
 
@@ -122,21 +122,23 @@ def _view_direction(outline: Outline, case: CaseDeflection) -> FloatArray:
     axes = np.unique(np.round(outline.origin[:, :2] / COAXIAL), axis=0) * COAXIAL
     if len(axes) == 1:
         axes = np.vstack([np.zeros(2), case.shafts.motion[:, :2]])
-        apart = np.ptp(axes @ VIEWS.T, axis=0)
+        separation = np.ptp(axes @ VIEWS.T, axis=0)
     else:
-        apart = np.diff(np.sort(axes @ VIEWS.T, axis=0), axis=0).min(axis=0)
-    return np.array([*VIEWS[np.argmax(apart > (1.0 - 1e-9) * apart.max())], 0.0])
+        separation = np.diff(np.sort(axes @ VIEWS.T, axis=0), axis=0).min(axis=0)
+    return np.array([*VIEWS[np.argmax(separation > (1.0 - 1e-9) * separation.max())], 0.0])
 
 
 def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: float) -> Panel:
     heights = outline.origin @ across
     lines = [*_shafts(outline, heights), *_gears(outline, heights), *_bearings(outline, heights)]
-    moved = case.shafts.motion[:, :2] @ across[:2]
+    displacement = case.shafts.motion[:, :2] @ across[:2]
     for k in range(len(outline.shafts)):
-        own = case.shafts.shaft == k
-        z = (outline.origin[k, 2] + case.shafts.position[own]) / MM
+        on_shaft = case.shafts.shaft == k
+        z = (outline.origin[k, 2] + case.shafts.position[on_shaft]) / MM
         name = f"axis, {scale:.0f} times"
-        lines.append(Line(name, z, (heights[k] + scale * moved[own]) / MM, palette.VERMILLION, width=2.4))
+        lines.append(
+            Line(name, z, (heights[k] + scale * displacement[on_shaft]) / MM, palette.VERMILLION, width=2.4)
+        )
     angle = round(math.degrees(math.atan2(across[1], across[0])))
     axes = Axis("z, mm"), Axis({0: "x, mm", 90: "y, mm"}.get(angle, f"across z, {angle}° from x, mm"))
     return Panel(*axes, tuple(lines), title="From the side", notes=_shaft_names(outline, heights), equal=True)
@@ -149,11 +151,11 @@ def _shaft_names(outline: Outline, heights: FloatArray) -> tuple[Note, ...]:
     rows: list[tuple[float, float, list[str]]] = []
     for end, height, name in zip(ends, heights, outline.shafts, strict=True):
         near = (names for z, y, names in rows if abs(z - end) < row and abs(y - height) < row)
-        own = next(near, None)
-        if own is None:
+        shared_row = next(near, None)
+        if shared_row is None:
             rows.append((end, height, [name]))
         else:
-            own.append(name)
+            shared_row.append(name)
     return tuple(Note(z / MM, y / MM, ", ".join(names)) for z, y, names in rows)
 
 
@@ -199,9 +201,10 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
     lines = []
     for k, (position, _, diameter) in zip(outline.gear_shaft, outline.gear, strict=True):
         center = outline.origin[k, :2]
-        own = case.shafts.shaft == k
+        on_shaft = case.shafts.shaft == k
         path = [
-            np.interp(position, case.shafts.position[own], case.shafts.motion[own, axis]) for axis in (0, 1)
+            np.interp(position, case.shafts.position[on_shaft], case.shafts.motion[on_shaft, axis])
+            for axis in (0, 1)
         ]
         circle = center[:, None] + 0.5 * diameter * np.array([np.cos(CIRCLE), np.sin(CIRCLE)])
         lines.append(Line("operating pitch circles", circle[0] / MM, circle[1] / MM, palette.BLUE, width=1.4))

@@ -89,10 +89,10 @@ def _flank_table(result: HeardOptimization) -> Table:
                 text
                 for name, unit in {"pressure": 1e6, "face_load_factor": 1.0, "root_stress": 1e6}.items()
                 if followed or name != "root_stress"
-                for each in (before, after)
+                for design in (before, after)
                 for text in (
-                    number(getattr(each, name)[k] / unit, 4),
-                    number(getattr(each, f"{name}_error")[k] / unit, 2),
+                    number(getattr(design, name)[k] / unit, 4),
+                    number(getattr(design, f"{name}_error")[k] / unit, 2),
                 )
             ),
         )
@@ -127,17 +127,17 @@ def _page(result: HeardOptimization) -> Page:
         Headline("after", f"{result.optimum.objective.value:.1f} {result.unit}"),
         Headline("gain", f"{result.gain.value:.1f} dB", gain),
     )
-    told = f"{result.reason}.", result.within_tolerances(), result.costs(), result.ended()
-    lead = " ".join(filter(None, told))
-    heard = Section("What is heard", "", (_levels_figure(result),), (_flank_table(result),))
+    outcome = f"{result.reason}.", result.within_tolerances(), result.costs(), result.ended()
+    lead = " ".join(filter(None, outcome))
+    levels = Section("What is heard", "", (_levels_figure(result),), (_flank_table(result),))
     design = Section("Design", "", tables=(_design_table(result),))
     return Page(
         f"Flanks of {result.mesh} that are heard least",
         lead,
         heads,
-        (heard, design),
+        (levels, design),
         tuple(result.partings()),
     )
 
 
-HEARD = Presentation(_levels_figure, _page, _text)
+LEVELS = Presentation(_levels_figure, _page, _text)

@@ -13,7 +13,7 @@ from fe_contact.microgeometry.optimization import Optimization
 from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
-from lineofaction.report.design.heard_flanks import HEARD
+from lineofaction.report.design.heard_flanks import LEVELS
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -35,7 +35,7 @@ _POSITION = "position, base pitches"
 
 def _harris(result: Optimization) -> Figure:
     designs = {"before": result.start, "after": result.optimum}
-    curves = {name: _shown(result, design) for name, design in designs.items()}
+    curves = {name: _zero_mean_curves(result, design) for name, design in designs.items()}
     scale = HarrisScale.of(*curves.values())
     maps = [_map(result, name, design, curves[name], scale) for name, design in designs.items()]
     return Figure(
@@ -57,7 +57,7 @@ def _chosen(result: Optimization) -> list[int]:
     return sorted(drawn | {int(np.abs(torque - value).argmin()) for value in even})
 
 
-def _shown(result: Optimization, design: ConfirmedDesign) -> FloatArray:
+def _zero_mean_curves(result: Optimization, design: ConfirmedDesign) -> FloatArray:
     """Curves (P, K) of the chosen torques less their means, um."""
     values = design.harris_map.ste[:, _chosen(result)] / UM
     return np.asarray(values - values.mean(axis=0))
@@ -200,12 +200,12 @@ def _text(result: Optimization) -> Iterator[Table | str]:
 RIPPLE = Presentation(_harris, _optimization_page, _text)
 
 
-def _shown_by(result: Optimization | HeardOptimization) -> Presentation:
-    return HEARD if isinstance(result, HeardOptimization) else RIPPLE
+def _presentation(result: Optimization | HeardOptimization) -> Presentation:
+    return LEVELS if isinstance(result, HeardOptimization) else RIPPLE
 
 
 PAGE = Presentation(
-    lambda result: _shown_by(result).figure(result),
-    lambda result: _shown_by(result).page(result),
-    lambda result: _shown_by(result).text(result),
+    lambda result: _presentation(result).figure(result),
+    lambda result: _presentation(result).page(result),
+    lambda result: _presentation(result).text(result),
 )

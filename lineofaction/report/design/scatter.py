@@ -59,9 +59,9 @@ def _shares(study: ToleranceStudy, sample: FloatArray) -> tuple[Line, ...]:
     for k, name in enumerate(thousands(study.torque.tolist())):
         ordered = np.sort(sample[:, k]) / UM
         part = np.arange(1, ordered.size + 1) / ordered.size
-        kept = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
+        drawn_points = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
         color = palette.ordered(k, study.torque.size)
-        lines.append(Line(f"{name} N m", ordered[kept], part[kept], color))
+        lines.append(Line(f"{name} N m", ordered[drawn_points], part[drawn_points], color))
     return tuple(lines)
 
 
@@ -128,16 +128,16 @@ def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
     """Say how many pairs are above the limit, what decides, what cures it; and what the model misses."""
     lines = () if study.above is None else tuple(_above_limit(study, study.above))
     if study.solved < len(study.peak_to_peak) or study.above is not None:
-        missed = ", ".join(
+        error_text = ", ".join(
             f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(maximum / UM, 2)})"
             for rms, maximum, torque in zip(
                 study.missed, study.missed_largest, thousands(study.torque.tolist()), strict=True
             )
         )
-        pairs, solved, held = (f"{each:,}" for each in (len(study.peak_to_peak), study.solved, study.held))
+        pairs, solved, compared = (f"{n:,}" for n in (len(study.peak_to_peak), study.solved, study.held))
         lines += (
             f"{solved} of {pairs} pairs are analyzed whole; the model of the others misses the peak to peak "
-            f"of {held} that it does not know by {missed}, root of the mean square.",
+            f"of {compared} that it does not know by {error_text}, root of the mean square.",
         )
     return lines
 
@@ -160,7 +160,7 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
         )
     names = [boundary_name(name) for name in above.names]
     maximum = above.decides
-    alone, all_of = (number(100.0 * float(each[maximum]), 2) for each in (above.first_order, above.total))
+    alone, all_of = (number(100.0 * float(shares[maximum]), 2) for shares in (above.first_order, above.total))
     part = f"it makes {alone} % of the variance of the level alone, {all_of} % with others"
     lines.append(f"{names[maximum]} decides: {part}.")
     if above.cure is None:
@@ -182,10 +182,10 @@ def _limit_tables(study: ToleranceStudy) -> tuple[Table, ...]:
     )
     by_torque = tuple(
         (
-            *(torque, number(own / UM, 3), _percent(share), f"{_percent(low)} to {_percent(high)}"),
-            *(number(missed / UM, 2), _percent(beyond)),
+            *(torque, number(nominal / UM, 3), _percent(share), f"{_percent(low)} to {_percent(high)}"),
+            *(number(rms_error / UM, 2), _percent(beyond)),
         )
-        for torque, own, share, low, high, missed, beyond in shares
+        for torque, nominal, share, low, high, rms_error, beyond in shares
     )
     head = ("torque, N m", "as designed, µm", "above", "bounds", "model ± µm (1 s)", "other side")
     order = np.argsort(-above.total, kind="stable")

@@ -30,7 +30,7 @@ def _sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
         title="Sensitivity of the transmission error to misalignment and center distance",
         caption="Peak-to-peak static transmission error against the aligned pair's, and in micrometers: per "
         "cents of a small ripple grow large. Dashed: contact ends where plain involutes leave each other.",
-        alternative=_words(studies),
+        alternative=_alternative(studies),
         content=(
             *_panels(studies, "Misalignment", _MISALIGNMENT, _over_misalignment),
             *_panels(studies, "Center distance", _DISTANCE, _over_distance),
@@ -86,7 +86,7 @@ def _rows(curve: Curve, label: str) -> list[tuple[str, ...]]:
     ]
 
 
-def _words(studies: Sequence[PairStudy]) -> str:
+def _alternative(studies: Sequence[PairStudy]) -> str:
     parts = []
     for study in studies:
         for curves in study.curves:
@@ -110,10 +110,10 @@ def _reason(study: PairStudy, curves: Sensitivity) -> str:
     change = float(curve.relative_change[maximum])
     before, after = float(curve.carrying[curve.deviation == 0.0][0]), float(curve.carrying[maximum])
     how = "with" if curves.corner_contact else "without"
-    moved = f"{round(float(at[maximum]), 9):+g} % of center distance"
+    deviation = f"{round(float(at[maximum]), 9):+g} % of center distance"
     verb = "lowers" if change < 0.0 else "raises"
     return (
-        f"{study.name} {how} corner contact: {moved} {verb} the ripple by {100.0 * abs(change):.0f} %, "
+        f"{study.name} {how} corner contact: {deviation} {verb} the ripple by {100.0 * abs(change):.0f} %, "
         f"{_by_pairs(before, after, change)}."
     )
 
@@ -150,7 +150,7 @@ def _largest(
     over: str, unit: str, studies: Sequence[PairStudy], curve_of: Callable[[PairStudy, Sensitivity], Curve]
 ) -> Headline:
     named = [(study.name, *curve_of(study, curves)) for study in studies for curves in study.curves]
-    name, at, curve = max(named, key=lambda each: float(each[2].peak_to_peak.max()))
+    name, at, curve = max(named, key=lambda entry: float(entry[2].peak_to_peak.max()))
     k = int(curve.peak_to_peak.argmax())
     error, change = number(1e6 * float(curve.error[k]), 2), 100.0 * float(curve.relative_change[k])
     where = f"{round(float(at[k]), 9):g} {unit}, {name}: {change:+.0f} % of the undeviated pair's"

@@ -16,9 +16,9 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 from model_studies.spread import quantiles
 
-SHOWN_RESPONSES, SHOWN_CURVES, SHOWN_FACTORS = 4, 6, 12
+MAX_RESPONSES, MAX_CURVES, MAX_FACTORS = 4, 6, 12
 BAR = 9.0
-SHOWN = 12
+MAX_ROWS = 12
 """Lines of the tables of worst and failed runs."""
 
 
@@ -36,16 +36,16 @@ def _unit(study: Study, response: int) -> str:
 def _grid_figures(study: Study) -> tuple[Figure, ...]:
     """Draw means over the grid: over one factor curves, over two a map; nothing without a grid."""
     axes = [k for k in _varied(study) if study.kind[k] == "grid"]
-    shown = range(min(len(study.response), SHOWN_RESPONSES))
+    responses = range(min(len(study.response), MAX_RESPONSES))
     if not axes:
         return ()
     if len(axes) == 1:
-        return (_curves(study, axes[0], shown),)
-    panels = tuple(_map(study, axes[0], axes[1], response) for response in shown)
+        return (_curves(study, axes[0], responses),)
+    panels = tuple(_map(study, axes[0], axes[1], response) for response in responses)
     caption = "Means over all other factors and samples; colors span least to largest. White: no figures."
     return (
         Figure("study_map", _over(study, axes[:2]), caption, _extreme(study), panels),
-        _curves(study, axes[0], shown),
+        _curves(study, axes[0], responses),
     )
 
 
@@ -58,8 +58,8 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
     one = in_boundary_units(study, response)[1]
     z = np.full((y.size, x.size), np.nan)
     for row, column in np.ndindex(z.shape):
-        here = (study.value[:, across] == x[column]) & (study.value[:, up] == y[row])
-        values = study.figure[here, response]
+        cell_runs = (study.value[:, across] == x[column]) & (study.value[:, up] == y[row])
+        values = study.figure[cell_runs, response]
         if np.isfinite(values).any():
             z[row, column] = np.nanmean(values) / one
     shade = HeatMap.spanning(x, y, z, _unit(study, response))
@@ -67,7 +67,7 @@ def _map(study: Study, across: int, up: int, response: int) -> Panel:
     return Panel(*axes, title=study.response[response], shade=shade)
 
 
-def _curves(study: Study, axis: int, shown: range) -> Figure:
+def _curves(study: Study, axis: int, responses: range) -> Figure:
     """Means, and of samples quantiles, over one factor."""
     panels = tuple(
         Panel(
@@ -76,7 +76,7 @@ def _curves(study: Study, axis: int, shown: range) -> Figure:
             _lines(study, axis, response),
             title=study.response[response],
         )
-        for response in shown
+        for response in responses
     )
     caption = "Mean over all other factors"
     if study.samples > 1:
@@ -104,7 +104,7 @@ def _distribution_figure(study: Study) -> Figure:
             Axis("runs below, %", limits=(0.0, 100.0)),
             tuple(_cumulative(study, response)),
         )
-        for response in range(min(len(study.response), SHOWN_RESPONSES))
+        for response in range(min(len(study.response), MAX_RESPONSES))
     )
     of = "the samples of a combination" if study.samples > 1 else "all points"
     return Figure(
@@ -120,7 +120,7 @@ def _cumulative(study: Study, response: int) -> list[Line]:
     """One step curve for each of some combinations; without samples one over all points."""
     one = in_boundary_units(study, response)[1]
     rows = study.column(response) if study.samples > 1 else study.figure[:, response][None]
-    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), SHOWN_CURVES)).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), MAX_CURVES)).round().astype(int))
     curves = {}
     for row in chosen:
         values = np.sort(rows[row][np.isfinite(rows[row])]) / one
@@ -187,7 +187,7 @@ def _by_samples(study: Study) -> list[Panel]:
 def _bars(
     bars: list[tuple[float, float, str]], text: str, limits: tuple[float, float] | None = None
 ) -> Panel:
-    ordered = sorted(bars, key=lambda bar: bar[0] - bar[1])[:SHOWN_FACTORS]
+    ordered = sorted(bars, key=lambda bar: bar[0] - bar[1])[:MAX_FACTORS]
     heights = [float(len(ordered) - k) for k in range(len(ordered))]
     lines = tuple(
         Line(name, np.array([low, high]), np.full(2, height), palette.category(0), width=BAR)
@@ -234,7 +234,7 @@ def _summary_table(study: Study) -> Table:
 def _extreme_table(study: Study) -> Table:
     first = study.figure[:, 0]
     usable = np.flatnonzero(np.isfinite(first))
-    points = usable[np.argsort(-first[usable], kind="stable")][:SHOWN]
+    points = usable[np.argsort(-first[usable], kind="stable")][:MAX_ROWS]
     varied, responses = _varied(study), range(len(study.response))
     head = (*(_short(study, k) for k in varied), *(_label(study, k) for k in responses))
     rows = tuple(
@@ -254,7 +254,7 @@ def _failed_table(study: Study) -> Table:
     failed = [k for k, reason in enumerate(study.reason) if reason]
     rows = tuple(
         (str(k), *(f"{study.value[k, f]:.6g}" for f in _varied(study)), study.reason[k])
-        for k in failed[:SHOWN]
+        for k in failed[:MAX_ROWS]
     )
     caption = f"Runs without figures: {len(failed)} of {len(study.reason)}"
     return Table(caption, ("point", *(_short(study, f) for f in _varied(study)), "reason"), rows)
@@ -277,9 +277,9 @@ def _page(study: Study) -> Page:
         Section("Figures", "", (), (_summary_table(study), *tables)),
     )
     without = ", ".join(study.facts["neglected"])
-    each = f" {study.samples} samples of each combination." if study.samples > 1 else ""
+    samples = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
-    lead = f"{len(study.reason)} runs over {over}.{each} Neglected in the runs: {without}."
+    lead = f"{len(study.reason)} runs over {over}.{samples} Neglected in the runs: {without}."
     return Page("Many scenes", lead, heads, sections)
 
 

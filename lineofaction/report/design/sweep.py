@@ -31,7 +31,7 @@ BEYOND = "by more than the errors"
 
 def _maps(result: SweepResult) -> Figure:
     """Draw each quantity over both axes as colors; the least is marked."""
-    over = " and ".join(axis.words for axis in result.axes)
+    over = " and ".join(axis.description for axis in result.axes)
     return Figure(
         "sweep_map",
         f"Map over {over}",
@@ -46,10 +46,10 @@ def _curves(result: SweepResult) -> Figure:
     one = len(result.axes) == 1
     quantities = result.quantities if one else result.quantities[:1]
     x = Axis(result.axes[result.across].label)
-    words = QUANTITIES[result.quantities[0].name].words
+    title = QUANTITIES[result.quantities[0].name].description
     return Figure(
         "sweep_curves",
-        f"{words[0].upper()}{words[1:]} over {result.axes[result.across].words}",
+        f"{title[0].upper()}{title[1:]} over {result.axes[result.across].description}",
         "Bands are the errors.",
         "",
         tuple(
@@ -63,23 +63,23 @@ def _map(result: SweepResult, quantity: SweptQuantity) -> Panel:
     """One quantity over both axes, the torque across."""
     across = result.across
     x, y = result.levels(across), result.levels(1 - across)
-    shown = QUANTITIES[quantity.name]
-    z = result.grid(quantity.value) / shown.one
-    shade = HeatMap.spanning(x, y, z, shown.label)
+    kind = QUANTITIES[quantity.name]
+    z = result.grid(quantity.value) / kind.one
+    shade = HeatMap.spanning(x, y, z, kind.label)
     at = np.argwhere(result.like_least(quantity))
     dots = x[at[:, 1]], y[at[:, 0]]
     marks = Line(_alike(result), *dots, palette.VERMILLION, width=0.0, markers=True)
     axes = Axis(result.axes[across].label), Axis(result.axes[1 - across].label)
-    return Panel(*axes, (marks,), title=shown.words, shade=shade)
+    return Panel(*axes, (marks,), title=kind.description, shade=shade)
 
 
 def _lines(result: SweepResult, quantity: SweptQuantity) -> tuple[Line, ...]:
     """Draw a curve with its band; of two axes one for each of some values of the other."""
-    shown = QUANTITIES[quantity.name]
-    value, error = (result.grid(values) / shown.one for values in (quantity.value, quantity.error))
+    kind = QUANTITIES[quantity.name]
+    value, error = (result.grid(values) / kind.one for values in (quantity.value, quantity.error))
     x = result.levels(result.across)
     if len(result.axes) == 1:
-        return (Line(shown.words, x, value, palette.BLUE, markers=True, band=error),)
+        return (Line(kind.description, x, value, palette.BLUE, markers=True, band=error),)
     other = result.axes[1 - result.across]
     levels = result.levels(1 - result.across)
     rows = np.unique(np.linspace(0, levels.size - 1, min(levels.size, MAX_CURVES)).round().astype(int))
@@ -98,28 +98,26 @@ def figure(result: SweepResult) -> Figure:
 
 def _figures(result: SweepResult) -> tuple[Figure, ...]:
     """Draw all: of two axes maps, and curves of the first quantity."""
-    words = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in _headlines(result))
+    text = " ".join(f"{h.name[0].upper()}{h.name[1:]}: {h.value} {h.remark}." for h in _headlines(result))
     drawn = (_maps(result), _curves(result)) if len(result.axes) == 2 else (_curves(result),)
-    return tuple(replace(each, alternative=words) for each in drawn)
+    return tuple(replace(figure, alternative=text) for figure in drawn)
 
 
 def _table(result: SweepResult, quantity: SweptQuantity) -> Table:
     """Return a quantity with its errors: over two axes a row for each value of the one that runs down."""
-    shown, across = QUANTITIES[quantity.name], result.across
+    kind, across = QUANTITIES[quantity.name], result.across
     texts = [
-        f"{number(value / shown.one, 3)} ±{engineering(error / shown.one, 1)}"
-        if np.isfinite(value)
-        else "none"
+        f"{number(value / kind.one, 3)} ±{engineering(error / kind.one, 1)}" if np.isfinite(value) else "none"
         for value, error in zip(quantity.value, quantity.error, strict=True)
     ]
     x = result.axes[across]
     levels = [f"{level:.6g}" for level in result.levels(across)]
     if len(result.axes) == 1:
-        return Table(shown.label, (x.label, shown.label), tuple(zip(levels, texts, strict=True)))
+        return Table(kind.label, (x.label, kind.label), tuple(zip(levels, texts, strict=True)))
     grid = result.grid(np.array(texts))
     head = (result.axes[1 - across].label, *(f"{level} {x.unit}" for level in levels))
     rows = tuple((f"{level:.6g}", *row) for level, row in zip(result.levels(1 - across), grid, strict=True))
-    return Table(f"{shown.label} over {x.words}", head, rows)
+    return Table(f"{kind.label} over {x.description}", head, rows)
 
 
 def _series(result: SweepResult) -> Table:
@@ -127,9 +125,9 @@ def _series(result: SweepResult) -> Table:
     head = [axis.path for axis in result.axes]
     columns = [swept.point[:, k] / axis.factor for k, axis in enumerate(result.axes)]
     for quantity in swept.quantities:
-        shown = QUANTITIES[quantity.name]
-        head += [shown.field.format(""), shown.field.format("_error")]
-        columns += [quantity.value / shown.one, quantity.error / shown.one]
+        kind = QUANTITIES[quantity.name]
+        head += [kind.field.format(""), kind.field.format("_error")]
+        columns += [quantity.value / kind.one, quantity.error / kind.one]
     rows = tuple(tuple(f"{value:.9g}" for value in row) for row in zip(*columns, strict=True))
     return Table("All points", tuple(head), rows)
 
@@ -139,47 +137,47 @@ def _headlines(result: SweepResult) -> tuple[Headline, ...]:
     if not result.sweep.usable:
         return ()
     quantity = result.quantities[0]
-    shown = QUANTITIES[quantity.name]
+    kind = QUANTITIES[quantity.name]
     worst = int(np.nanargmax(quantity.value))
-    largest = Headline(f"largest {shown.words}", *_figure(result, quantity, worst))
+    largest = Headline(f"largest {kind.description}", *_figure(result, quantity, worst))
     if len(result.axes) == 2 and TORQUE in result.sweep.axes:
         return (_best_level(result, quantity), largest)
-    best = Headline(f"least {shown.words}", *_figure(result, quantity, quantity.minimum))
+    best = Headline(f"least {kind.description}", *_figure(result, quantity, quantity.minimum))
     like = int(quantity.like_least.sum()) - 1
     others = f"as low within the errors: {like} others" if like else f"below all others {BEYOND}"
     return (replace(best, remark=f"{best.remark}; {others}"), largest)
 
 
 def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[str, str]:
-    shown = QUANTITIES[quantity.name]
+    kind = QUANTITIES[quantity.name]
     where = " and ".join(
-        f"{axis.words} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
+        f"{axis.description} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
         for k, axis in enumerate(result.axes)
     )
-    error = engineering(float(quantity.error[point]) / shown.one, 2)
-    value = f"{number(float(quantity.value[point]) / shown.one, 3)} {shown.unit}".strip()
-    return value, f"± {error} {shown.unit}".strip() + f" at {where}"
+    error = engineering(float(quantity.error[point]) / kind.one, 2)
+    value = f"{number(float(quantity.value[point]) / kind.one, 3)} {kind.unit}".strip()
+    return value, f"± {error} {kind.unit}".strip() + f" at {where}"
 
 
 def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
-    down, shown = 1 - result.across, QUANTITIES[quantity.name]
+    down, kind = 1 - result.across, QUANTITIES[quantity.name]
     axis, levels = result.axes[down], result.levels(down)
     value, error = (
-        result.grid(values).mean(axis=1) / shown.one for values in (quantity.value, quantity.error)
+        result.grid(values).mean(axis=1) / kind.one for values in (quantity.value, quantity.error)
     )
     best = int(np.nanargmin(value))
     alike = value - value[best] <= error + error[best]
     alike[best] = False
     others = ", ".join(f"{level:.6g}" for level in levels[alike])
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
-    text = f"{number(value[best], 3)} {shown.unit}".strip()
-    band = f"± {engineering(float(error[best]), 2)} {shown.unit}".strip()
-    where = f"at {axis.words} {levels[best]:.6g} {axis.unit}"
-    return Headline(f"least mean {shown.words} over the torques", text, f"{band} {where}; {also}")
+    text = f"{number(value[best], 3)} {kind.unit}".strip()
+    band = f"± {engineering(float(error[best]), 2)} {kind.unit}".strip()
+    where = f"at {axis.description} {levels[best]:.6g} {axis.unit}"
+    return Headline(f"least mean {kind.description} over the torques", text, f"{band} {where}; {also}")
 
 
 def _page(result: SweepResult) -> Page:
-    over = " and ".join(axis.words for axis in result.axes)
+    over = " and ".join(axis.description for axis in result.axes)
     failed = len(result.sweep.reason) - result.sweep.usable
     lead = f"{len(result.sweep.reason)} points over {over}"
     alarms = (f"{failed} points have no figures: the contact was not solved.",) if failed else ()

@@ -32,19 +32,19 @@ def attached(pdf: bytes, name: str, content: bytes) -> bytes:
         file: b"<</Type /Filespec\n/F %b\n/UF %b\n/AFRelationship /Data\n/EF <</F %d 0 R>>>>"
         % (label, label, stream),
     }
-    whole, table = pdf, b"xref\n"
+    extended, table = pdf, b"xref\n"
     for number, body in objects.items():
-        table += b"%d 1\n%010d 00000 n \n" % (number, len(whole))
-        whole += b"%d 0 obj\n%b\nendobj\n" % (number, body)
+        table += b"%d 1\n%010d 00000 n \n" % (number, len(extended))
+        extended += b"%d 0 obj\n%b\nendobj\n" % (number, body)
     trailer = b"trailer\n<</Size %d\n/Root %d 0 R\n/Prev %d>>\n" % (size + 2, root, last)
-    return whole + table + trailer + b"startxref\n%d\n%%%%EOF\n" % len(whole)
+    return extended + table + trailer + b"startxref\n%d\n%%%%EOF\n" % len(extended)
 
 
 def _end(pdf: bytes) -> tuple[int, int, int]:
     """Return where the last table of references is, the number of objects, and that of the catalog."""
     trailer = pdf[pdf.rfind(b"trailer") :]
-    found = [re.search(rb"%b\s+(\d+)" % name, trailer) for name in (b"startxref", b"/Size", b"/Root")]
-    if not all(found):
+    matches = [re.search(rb"%b\s+(\d+)" % name, trailer) for name in (b"startxref", b"/Size", b"/Root")]
+    if not all(matches):
         raise ValueError("the PDF file has no trailer")
-    last, size, root = (int(one[1]) for one in found if one)
+    last, size, root = (int(one[1]) for one in matches if one)
     return last, size, root

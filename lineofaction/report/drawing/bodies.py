@@ -206,14 +206,14 @@ class _Picture:
 
     def add(self, body: Body, ring: Ring, color: Sequence[float]) -> None:
         window = _Window.about(self.camera, rims(body, ring))
-        own = (window.rows, window.columns)
+        pixels = (window.rows, window.columns)
         for met in _surfaces(ring, self.camera.eye - [*body.axis, 0.0], window.ray, self.camera.light):
-            before = met.distance < self.distance[own] * (1.0 - BEHIND)
-            self.distance[own][before] = met.distance[before]
+            before = met.distance < self.distance[pixels] * (1.0 - BEHIND)
+            self.distance[pixels][before] = met.distance[before]
             self.count += 1
-            self.surface[own][before] = self.count
+            self.surface[pixels][before] = self.count
             lit = SHADE + (1.0 - SHADE) * met.light[before]
-            self.color[own][before] = np.outer(lit, color)
+            self.color[pixels][before] = np.outer(lit, color)
 
     def cover(self, hull: Hull, color: Sequence[float]) -> None:
         """Draw what the eye sees of a surface from outside over all that is behind it."""
@@ -223,12 +223,12 @@ class _Picture:
             if (height := float(across @ (self.camera.eye - corners[0]))) <= 0.0:
                 continue
             window = _Window.about(self.camera, corners)
-            own = (window.rows, window.columns)
+            pixels = (window.rows, window.columns)
             with np.errstate(divide="ignore", invalid="ignore"):
                 distance = -height / np.tensordot(across, window.ray, 1)
-            met = _within(corners - self.camera.eye, window.ray) & (distance < nearest[own])
-            nearest[own][met] = distance[met]
-            lit[own][met] = max(float(self.camera.light @ across) / float(np.linalg.norm(across)), 0.0)
+            met = _within(corners - self.camera.eye, window.ray) & (distance < nearest[pixels])
+            nearest[pixels][met] = distance[met]
+            lit[pixels][met] = max(float(self.camera.light @ across) / float(np.linalg.norm(across)), 0.0)
         front = nearest < self.distance
         over = np.outer(SHADE + (1.0 - SHADE) * lit[front], color)
         self.color[front] += THROUGH * (over - self.color[front])

@@ -23,7 +23,7 @@ DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 _SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
 _SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
-_MAX_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
+_MAX_INTEGER = 30  # an axis of whole numbers up to here has no ticks between them
 _FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
 
@@ -324,20 +324,20 @@ def largest(sizes: FloatArray, count: int) -> list[int]:
     return sorted(np.argsort(-sizes, kind="stable")[:count].tolist())
 
 
-def panel_height(panel: Panel, beside: int = 1) -> float:
+def panel_height(panel: Panel, columns: int = 1) -> float:
     """Return the height of a panel over the usual one; a drawing is as tall as it needs to fill the width.
 
-    `beside` panels share the width.
+    `columns` panels share the width.
     """
     if not panel.equal:
         return 1.0
     across, along = (_extent(panel, axis) for axis in ("x", "y"))
-    return min(max(DRAWING_WIDTH / beside * along / max(across, 1e-12), 1.0), TALLEST)
+    return min(max(DRAWING_WIDTH / columns * along / max(across, 1e-12), 1.0), TALLEST)
 
 
 def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
-    own: Axis = getattr(panel, axis)
-    values = own.limits or np.concatenate([getattr(line, axis) for line in panel.lines])
+    drawn_axis: Axis = getattr(panel, axis)
+    values = drawn_axis.limits or np.concatenate([getattr(line, axis) for line in panel.lines])
     return float(np.nanmax(values) - np.nanmin(values))
 
 
@@ -366,16 +366,16 @@ def _few_marks(shade: HeatMap | Strokes | None) -> bool:
 def panel_rows(panels: Sequence[Panel], across: int) -> list[list[int]]:
     """Return panels by rows of at most `across`; strokes, isolines, wide drawings, long labels are alone."""
     rows: list[list[int]] = []
-    beside = False
+    is_shared = False
     for index, panel in enumerate(panels):
         labels = max((len(row) for line in panel.lines for row in line.label.split("\n")), default=0)
         slim = panel_height(panel) > _SLIM if panel.equal else _few_marks(panel.shade)
         narrow = slim and labels <= _SHORT
-        if narrow and beside and len(rows[-1]) < across:
+        if narrow and is_shared and len(rows[-1]) < across:
             rows[-1].append(index)
         else:
             rows.append([index])
-        beside = narrow
+        is_shared = narrow
     return rows
 
 
@@ -384,14 +384,14 @@ def counts(panel: Panel, name: Literal["x", "y"]) -> bool:
     axis: Axis = getattr(panel, name)
     if axis.scale == "log" or axis.names:
         return False
-    shown = [getattr(line, name) for line in panel.lines]
-    shown += [bars.x for bars in panel.bars if name == "x"]
-    values = np.concatenate([np.ravel(each) for each in shown]) if shown else np.empty(0)
+    coordinates = [getattr(line, name) for line in panel.lines]
+    coordinates += [bars.x for bars in panel.bars if name == "x"]
+    values = np.concatenate([np.ravel(part) for part in coordinates]) if coordinates else np.empty(0)
     values = values[np.isfinite(values)]
-    span, whole = float(np.ptp(values)) if values.size else 0.0, bool(np.all(values == np.round(values)))
+    span, is_integer = float(np.ptp(values)) if values.size else 0.0, bool(np.all(values == np.round(values)))
     if re.search(r"\borders?\b", axis.label):
-        return whole or span > _FEW_ORDERS
-    return name == "x" and bool(panel.lines) and whole and span <= _MAX_WHOLE
+        return is_integer or span > _FEW_ORDERS
+    return name == "x" and bool(panel.lines) and is_integer and span <= _MAX_INTEGER
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

@@ -49,7 +49,7 @@ from lineofaction.report.drawing.placing import line_labels, rewritten, vertical
 THIN, THICK = 0.7, 4.0  # points
 _WIDTH, _DPI = 9.0, 150
 _PANEL_HEIGHT, _NARROW_HEIGHT, _DRAWING_HEIGHT = 2.0, 1.64, 2.6  # inches
-_BESIDE, _BESIDE_COLORS = 0.9, 0.82  # inches for title and legend; width of a panel with a scale of colors
+_LEGEND_HEIGHT, _SHADED_WIDTH = 0.9, 0.82  # inches for title and legend; width of a panel with colors
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
 _HALF_LABEL, _HIGH_LABEL, _NARROW_LABEL = 46, 26, 20  # characters of a row below and beside panels
@@ -174,12 +174,12 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
     """Draw panels in rows of at most `across`; curves of one name share one entry in the legend below."""
     rows = panel_rows(panels, across)
     heights = [max(_height(panels[index], len(row)) for index in row) for row in rows]
-    sheet = Sheet(figsize=(_WIDTH, sum(heights) + _BESIDE), layout="constrained")
+    sheet = Sheet(figsize=(_WIDTH, sum(heights) + _LEGEND_HEIGHT), layout="constrained")
     grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
     axes: list[Axes] = [
-        sheet.add_subplot(grid[row, :] if len(beside) == 1 else grid[row, column])
-        for row, beside in enumerate(rows)
-        for column in range(len(beside))
+        sheet.add_subplot(grid[row, :] if len(columns) == 1 else grid[row, column])
+        for row, columns in enumerate(rows)
+        for column in range(len(columns))
     ]
     alone = {row[0] for row in rows if len(row) == 1}
     handles: dict[str, Any] = {}
@@ -214,10 +214,10 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
     return sheet
 
 
-def _height(panel: Panel, beside: int) -> float:
-    usual = _PANEL_HEIGHT if beside == 1 else _NARROW_HEIGHT
-    drawing = _DRAWING_HEIGHT if panel.shade is None else _BESIDE_COLORS * _DRAWING_HEIGHT
-    return panel_height(panel, beside) * (drawing if panel.equal else usual)
+def _height(panel: Panel, columns: int) -> float:
+    usual = _PANEL_HEIGHT if columns == 1 else _NARROW_HEIGHT
+    drawing = _DRAWING_HEIGHT if panel.shade is None else _SHADED_WIDTH * _DRAWING_HEIGHT
+    return panel_height(panel, columns) * (drawing if panel.equal else usual)
 
 
 def _legend_columns(names: list[str]) -> int:
@@ -280,9 +280,9 @@ def _finish(ax: Axes, panel: Panel) -> None:
     if any(line.label for line in panel.lines):
         ax.set_ylim(vertical_limits(panel))
         _label_lines(ax, panel)
-    for drawn, whole in ((ax.xaxis, counts(panel, "x")), (ax.yaxis, counts(panel, "y"))):
-        if whole:
-            drawn.set_major_locator(MaxNLocator(integer=True))
+    for ticked, is_integer in ((ax.xaxis, counts(panel, "x")), (ax.yaxis, counts(panel, "y"))):
+        if is_integer:
+            ticked.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:

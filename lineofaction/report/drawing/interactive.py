@@ -121,14 +121,14 @@ def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
 def _step(shade: Strokes, chosen: Any, k: int, unit: str) -> Json:
     """Draw the strokes of one step, with breaks between them; step 0 carries nothing."""
     gap = np.full((int(chosen.sum()), 1), np.nan)
-    words = [[f"{number(v, 4)} {unit}"] * 2 + [""] for v in shade.value[chosen]]
+    labels = [[f"{number(v, 4)} {unit}"] * 2 + [""] for v in shade.value[chosen]]
     fraction = (k - 0.5) / STEPS
     return {
         "type": "scatter",
         "mode": "lines",
         "x": numbers(np.hstack([shade.x[chosen], gap]).ravel()),
         "y": numbers(np.hstack([shade.y[chosen], gap]).ravel()),
-        "text": [word for group in words for word in group],
+        "text": [word for group in labels for word in group],
         "hoverinfo": "text",
         "line": {
             "color": palette.MUTED if k == 0 else palette.cividis(fraction),
@@ -157,13 +157,13 @@ def plotly_figure(figure: Figure) -> Json:
         top = inner - (sum(heights[:index]) + sum(gaps[:index]))
         domain = [round((top - heights[index]) / inner, 6), round(top / inner, 6)]
         frame = {"domain": domain, "anchor": "x" + suffix}
-        layout["xaxis" + suffix] = _axis(panel.x) | _whole(panel, "x") | {"anchor": "y" + suffix}
+        layout["xaxis" + suffix] = _axis(panel.x) | _integer_ticks(panel, "x") | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
         upright = panel.y
         if any(line.label for line in panel.lines):  # with limits, so that the places of labels are known
             upright = replace(panel.y, limits=vertical_limits(panel))
-        layout["yaxis" + suffix] = _axis(upright) | _whole(panel, "y") | frame
+        layout["yaxis" + suffix] = _axis(upright) | _integer_ticks(panel, "y") | frame
         if panel.equal:
             layout["xaxis" + suffix] |= {"scaleanchor": "y" + suffix, "constrain": "domain"}
         layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
@@ -253,13 +253,13 @@ def _axis(axis: Axis) -> Json:
     return made
 
 
-def _whole(panel: Panel, name: Literal["x", "y"]) -> Json:
+def _integer_ticks(panel: Panel, name: Literal["x", "y"]) -> Json:
     """Return the ticks of an axis of orders or of few whole numbers: at whole numbers."""
     if not counts(panel, name):
         return {}
-    shown: list[Any] = [*panel.lines, *([] if panel.shade is None else [panel.shade])]
-    shown += panel.bars if name == "x" else ()
-    values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in shown]
+    parts: list[Any] = [*panel.lines, *([] if panel.shade is None else [panel.shade])]
+    parts += panel.bars if name == "x" else ()
+    values = [np.asarray(getattr(panel, name).limits or ())] + [getattr(one, name) for one in parts]
     ends = np.concatenate([*(value.ravel() for value in values), np.zeros(1)])  # of an empty plot too
     span = float(np.ptp(ends[np.isfinite(ends)]))
     return {"tick0": 0, "dtick": max(math.ceil(span / _MAX_TICKS), 1)}

@@ -33,34 +33,34 @@ BOLDER = 2.0
 
 def marks_of(result: Any) -> Marks | None:
     """Return what a result says of the complaint of its scene, None without one."""
-    facts: Mapping[str, Any] = getattr(result, "facts", {})
-    return facts.get(NAME)
+    metadata: Mapping[str, Any] = getattr(result, "facts", {})
+    return metadata.get(NAME)
 
 
 def of_run(marks: Marks, mesh: str) -> Marks:
     """Return the marks in the plots of a run or a table, whose orders, speeds and torques are of a mesh."""
-    own = marks["meshes"].get(mesh, {})
+    mesh_marks = marks["meshes"].get(mesh, {})
     axes = {label: value for label, value in marks["axes"].items() if label == "frequency, Hz"}
-    if own:
-        axes |= {"mesh order": own["order"]}
-        known = {DRIVER: own["driver_rpm"], TORQUE: own.get("torque_n_m")}
+    if mesh_marks:
+        axes |= {"mesh order": mesh_marks["order"]}
+        known = {DRIVER: mesh_marks["driver_rpm"], TORQUE: mesh_marks.get("torque_n_m")}
         axes |= {label: value for label, value in known.items() if value is not None}
-    return {**marks, "order": own.get("order", np.nan), "axes": axes}
+    return {**marks, "order": mesh_marks.get("order", np.nan), "axes": axes}
 
 
-def order_words(order: float, facts: Mapping[str, Any]) -> str:
+def order_label(order: float, metadata: Mapping[str, Any]) -> str:
     """Return an order with what it is where that is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
-    text, turning = f"{order:.4g}", facts.get("turning")
+    text, turning = f"{order:.4g}", metadata.get("turning")
     if turning is None or np.isclose(order, round(order), rtol=1e-6):
         return text
     name = order_name(order, turning["mesh"], turning["shaft"])
     return f"{text} ({name})" if name else text
 
 
-def shown_orders(order: FloatArray, sizes: FloatArray, count: int, facts: Mapping[str, Any]) -> list[int]:
+def drawn_orders(order: FloatArray, sizes: FloatArray, count: int, metadata: Mapping[str, Any]) -> list[int]:
     """Return the indices of `count` orders (H,), the largest by sizes (H,), one of them the complaint's."""
-    own = np.flatnonzero(np.isclose(order, facts.get(NAME, {}).get("order", np.nan), rtol=1e-6))
-    return largest(np.where(np.isin(np.arange(sizes.size), own), np.inf, sizes), count)
+    marked = np.flatnonzero(np.isclose(order, metadata.get(NAME, {}).get("order", np.nan), rtol=1e-6))
+    return largest(np.where(np.isin(np.arange(sizes.size), marked), np.inf, sizes), count)
 
 
 def marked_page(page: Page, marks: Marks) -> Page:
@@ -94,18 +94,18 @@ def marked(figure: Figure, marks: Marks) -> Figure:
 
 
 def _marked_panel(panel: Panel, marks: Marks) -> Panel:
-    own = tuple(
-        Reference(f"{NAME}, {_words(axis, value)}", value, direction, 0.98)
+    references = tuple(
+        Reference(f"{NAME}, {_value_label(axis, value)}", value, direction, 0.98)
         for axis, direction, value in _values(panel, marks)
         if _reaches(panel, axis, direction, value)
     )
     order = f"{marks['order']:.4g}"
     names = f"order {order}", f"{order}×"
     lines = tuple(_bold(line) if line.name.partition(" (")[0] in names else line for line in panel.lines)
-    return replace(panel, references=(*panel.references, *own), lines=lines)
+    return replace(panel, references=(*panel.references, *references), lines=lines)
 
 
-def _words(axis: Axis, value: float) -> str:
+def _value_label(axis: Axis, value: float) -> str:
     """Name a value in the unit of its axis, or after an axis without one."""
     size, unit = engineering(value, 4), unit_of(axis.label)
     return f"{axis.label} {size}" if unit == axis.label else f"{size} {unit}"
@@ -128,9 +128,9 @@ def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
         low, high = axis.limits
         return low <= value <= high
     name = "x" if direction == "vertical" else "y"
-    shown = [getattr(line, name) for line in panel.lines]
-    shown += [] if panel.shade is None else [np.ravel(getattr(panel.shade, name))]
-    known = np.concatenate([np.empty(0), *shown])
+    coordinates = [getattr(line, name) for line in panel.lines]
+    coordinates += [] if panel.shade is None else [np.ravel(getattr(panel.shade, name))]
+    known = np.concatenate([np.empty(0), *coordinates])
     known = known[np.isfinite(known)]
     return bool(known.size and known.min() <= value <= known.max())
 
@@ -138,7 +138,7 @@ def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:
 def _beyond(panel: Panel, marks: Marks) -> list[str]:
     """Say which values of the complaint a panel does not reach."""
     return [
-        f"The {NAME}, {_words(axis, value)}, lies beyond this axis."
+        f"The {NAME}, {_value_label(axis, value)}, lies beyond this axis."
         for axis, direction, value in _values(panel, marks)
         if not _reaches(panel, axis, direction, value)
     ]

@@ -139,12 +139,12 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
     body = "\n".join(
         _section(section, index, images, still=still) for index, section in enumerate(page.sections, start=1)
     )
-    heard = any(figure.sound for section in page.sections for figure in section.figures)
-    style = _margins(page) + _text("page.css") + (_text(STYLE_SHEET) if heard else "")
+    has_sound = any(figure.sound for section in page.sections for figure in section.figures)
+    style = _margins(page) + _text("page.css") + (_text(STYLE_SHEET) if has_sound else "")
     library = "" if still else f'<script type="text/plain" id="library">{_library()}</script>\n'
     drawn = "" if still else f"<script>\n{_text('page.js')}</script>"
-    shown = "<style>.still { display: block; } figure:has(.still) h3 { display: none; }</style>"
-    seen = shown if still else f"<noscript>{shown}<style>.plot {{ display: none; }}</style></noscript>"
+    rule = "<style>.still { display: block; } figure:has(.still) h3 { display: none; }</style>"
+    seen = rule if still else f"<noscript>{rule}<style>.plot {{ display: none; }}</style></noscript>"
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
@@ -156,7 +156,7 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
             drawn,
-            f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>' if heard else "",
+            f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>' if has_sound else "",
             "</body>\n</html>\n",
         ]
     )
@@ -172,9 +172,9 @@ def _library() -> str:
 def _margins(page: Page) -> str:
     """Return what stands on every printed page beside its number."""
     corner = page.block.corner if page.block else ""
-    words = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
-    plain = {place: re.sub(r"[^\w .,:;()/+-]", " ", text) for place, text in words.items()}
-    boxes = " ".join(f'@{place} {{ content: "{text}"; }}' for place, text in plain.items())
+    texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
+    plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}
+    boxes = " ".join(f'@{corner_name} {{ content: "{text}"; }}' for corner_name, text in plain.items())
     return f"\n@page {{ {boxes} }}\n"
 
 
@@ -182,7 +182,7 @@ def _block(block: TitleBlock | None) -> str:
     if block is None:
         return ""
     rows = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(text)}</dd></div>" for name, text in block.rows)
-    verdicts = "".join(f'<p class="verdict"><strong>{escape(words)}</strong></p>' for words in block.verdicts)
+    verdicts = "".join(f'<p class="verdict"><strong>{escape(text)}</strong></p>' for text in block.verdicts)
     return f'<dl class="block">{rows}</dl>\n{verdicts}'
 
 
@@ -208,18 +208,18 @@ def _header(page: Page) -> str:
 def _section(section: Section, index: int, images: dict[str, bytes], *, still: bool) -> str:
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
     figures = "\n".join(_figure(figure, images[figure.key], still=still) for figure in section.figures)
-    shown = (_table(table, below=section.title) for table in section.tables)
-    tables = "\n".join([*shown, *map(_folded, section.folded)])
+    open_tables = (_table(table, below=section.title) for table in section.tables)
+    tables = "\n".join([*open_tables, *map(_folded, section.folded)])
     title = escape(section.title)
     aside = section.part is Part.RECEIPT or not (section.figures or section.tables)
-    kept = ' class="unprinted"' if aside else ""
-    head = f'<section{kept} aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
+    print_class = ' class="unprinted"' if aside else ""
+    head = f'<section{print_class} aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
     return f"{head}\n{text}{figures}{tables}</section>"
 
 
 def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
     """One plot with its caption, its still image and its numbers; a picture has no plot."""
-    still, shown = still or figure.picture is not None, "picture" if figure.picture else "still"
+    still, image_class = still or figure.picture is not None, "picture" if figure.picture else "still"
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
     numbers = _folded(figure.table, "Numbers") if figure.table else ""
     plot = f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
@@ -229,7 +229,7 @@ def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
     encoded = base64.b64encode(image).decode("ascii")
     return (
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n{"" if still else plot}'
-        f'<img class="{shown}" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
+        f'<img class="{image_class}" alt="{alternative}" src="data:image/png;base64,{encoded}">\n'
         f"<figcaption><strong>{escape(figure.alternative)}</strong> {escape(figure.caption)}</figcaption>\n"
         f"{_player(figure)}{numbers}{data}</figure>"
     )
@@ -275,9 +275,9 @@ def _table(table: Table, below: str = "") -> str:
 
 def _row(row: Sequence[str], marks: Sequence[str], joined: bool) -> str:
     """Write a row, whose short cells are not broken where they are `joined`."""
-    kept = [m or ' class="w"' * (joined and len(cell) <= _SHORT) for m, cell in zip(marks, row, strict=True)]
-    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(kept[1:], row[1:], strict=True))
-    return f'<tr><th scope="row"{kept[0]}>{escape(row[0])}</th>{cells}</tr>'
+    attrs = [m or ' class="w"' * (joined and len(cell) <= _SHORT) for m, cell in zip(marks, row, strict=True)]
+    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(attrs[1:], row[1:], strict=True))
+    return f'<tr><th scope="row"{attrs[0]}>{escape(row[0])}</th>{cells}</tr>'
 
 
 def numeric_columns(table: Table) -> list[bool]:

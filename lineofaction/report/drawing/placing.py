@@ -32,8 +32,8 @@ def envelope(time: FloatArray, values: FloatArray, columns: int = 1200) -> tuple
     if size <= 2 * columns:
         return time, values
     edges = np.linspace(0, size, columns + 1).astype(int)
-    kept = [a + np.sort([np.argmin(values[a:b]), np.argmax(values[a:b])]) for a, b in pairwise(edges)]
-    index = np.unique(np.concatenate([[0], *kept, [size - 1]]))
+    extremes = [a + np.sort([np.argmin(values[a:b]), np.argmax(values[a:b])]) for a, b in pairwise(edges)]
+    index = np.unique(np.concatenate([[0], *extremes, [size - 1]]))
     return time[index], values[index]
 
 
@@ -47,8 +47,8 @@ class _Box(NamedTuple):
 
     def covers(self, other: _Box) -> bool:
         """Whether both share more than an edge."""
-        apart = self.right <= other.left or other.right <= self.left
-        return not (apart or self.high <= other.low or other.high <= self.low)
+        is_disjoint = self.right <= other.left or other.right <= self.left
+        return not (is_disjoint or self.high <= other.low or other.high <= self.low)
 
 
 def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]) -> tuple[Note, ...]:
@@ -67,13 +67,13 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     taken = [
         _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
     ]
-    moved, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
+    shifted, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
         boxes = {slot: _text(notes[k].text, across[k], along[k], *slot) for slot in _PLACES}
         slot = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
         taken.append(boxes[slot])
-        moved[k] = replace(notes[k], row=slot[0], left=slot[1])
-    return tuple(moved)
+        shifted[k] = replace(notes[k], row=slot[0], left=slot[1])
+    return tuple(shifted)
 
 
 def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
@@ -107,18 +107,18 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
 
     `row`: height of one row of text, as a part of the panel's.
     """
-    lines = [line for line in panel.lines if line.label and _shown(line.y, panel.y).size]
-    ends = np.array([_shown(line.y, panel.y)[-1] for line in lines])
+    lines = [line for line in panel.lines if line.label and _drawable(line.y, panel.y).size]
+    ends = np.array([_drawable(line.y, panel.y)[-1] for line in lines])
     heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
-    middles = spread_apart(at, heights)
+    middles = spread_positions(at, heights)
     return [
         _LineLabel(line.label, line.color, float(end), float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 
 
-def spread_apart(wanted: FloatArray, heights: FloatArray) -> FloatArray:
+def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
     """Return the middles of texts (n,) of given heights that lie apart and nearest to where they are wanted.
 
     The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is
@@ -145,7 +145,7 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
         return panel.y.limits
     edges = [line.y + side * np.nan_to_num(line.band) for line in panel.lines for side in (-1.0, 1.0)]
     curves = edges if panel.y.scale == "linear" else [line.y for line in panel.lines]
-    values = _shown(np.concatenate(curves), panel.y)
+    values = _drawable(np.concatenate(curves), panel.y)
     low, high = (float(values.min()), float(values.max())) if values.size else (1.0, 1.0)
     if panel.y.scale == "log":
         room = (high / low) ** _ROOM if high > low else 2.0
@@ -154,7 +154,7 @@ def vertical_limits(panel: Panel) -> tuple[float, float]:
     return low - room, high + room
 
 
-def _shown(values: FloatArray, axis: Axis) -> FloatArray:
+def _drawable(values: FloatArray, axis: Axis) -> FloatArray:
     return values[np.isfinite(values) & ((values > 0.0) | (axis.scale == "linear"))]
 
 
@@ -166,6 +166,6 @@ def rewritten(description: Description, write: Callable[[str], str]) -> Descript
     elif isinstance(part, tuple):
         part = tuple(rewritten(entry, write) for entry in part)
     elif is_dataclass(part) and not isinstance(part, type):
-        own = {each.name: rewritten(getattr(part, each.name), write) for each in fields(part)}
-        part = replace(part, **own)
+        changes = {field.name: rewritten(getattr(part, field.name), write) for field in fields(part)}
+        part = replace(part, **changes)
     return cast(Description, part)

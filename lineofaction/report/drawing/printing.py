@@ -24,8 +24,8 @@ def pdf(page: str, named: Path) -> bytes:
     `named`: the file that is written, for the refusal. Raises `BadInput`: there is no browser (the variable
     ``CHROMIUM`` names one), it fails, or it takes over two minutes.
     """
-    found = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))
-    browser = next((path for path in found if path), None)
+    paths = (shutil.which(name) for name in (os.environ.get("CHROMIUM", ""), *_BROWSERS))
+    browser = next((path for path in paths if path), None)
     if browser is None:
         remedy = "Install Chromium or Chrome, name one in CHROMIUM, or write an .html page and print that."
         raise BadInput.of("output", str(named), "a page where no browser is installed", remedy)
@@ -34,9 +34,9 @@ def pdf(page: str, named: Path) -> bytes:
     with TemporaryDirectory() as folder:
         source, printed = Path(folder) / "page.html", Path(folder) / "page.pdf"
         source.write_text(page, encoding="utf-8")
-        own = [f"--user-data-dir={folder}/profile", f"--print-to-pdf={printed}", source.as_uri()]
+        arguments = [f"--user-data-dir={folder}/profile", f"--print-to-pdf={printed}", source.as_uri()]
         try:
-            call = [browser, *_FLAGS, *sandbox, *own]
+            call = [browser, *_FLAGS, *sandbox, *arguments]
             subprocess.run(call, check=True, capture_output=True, timeout=_LIMIT_S)
             return printed.read_bytes()
         except (OSError, subprocess.SubprocessError) as error:

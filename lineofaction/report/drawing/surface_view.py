@@ -24,7 +24,7 @@ SIDE = 0.03
 """Of the surface: the least part between edges, smaller ones have none."""
 ALIKE, PASSES = 80.0, 3
 """Degrees between neighbors from which on none evens the other, and how often they do."""
-BESIDE = 2
+OUTLINE_MARGIN = 2
 """Pixels from the outline to where nothing is seen, at most."""
 BEHIND = 3.0
 """Pixels in depth by which an edge may lie behind what hides nothing: facets are flat, pixels coarse."""
@@ -100,10 +100,10 @@ def _covered(
     third = (y * edge[:, None, 0] - x * edge[:, None, 1]) / area
     inside = (second >= -1e-9) & (third >= -1e-9) & (second + third <= 1.0 + 1e-9) & np.isfinite(area)
     inside &= np.all((pixel >= 0) & (pixel < view.shape[::-1]), axis=2)
-    row, place = np.nonzero(inside)
-    ahead = a[row, 2] + second[row, place] * edge[row, 2] + third[row, place] * other[row, 2]
+    row, column = np.nonzero(inside)
+    ahead = a[row, 2] + second[row, column] * edge[row, 2] + third[row, column] * other[row, 2]
     ahead -= np.where(area[row, 0] < 0.0, 1.0, 0.0)  # behind those that face the eye
-    number = pixel[row, place, 1] * view.shape[1] + pixel[row, place, 0]
+    number = pixel[row, column, 1] * view.shape[1] + pixel[row, column, 0]
     return facets[row], number, ahead
 
 
@@ -144,8 +144,8 @@ def _outline(view: _View, points: FloatArray, triangles: IntArray, depth: FloatA
     facing = _across(points, triangles) @ view.axes[:, 2] > 0.0
     turned = edges[facing[one] != facing[two]]
     column, row = np.rint(view.pixels(points[turned].mean(axis=1))[:, :2]).astype(int).T
-    blank = np.pad(np.isinf(depth), BESIDE, constant_values=True)
-    around = np.arange(2 * BESIDE + 1)
+    blank = np.pad(np.isinf(depth), OUTLINE_MARGIN, constant_values=True)
+    around = np.arange(2 * OUTLINE_MARGIN + 1)
     near = blank[row[:, None, None] + around[:, None], column[:, None, None] + around]
     return np.asarray(turned[near.any(axis=(1, 2))])
 
@@ -159,8 +159,8 @@ def _evened(across: FloatArray, one: IntArray, two: IntArray) -> FloatArray:
     area = np.maximum(np.linalg.norm(across, axis=1), 1e-300)[:, None]
     normal = across / area
     for _ in range(PASSES):
-        apart = 1.0 - np.sum(normal[one] * normal[two], axis=1)
-        weight = np.maximum(1.0 - (apart / (1.0 - np.cos(np.radians(ALIKE)))) ** 2, 0.0)[:, None] ** 2
+        deviation = 1.0 - np.sum(normal[one] * normal[two], axis=1)
+        weight = np.maximum(1.0 - (deviation / (1.0 - np.cos(np.radians(ALIKE)))) ** 2, 0.0)[:, None] ** 2
         mean = area * normal
         np.add.at(mean, one, weight * area[two] * normal[two])
         np.add.at(mean, two, weight * area[one] * normal[one])
@@ -169,7 +169,7 @@ def _evened(across: FloatArray, one: IntArray, two: IntArray) -> FloatArray:
 
 
 def surface_panels(
-    points: FloatArray, triangles: IntArray, offset: FloatArray, value: FloatArray, label: str, words: str
+    points: FloatArray, triangles: IntArray, offset: FloatArray, value: FloatArray, label: str, subtitle: str
 ) -> tuple[Panel, ...]:
     """Draw a moved surface in the colors of a value, with the edges of where it was, from two sides.
 
@@ -183,13 +183,13 @@ def surface_panels(
     label, words : str
         Of the colors, with the unit after the last comma, and in the titles of the panels, if any.
     """
-    moved = points + offset
+    displaced = points + offset
     largest = float(np.max(np.abs(value), initial=0.0)) or 1.0
     minimum = -largest if np.any(value < 0.0) else 0.0
     panels, folds = [], _folds(points, triangles)
     for side, eye in SIDES.items():
-        view = _view_of(np.concatenate([points, moved]), eye)
-        image, _ = _rendered(view, moved[triangles], value)
+        view = _view_of(np.concatenate([points, displaced]), eye)
+        image, _ = _rendered(view, displaced[triangles], value)
         _, depth = _rendered(view, points[triangles], value)
         x, y = (1e3 * view.step * np.arange(count, dtype=np.float64) for count in view.shape[::-1])
         about = _outline(view, points, triangles, depth)
@@ -199,7 +199,7 @@ def surface_panels(
         outline = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, minimum)
-        titled = f"{side}{words and f': {words}'}"
+        titled = f"{side}{subtitle and f': {subtitle}'}"
         panels.append(Panel(across, up, (outline,), title=titled, shade=shade, equal=True))
     return tuple(panels)
 

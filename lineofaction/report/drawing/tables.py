@@ -23,7 +23,7 @@ HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
 UNKNOWN, MIN = "-", 1e-3
 
 
-def facts(caption: str, content: Mapping[str, Any]) -> Table:
+def settings_table(caption: str, content: Mapping[str, Any]) -> Table:
     """Flatten nested settings into a table of two columns; a list of numbers stays in one cell."""
     return Table(caption, ("quantity", "value"), tuple(_rows(content)))
 
@@ -32,7 +32,7 @@ def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
     """Tabulate a list of records that share their fields; the fields of the first record make the columns."""
     fields = tuple(dict.fromkeys(name for record in content for name in record))
     rows = tuple(tuple(_cell(record.get(name)) for name in fields) for record in content)
-    return Table(caption, tuple(_words(name) for name in fields), rows)
+    return Table(caption, tuple(_column_title(name) for name in fields), rows)
 
 
 def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Table:
@@ -45,7 +45,7 @@ def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Tabl
 
 def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
     for name, value in content.items():
-        label = f"{before}{_words(name)}"
+        label = f"{before}{_column_title(name)}"
         if isinstance(value, Mapping):
             yield from _rows(value, f"{label} · ")
         elif isinstance(value, list | tuple) and bool(value) and all(isinstance(v, Mapping) for v in value):
@@ -55,7 +55,7 @@ def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, s
             yield label, _cell(value)
 
 
-def _words(name: str) -> str:
+def _column_title(name: str) -> str:
     """Turn a field name into words, its unit after a comma."""
     ending = ending_of(name)
     bare = name.removesuffix(ending)
@@ -73,7 +73,7 @@ def _cell(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, Mapping):
-        return ", ".join(f"{_words(str(k))} {_cell(v)}" for k, v in value.items())
+        return ", ".join(f"{_column_title(str(k))} {_cell(v)}" for k, v in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):
         return ", ".join(_cell(v) for v in value)
     return str(value)
@@ -83,7 +83,7 @@ def effect_table(caption: str, rows: Iterable[EffectRow]) -> Table:
     """Tabulate effects, by their names in words."""
     head = ("effect", "in", "simulated", "without it", "because")
     cells = (
-        (name.replace("_", " "), place, "yes" if on else "no", *words) for name, place, on, *words in rows
+        (name.replace("_", " "), subject, "yes" if on else "no", *texts) for name, subject, on, *texts in rows
     )
     return Table(caption, head, tuple(cells))
 
@@ -121,14 +121,14 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
         for effects in scene_effects(ledger)
     )
     small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
-    left_out = facts("Not in the model", ledger.get("left_out", {}))
+    left_out = settings_table("Not in the model", ledger.get("left_out", {}))
     phases = tuple((row["part"], row["words"]) for row in ledger.get("assumed", ()))
     assumed = Table("Assumed of phases", ("part", "assumed"), phases)
     folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), left_out)
     return effects_section("", rows, folded)
 
 
-def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
+def cost_tables(metadata: Mapping[str, Any]) -> tuple[Table, ...]:
     """Return the table of predicted and measured cost of the housings; none without any."""
     rows = tuple(
         (
@@ -136,15 +136,15 @@ def cost_tables(facts: Mapping[str, Any]) -> tuple[Table, ...]:
             *(amount(cost[clock]) for clock in ("seconds", "predicted_seconds")),
             *(gigabytes(cost[size]) for size in ("bytes", "predicted_bytes")),
         )
-        for name, cost in _work(facts)
+        for name, cost in _work(metadata)
     )
     return (Table("Cost of the housings, once: results are kept", HEAD, rows),) if rows else ()
 
 
-def _work(facts: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
-    for housing, cost in facts.get("reduction_cost", {}).items():
+def _work(metadata: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
+    for housing, cost in metadata.get("reduction_cost", {}).items():
         yield f"{housing}: reduction", cost
-    for housing, radiation in facts.get("radiation", {}).items():
+    for housing, radiation in metadata.get("radiation", {}).items():
         if "cost" in radiation:
             model = radiation["model_name"].replace("_", " ")
             yield f"{housing}: {model}, all frequencies", radiation["cost"]

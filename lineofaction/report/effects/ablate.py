@@ -53,7 +53,7 @@ class _Look:
     panels: Callable[[Any], tuple[Panel, ...]]
     table: Callable[[Any], Table]
 
-    def words(self, ablation: Any, entry: Any) -> str:
+    def change_text(self, ablation: Any, entry: Any) -> str:
         return f"{self.signed(1e6 * self.change(ablation, entry))} µm"
 
     def ordered(self, ablation: Any) -> list[Any]:
@@ -81,15 +81,15 @@ def _over_orders(
 def _case_table(ablation: Ablation) -> Table:
     """List the changes at the nominal load, trifles in one row."""
     ordered = _CASE.ordered(ablation)
-    shown = [
+    listed = [
         entry
         for entry in ordered
         if not (ablation.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle))
     ]
-    rows = [_case_row(ablation, entry) for entry in shown]
-    if len(shown) < len(ordered):
-        names = ", ".join(entry.name for entry in ordered if entry not in shown)
-        folded = f"{len(ordered) - len(shown)} below {100 * TRIFLE:g} %: {names}"
+    rows = [_case_row(ablation, entry) for entry in listed]
+    if len(listed) < len(ordered):
+        names = ", ".join(entry.name for entry in ordered if entry not in listed)
+        folded = f"{len(ordered) - len(listed)} below {100 * TRIFLE:g} %: {names}"
         rows.append((folded, *[""] * (len(_CASE_HEAD) - 1)))
     caption = f"Change without each effect, computed and estimated, {_where(ablation)}"
     return Table(caption, _CASE_HEAD, tuple(rows))
@@ -146,8 +146,8 @@ def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
     notes = [Note(x, y, name.replace("_", " ")) for x, y, name in points]
     reach = float(ends[0]), float(ends[1])
     axes = Axis("computed change, µm", "log", reach), Axis("estimated change, µm", "log")
-    beside = placed(notes, *axes, (0.5 * reach[0], 2.0 * reach[1]))
-    return Panel(*axes, tuple(lines), title=title, notes=beside)
+    labels = placed(notes, *axes, (0.5 * reach[0], 2.0 * reach[1]))
+    return Panel(*axes, tuple(lines), title=title, notes=labels)
 
 
 def _case_panels(ablation: Ablation) -> tuple[Panel, ...]:
@@ -186,8 +186,8 @@ def _scene_table(ablation: SceneAblation) -> Table:
         (
             entry.name,
             "on" if entry.on else "off",
-            entry.level.words,
-            entry.level_change.words,
+            entry.level.text,
+            entry.level_change.text,
             _signed(1e6 * _maximum(entry.mean_change)),
             estimated(entry, "mean"),
             _signed(1e6 * _maximum(entry.peak_to_peak_change)),
@@ -211,8 +211,8 @@ def _bearing_force(entry: SceneEffect) -> tuple[str, str, str]:
         return "", "", ""
     bearing, order = np.unravel_index(int(np.argmax(np.abs(forces))), forces.shape)
     known = estimate is not None and estimate.bearing_orders.size > 0
-    stated = _signed(float(estimate.bearing_orders[bearing, order])) if estimate and known else ""
-    return _signed(float(forces[bearing, order])), stated, str(order + 1)
+    estimate_text = _signed(float(estimate.bearing_orders[bearing, order])) if estimate and known else ""
+    return _signed(float(forces[bearing, order])), estimate_text, str(order + 1)
 
 
 def _scene_panels(ablation: SceneAblation) -> tuple[Panel, ...]:
@@ -253,7 +253,8 @@ _SCENE = _Look(
 def _ablation_figure(ablation: Ablation | SceneAblation) -> Figure:
     look = _look(ablation)
     changes = [
-        f"{entry.name} {look.words(ablation, entry)} of peak to peak" for entry in look.ordered(ablation)
+        f"{entry.name} {look.change_text(ablation, entry)} of peak to peak"
+        for entry in look.ordered(ablation)
     ]
     return Figure(
         key="ablation",
@@ -269,7 +270,7 @@ def _ablation_page(ablation: Ablation | SceneAblation) -> Page:
     look, heads = _look(ablation), []
     if ablation.effects:
         entry = look.ordered(ablation)[0]
-        name, change = entry.name.replace("_", " "), look.words(ablation, entry)
+        name, change = entry.name.replace("_", " "), look.change_text(ablation, entry)
         heads.append(Headline(f"without {name}", change, "of peak to peak, the largest influence"))
     left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.left_out.items()))
     tables = (look.table(ablation), *([left] if ablation.left_out else []))

@@ -66,21 +66,21 @@ def _peer_caption(study: Frontier) -> str:
     measured = study.full_contact
     if measured is None:
         return known.strip()
-    record, own = measured.record, measured.plane_strain_mean
+    record, plane_error = measured.record, measured.plane_strain_mean
     meshes = record.mesh_error
     plane = ", and hold what plane strain leaves out" if record.solved_in == PLANE else ""
-    beside = (
+    remarks = (
         f" Its own meshes differ by at most {number(100.0 * meshes, 2)} %." if np.isfinite(meshes) else ""
     )
-    if np.isfinite(own):
-        beside += f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
+    if np.isfinite(plane_error):
+        remarks += f" Our plane strain differs from it by {number(100.0 * plane_error, 2)} % of the mean."
     return (
         f"{known}Recorded curves: {PROGRAM} of version {record.version} solved {record.position.size} "
         f"positions under {record.torque.size} loads in {record.solved_in} "
         f"({record.unknowns // 1000} k unknowns, "
         f"{number(measured.cpu_seconds, 3)} CPU s): its errors are those at these positions, the worst of "
         f"all loads{plane}; its time is extrapolated, the mean of a position and load times "
-        f"{study.solves}.{beside}"
+        f"{study.solves}.{remarks}"
     )
 
 
@@ -281,8 +281,8 @@ def _mark(study: Study, name: str) -> str:
 
 
 def _marked_name(study: Study, name: str) -> str:
-    marks, words = _mark(study, name), name.replace("_", " ")
-    return f"{words} ({marks})" if marks else words
+    marks, label = _mark(study, name), name.replace("_", " ")
+    return f"{label} ({marks})" if marks else label
 
 
 def _per_cent(value: float) -> str:

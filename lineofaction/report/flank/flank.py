@@ -29,16 +29,16 @@ from lineofaction.report.drawing.figure import (
     number,
 )
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.drawing.tables import facts
+from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.ste.curves import POSITION_LABEL
-from lineofaction.report.ste.page import case_tables, contact_effects, edge_words
+from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
 
 N_PER_MM = 1e3
 """In N/m."""
 
-LINES_SHOWN = 8  # positions
+MAX_LINES = 8  # positions
 Gear = Literal["pinion", "wheel"]
 GEARS: tuple[Gear, ...] = ("pinion", "wheel")
 PRESSURE = "Hertz pressure, MPa"
@@ -46,7 +46,7 @@ _MAX_ISOLINES = 6
 _HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
 _Map = tuple[FloatArray, FloatArray]
 """Roll lengths (R,) in mm and pressures (R, K) in MPa."""
-CURVES_SHOWN = 4  # positions
+MAX_CURVES = 4  # positions
 _VISIBLE_GAP = 0.01
 """um; a plot of less shows nothing."""
 _ROUNDING = 1e-9
@@ -61,7 +61,7 @@ def _face_axis(flanks: LoadDistribution) -> Axis:
 def contact_lines(flanks: LoadDistribution) -> Figure:
     """Draw contact lines at positions spread over the cycle, and those of the largest pressure alone."""
     worst = int(flanks.pressure.max(axis=(1, 2)).argmax())
-    step = max(flanks.position.size // LINES_SHOWN, 1)
+    step = max(flanks.position.size // MAX_LINES, 1)
     chosen = np.arange(0, flanks.position.size, step)
     load = _strokes(flanks, chosen, 1e-3 * flanks.line_load, "line load, N/mm")
     pressure = _strokes(flanks, np.array([worst]), 1e-6 * flanks.pressure, "Hertz pressure, MPa")
@@ -145,7 +145,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
         f"{flanks.position.size} positions{stretches}. At a tip edge the true pressure is "
         "singular, and this a measure only. Roll length: distance to the base circle along the "
         "involute's normal. Seen from the +z end, the driving gear turns clockwise.",
-        alternative=_words(flanks),
+        alternative=_alternative(flanks),
         content=tuple(drawn(flanks, gear, one) for gear, one in zip(GEARS, maps, strict=True)),
         table=_pattern_table(flanks, maps),
     )
@@ -218,7 +218,7 @@ def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[flo
     return low - room, high + room * (1.5 if flanks.face_position.size > 1 else 3.0)
 
 
-def _words(flanks: LoadDistribution) -> str:
+def _alternative(flanks: LoadDistribution) -> str:
     at = np.unravel_index(int(flanks.clear_pressure.argmax()), flanks.pressure.shape)
     roll, face = (1e3 * float(v) for v in (flanks.roll_length_1[at], flanks.face_position[at[2]]))
     largest = number(1e-6 * float(flanks.pressure[at]), 4)
@@ -242,7 +242,7 @@ def _pattern_table(flanks: LoadDistribution, maps: list[_Map]) -> Table:
 
 def line_load_figure(flanks: LoadDistribution) -> Figure:
     """Draw the load of all pairs per unit of face width, and the gap that the most loaded pair leaves."""
-    chosen = np.unique(np.linspace(0, flanks.position.size, CURVES_SHOWN, endpoint=False).astype(int))
+    chosen = np.unique(np.linspace(0, flanks.position.size, MAX_CURVES, endpoint=False).astype(int))
     face = _face_axis(flanks)
     mean = 1e-3 * flanks.face_load.mean(axis=0)
     names = [f"position {flanks.position[k]:.3g}" for k in chosen]
@@ -320,9 +320,9 @@ def load_centroid_figure(flanks: LoadDistribution) -> Figure:
 def _over_position(flanks: LoadDistribution, y: str, values: FloatArray, mark: str, at: float) -> Panel:
     """Draw a curve over one cycle, closed where the positions make one, and a marked value."""
     step = np.diff(flanks.position)
-    whole = step.size > 0 and np.allclose(step, 1.0 / flanks.position.size)
-    position = np.append(flanks.position, 1.0 + flanks.position[0]) if whole else flanks.position
-    line = Line("", position, np.append(values, values[0]) if whole else values, palette.BLUE)
+    is_full_cycle = step.size > 0 and np.allclose(step, 1.0 / flanks.position.size)
+    position = np.append(flanks.position, 1.0 + flanks.position[0]) if is_full_cycle else flanks.position
+    line = Line("", position, np.append(values, values[0]) if is_full_cycle else values, palette.BLUE)
     x, marks = Axis.over(POSITION_LABEL, position), (Reference(mark, at, "horizontal"),)
     return Panel(x, Axis(y), (line,), marks)
 
@@ -344,7 +344,7 @@ def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
     return Table.of("Load over the face", range(mean.size), columns)
 
 
-def error_words(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
+def error_text(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
     """Return the error of a figure in a unit of `scale` SI units, or that it has none, and why."""
     if math.isnan(estimate.error):
         return f"error not estimated: {reason}"
@@ -364,19 +364,19 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
     at, reason = _operating_point(flanks), flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
-    band = error_words(pressure, "MPa", MPA, reason)
-    remark = f"{band}{_kink_words(flanks)}; {at}{edge_words(flanks.edge_pressure)}"
+    band = error_text(pressure, "MPa", MPA, reason)
+    remark = f"{band}{_kink_text(flanks)}; {at}{edge_text(flanks.edge_pressure)}"
     yield Headline("largest flank pressure", f"{number(pressure.value / MPA)} MPa", remark)
-    band = error_words(load, "N/mm", N_PER_MM, reason)
-    remark = f"{band}{_length_words(flanks)}; {at}{_edge_load(flanks)}"
+    band = error_text(load, "N/mm", N_PER_MM, reason)
+    remark = f"{band}{_length_text(flanks)}; {at}{_edge_load(flanks)}"
     yield Headline("largest line load", f"{number(load.value / N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
         factor = flanks.cycle_face_load_factor
-        remark = f"{error_words(factor, '', 1.0, reason)}{_length_words(flanks)}; {at}"
+        remark = f"{error_text(factor, '', 1.0, reason)}{_length_text(flanks)}; {at}"
         yield Headline("K_Hbeta over the cycle", number(factor.value, 3), remark)
 
 
-def _kink_words(flanks: LoadDistribution) -> str:
+def _kink_text(flanks: LoadDistribution) -> str:
     """Say over which length the largest pressure is a mean where a kink makes it infinite; else nothing."""
     length = flanks.errors.kink_length
     if length <= 0.0:
@@ -390,12 +390,12 @@ def _edge_load(flanks: LoadDistribution) -> str:
     load = flanks.edge_line_load
     if load.value <= 0.0:
         return ""
-    band = error_words(load, "N/mm", N_PER_MM, flanks.errors.reason)
+    band = error_text(load, "N/mm", N_PER_MM, flanks.errors.reason)
     over = f", mean over {number(1e3 * flanks.edge_length, 2)} mm" if flanks.face_position.size > 1 else ""
     return f"; {number(load.value / N_PER_MM, 3)} N/mm at the edges, {band}{over}"
 
 
-def _length_words(flanks: LoadDistribution) -> str:
+def _length_text(flanks: LoadDistribution) -> str:
     """Say over which length a load is the mean; nothing in the plane."""
     if flanks.face_position.size == 1:
         return ""
@@ -422,8 +422,8 @@ def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
     made = {**metadata.software_versions, "content_hash": metadata.content_hash}
     section = Section(
         "Receipt of the flank results",
-        tables=(facts("Cost", cost),),
-        folded=(facts("Made with", made),),
+        tables=(settings_table("Cost", cost),),
+        folded=(settings_table("Made with", made),),
         part=Part.RECEIPT,
     )
     if not alone:
@@ -461,18 +461,18 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
         f"misalignment {scene.misalignment / UM:.4g} µm"
     )
     load, reason = flanks.largest_line_load, flanks.errors.reason
-    band = error_words(load, "N/mm", N_PER_MM, reason)
-    words = f"{band}{_length_words(flanks)}{_edge_load(flanks)}"
-    yield f"largest line load {load.value / N_PER_MM:.4g} N/mm, {words}"
+    band = error_text(load, "N/mm", N_PER_MM, reason)
+    remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
+    yield f"largest line load {load.value / N_PER_MM:.4g} N/mm, {remark}"
     if flanks.face_position.size > 1:
         ends = (engineering(1e3 * end, 3) for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         largest = flanks.largest_face_load_factor
         yield (
             f"K_Hbeta at most {engineering(largest.value, 3)} at one position, "
-            f"{error_words(largest, '', 1.0, reason)}{_length_words(flanks)}; "
+            f"{error_text(largest, '', 1.0, reason)}{_length_text(flanks)}; "
             f"load centroid {' to '.join(dict.fromkeys(ends))} mm from mid-face"
         )
     yield from assumption_lines(receipt)
 
 
-PAGE = Presentation(contact_pattern_figure, _page, _text, beside=_page)
+PAGE = Presentation(contact_pattern_figure, _page, _text, with_database=_page)

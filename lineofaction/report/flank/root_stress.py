@@ -14,7 +14,7 @@ from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Reference, Table, number
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.drawing.tables import facts
+from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.presentation import Presentation
 
 _WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
@@ -90,7 +90,7 @@ def _page(stresses: Json) -> Page:
     cost = {name: value for name, value in stresses["receipt"].items() if name != "plan"}
     sections = (
         Section("Tooth roots", "", (_root_stress_figure(stresses),), (_peak_table(stresses),)),
-        Section("Receipt of the root stress", tables=(facts("Cost", cost),), part=Part.RECEIPT),
+        Section("Receipt of the root stress", tables=(settings_table("Cost", cost),), part=Part.RECEIPT),
     )
     return Page("Tooth-root stress", _point(stresses), heads, sections)
 
@@ -113,8 +113,8 @@ def _text(stresses: Json) -> Iterator[Table | str]:
     yield from assumption_lines(stresses["receipt"])
 
 
-def _of_figures(shown: Callable[[Json], Any]) -> Callable[[Roots], Any]:
-    return lambda roots: shown(RUN.figures(roots))
+def _of_figures(render: Callable[[Json], Any]) -> Callable[[Roots], Any]:
+    return lambda roots: render(RUN.figures(roots))
 
 
 PAGE = Presentation(

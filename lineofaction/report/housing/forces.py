@@ -20,27 +20,27 @@ DEPTH, LABEL = 60.0, "sound power level, dB(A)"
 """dB shown below the loudest."""
 
 
-def of_run(facts: Json) -> Json | None:
+def of_run(metadata: Json) -> Json | None:
     """Return the facts `forces` of a result if they are a run's; None for the linear response."""
-    forces: Json = facts.get("forces", LINEAR)
+    forces: Json = metadata.get("forces", LINEAR)
     return forces if forces["source"] == "run" else None
 
 
-def row_axis(speed: FloatArray, facts: Json) -> tuple[Axis, FloatArray]:
+def row_axis(speed: FloatArray, metadata: Json) -> tuple[Axis, FloatArray]:
     """Return the axis of the rows: their speed (S,) in rad/s where it rises all along, else the time."""
-    run = of_run(facts)
+    run = of_run(metadata)
     if run is not None and not np.all(np.diff(speed) > 1e-6 * speed[:-1]):
         time = np.array(run["time_s"])
         return Axis.over("time, s", time), time
-    return Axis.over(f"speed of {facts['leading_shaft']}, rpm", speed / RPM), speed / RPM
+    return Axis.over(f"speed of {metadata['leading_shaft']}, rpm", speed / RPM), speed / RPM
 
 
-def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
+def force_rows(metadata: Json) -> tuple[tuple[str, str], ...]:
     """Say whose forces on bearings a result rests on, and how far the orders of a run hold."""
-    run = of_run(facts)
+    run = of_run(metadata)
     if run is None:
         about = ("forces on bearings", "linear steady response: stiffness varies, flanks in contact")
-        return (about, *orders_left_out(facts))
+        return (about, *orders_left_out(metadata))
     windows = f"{len(run['time_s'])} windows of {run['window_pitches']} base pitches"
     if run["windows_left_out"]:
         windows += f", {run['windows_left_out']} left out: standstill, or too fast a change of speed"
@@ -58,21 +58,21 @@ def force_words(facts: Json) -> tuple[tuple[str, str], ...]:
         return tuple(rows)
     smearing = np.array(run["smearing"])
     coarse = int(np.sum(np.any(smearing > COARSE, axis=0)))
-    words = f"median {number(20.0 * np.log10(1.0 + float(np.median(smearing))), 2)} dB"
+    smearing_text = f"median {number(20.0 * np.log10(1.0 + float(np.median(smearing))), 2)} dB"
     if coarse:
-        words += f"; above 1 dB in {coarse} windows: run up more slowly"
-    rows.append(("smearing by the windows", words))
+        smearing_text += f"; above 1 dB in {coarse} windows: run up more slowly"
+    rows.append(("smearing by the windows", smearing_text))
     return tuple(rows)
 
 
-def third_octaves_over_time(facts: Json) -> Figure:
+def third_octaves_over_time(metadata: Json) -> Figure:
     """Draw the A-weighted bands over the run: impacts, sidebands and free vibration are among them."""
-    course = facts["over_time"]
+    course = metadata["over_time"]
     center = np.array(course["third_octave_hz"])
     level = np.array(course["third_octave_db"]) + a_weighting(center)[:, None]
     total = np.array(course["total_level_db_a"])
     time = np.array(course["time_s"])
-    place = np.arange(center.size, dtype=float)
+    band = np.arange(center.size, dtype=float)
     at, x = int(total.argmax()), Axis.over("time, s", time)
     names = tuple((float(k), f"{center[k]:g}") for k in range(0, center.size, 3))
     y = Axis("nominal center of the band, Hz", limits=(-0.5, center.size - 0.5), names=names)
@@ -83,7 +83,7 @@ def third_octaves_over_time(facts: Json) -> Figure:
         f"{number(course['lowest_hz'], 3)} to {number(course['highest_hz'], 4)} Hz; A-weighted at the "
         f"centers of bands. Blocks of {BLOCK:g} s overlap by half.",
         alternative=f"Loudest at {number(time[at], 3)} s: {total[at]:.1f} dB(A) in all.",
-        content=(Panel(x, y, shade=shaded_levels(time, place, level, LABEL, DEPTH)),),
+        content=(Panel(x, y, shade=shaded_levels(time, band, level, LABEL, DEPTH)),),
         table=_over_time_table(course),
     )
 
@@ -99,12 +99,12 @@ def _over_time_table(course: Json) -> Table:
     return Table.of("Sound power over the run", zip(*(course[name] for name in names), strict=True), columns)
 
 
-def total_line(speed: FloatArray, facts: Json) -> tuple[FloatArray, FloatArray] | None:
+def total_line(speed: FloatArray, metadata: Json) -> tuple[FloatArray, FloatArray] | None:
     """Return where on the axis of the orders the run's total lies, and its levels, dB(A); None without."""
-    course = facts.get("over_time")
+    course = metadata.get("over_time")
     if course is None:
         return None
-    by_time = row_axis(speed, facts)[0].label == "time, s"
+    by_time = row_axis(speed, metadata)[0].label == "time, s"
     along = np.array(course["time_s" if by_time else "speed_rpm"])
     rising = np.argsort(along, kind="stable")
     return along[rising], np.array(course["total_level_db_a"])[rising]

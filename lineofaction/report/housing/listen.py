@@ -25,13 +25,13 @@ MIN_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
 """dB shown below the loudest, at least and at most; beyond both ends."""
 
 
-def _level_figure(heard: HeardRun) -> Figure:
-    time, level = _block_levels(heard)
-    axis, track = speed_axis(heard.time, heard.speed)
-    along = np.interp(time, heard.time, track)
+def _level_figure(audio: HeardRun) -> Figure:
+    time, level = _block_levels(audio)
+    axis, track = speed_axis(audio.time, audio.speed)
+    along = np.interp(time, audio.time, track)
     x = replace(axis, limits=(float(track.min()), float(track.max())))
-    unit = "dB re 1 nm/s" if heard.figures is None else "dB(A) re 20 µPa"
-    name, loudest = _noun(heard), int(np.argmax(level))
+    unit = "dB re 1 nm/s" if audio.figures is None else "dB(A) re 20 µPa"
+    name, loudest = _noun(audio), int(np.argmax(level))
     top = float(level[loudest])
     lowest = min(top - MIN_SPAN, max(float(level.min()), top - DEPTH))
     y = Axis(f"level, {unit}", limits=(lowest - MARGIN, top + MARGIN))
@@ -39,48 +39,48 @@ def _level_figure(heard: HeardRun) -> Figure:
     return Figure(
         key="heard_level",
         title=f"Level of the {name}",
-        caption=f"{heard.recording.quantity[0].upper()}{heard.recording.quantity[1:]}. Over blocks of "
+        caption=f"{audio.recording.quantity[0].upper()}{audio.recording.quantity[1:]}. Over blocks of "
         f"{number(time[0] * 2.0, 2)} s.",
         alternative=f"Loudest at {number(along[loudest], 4)} {x.label.rpartition(', ')[2]}: "
         f"{level[loudest]:.1f} {unit.partition(' re ')[0]}.",
         content=(Panel(x, y, (Line(name, along, level, palette.INK, width=1.4),)),),
         table=Table("Level over the run", ("middle, s", x.label, unit), rows),
-        sound=_sound(heard, track),
+        sound=_sound(audio, track),
     )
 
 
-def _block_levels(heard: HeardRun) -> tuple[FloatArray, FloatArray]:
+def _block_levels(audio: HeardRun) -> tuple[FloatArray, FloatArray]:
     """Return the middles of blocks, s, and the level of each: dB(A), of a velocity dB re 1 nm/s."""
-    recording = heard.recording
+    recording = audio.recording
     duration = recording.samples.size / recording.sample_rate
     blocks = np.array_split(recording.samples, max(1, int(duration / BLOCK)))
     time = (np.arange(len(blocks)) + 0.5) * duration / len(blocks)
     parts = [replace(recording, samples=block) for block in blocks]
-    if heard.figures is None:
+    if audio.figures is None:
         return time, vibration_level([part.rms for part in parts])
     return time, np.array([sound_pressure_level(part, weighted=True) for part in parts])
 
 
-def _noun(heard: HeardRun) -> str:
-    return "velocity" if heard.figures is None else "sound pressure"
+def _noun(audio: HeardRun) -> str:
+    return "velocity" if audio.figures is None else "sound pressure"
 
 
-def _sound(heard: HeardRun, along: FloatArray) -> Sound | None:
+def _sound(audio: HeardRun, along: FloatArray) -> Sound | None:
     """Return what the plot sounds like; None of silence."""
-    recording = heard.recording
+    recording = audio.recording
     if recording.peak == 0.0:
         return None
     fits = SAMPLE_BYTES * recording.samples.size <= PAGE_BYTES
     files = (wav_file(recording, recording.peak),) if fits else ()
     caption = f"Full scale: {number(recording.peak, 2)} {recording.unit}."
-    return Sound(caption, (Track("run", heard.time, along, {}),), files)
+    return Sound(caption, (Track("run", audio.time, along, {}),), files)
 
 
-def _headlines(heard: HeardRun) -> tuple[Headline, ...]:
-    figures = heard.figures
+def _headlines(audio: HeardRun) -> tuple[Headline, ...]:
+    figures = audio.figures
     if figures is None:
-        level = float(vibration_level(heard.recording.rms))
-        return (Headline("velocity, rms", f"{engineering(heard.recording.rms, 4)} m/s", f"{level:.1f} dB"),)
+        level = float(vibration_level(audio.recording.rms))
+        return (Headline("velocity, rms", f"{engineering(audio.recording.rms, 4)} m/s", f"{level:.1f} dB"),)
     rows = [
         Headline("sound pressure level", f"{figures.weighted_level:.1f} dB(A)", f"{figures.level:.1f} dB")
     ]
@@ -95,20 +95,20 @@ def _headlines(heard: HeardRun) -> tuple[Headline, ...]:
     return tuple(rows)
 
 
-def _page(heard: HeardRun) -> Page:
-    title = f"{_noun(heard).capitalize()} of the run"
-    text = f"{heard.remark[0].upper()}{heard.remark[1:]}."
-    section = Section(title, text, figures=(_level_figure(heard),))
-    return Page("A run heard through its housing", "", _headlines(heard), (section,))
+def _page(audio: HeardRun) -> Page:
+    title = f"{_noun(audio).capitalize()} of the run"
+    text = f"{audio.remark[0].upper()}{audio.remark[1:]}."
+    section = Section(title, text, figures=(_level_figure(audio),))
+    return Page("A run heard through its housing", "", _headlines(audio), (section,))
 
 
-def _text(heard: HeardRun) -> Iterator[Table | str]:
-    yield heard.recording.quantity
-    yield heard.remark
+def _text(audio: HeardRun) -> Iterator[Table | str]:
+    yield audio.recording.quantity
+    yield audio.remark
 
 
-def _series(heard: HeardRun) -> Table:
-    table = _level_figure(heard).table
+def _series(audio: HeardRun) -> Table:
+    table = _level_figure(audio).table
     assert table is not None
     return table
 

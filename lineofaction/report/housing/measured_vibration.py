@@ -15,14 +15,14 @@ from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number
-from lineofaction.report.drawing.marks import order_words, shown_orders
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
-from lineofaction.report.housing.forces import force_words, row_axis
-from lineofaction.report.housing.shares import share_panel, share_rows, speed_words
+from lineofaction.report.housing.forces import force_rows, row_axis
+from lineofaction.report.housing.shares import share_panel, share_rows, velocity_text
 from lineofaction.report.presentation import dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
-SHOWN_ORDERS, SHOWN_POINTS = 6, 3
+MAX_ORDERS, MAX_POINTS = 6, 3
 _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "rms, mm/s", "level, dB re 1 nm/s",
     "measured along",
@@ -34,7 +34,7 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
     """Draw the velocities of the points by their largest orders; nothing outside the measured band."""
     vibration = result.vibration
     largest = np.nanmax(vibration.rms, axis=(1, 2))
-    maximum = np.argsort(-largest, kind="stable")[:SHOWN_POINTS]
+    maximum = np.argsort(-largest, kind="stable")[:MAX_POINTS]
     band = f"{number(result.lowest_frequency, 4)} to {number(result.highest_frequency, 4)} Hz"
     return Figure(
         key="housing_velocity",
@@ -54,13 +54,13 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
     sizes = np.nan_to_num(rms).max(axis=0)
     lines = tuple(
         Line(
-            f"order {order_words(vibration.order[h], result.facts)}",
+            f"order {order_label(vibration.order[h], result.facts)}",
             along,
             rms[:, h],
             palette.category(k),
             width=1.4,
         )
-        for k, h in enumerate(shown_orders(vibration.order, sizes, SHOWN_ORDERS, result.facts))
+        for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.facts))
     )
     return Panel(x, Axis("rms velocity, mm/s"), lines, title=name)
 
@@ -68,7 +68,7 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
 def _where(result: MeasuredHousingVibration) -> str:
     vibration, s, h = result.vibration, result.at_speed, result.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_words(vibration.order[h], result.facts)} at {speed} rpm, {hertz} Hz"
+    return f"order {order_label(vibration.order[h], result.facts)} at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: MeasuredHousingVibration) -> Table:
@@ -80,7 +80,7 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
         rows.append(
             (
                 name,
-                order_words(vibration.order[h], result.facts),
+                order_label(vibration.order[h], result.facts),
                 number(float(vibration.speed[s]) / RPM, 5),
                 number(float(vibration.frequency[s, h]), 5),
                 number(float(rms[s, h]) / MM_PER_S, 4),
@@ -127,17 +127,17 @@ def measured_page(result: MeasuredHousingVibration) -> Page:
     """Return the page of a measured housing; a table says what its responses replace and leave out."""
     figures = (measured_figure(result), _contribution_figure(result))
     drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.facts))
-    whole = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.facts)
-    rests = Table("Forces that move the housing", ("what", "how"), force_words(result.facts))
+    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.facts)
+    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.facts))
     absent = Table(_LEFT_OUT, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
-    return replace(whole, sections=(*whole.sections, accuracy))
+    return replace(page, sections=(*page.sections, accuracy))
 
 
 def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
     vibration, point = result.vibration, _fastest(result)
     rms = float(vibration.rms[point, result.at_speed, result.at_order])
-    first = Headline(f"velocity of {vibration.point[point]}", speed_words(rms), _where(result))
+    first = Headline(f"velocity of {vibration.point[point]}", velocity_text(rms), _where(result))
     part = result.share[:, point]
     if not np.all(np.isfinite(part)):
         return (first,)
@@ -153,7 +153,7 @@ def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
     if (excites := excitation_table(result.facts)) is not None:
         yield excites
     yield from result.left_out
-    yield from (f"{what}: {words}" for what, words in force_words(result.facts))
+    yield from (f"{what}: {text}" for what, text in force_rows(result.facts))
     yield from model_text(result.facts)
 
 

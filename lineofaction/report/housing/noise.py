@@ -27,14 +27,14 @@ from lineofaction.report.drawing.figure import (
     shaded_levels,
     step_line,
 )
-from lineofaction.report.drawing.marks import order_words, shown_orders
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import surface_panels
 from lineofaction.report.drawing.tables import amount, gigabytes
 from lineofaction.report.housing.forces import (
     DEPTH,
     LABEL,
-    force_words,
+    force_rows,
     of_run,
     row_axis,
     third_octaves_over_time,
@@ -44,7 +44,7 @@ from lineofaction.report.housing.sound_bands import ends, narrowest, uncertainty
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
-LINES, SHOWN = 160, 6
+LINES, MAX_ORDERS = 160, 6
 """Cells of the map in frequency; lines of orders and bearings."""
 _MODEL_HEAD = ("model", "level, dB", "stated error, dB", "CPU s", "CPU s predicted", "GB predicted")
 _REGION_POINTS = 3
@@ -79,28 +79,28 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
     power = np.zeros((edges.size - 1, speed.size))
     np.add.at(power, (cell, np.broadcast_to(np.arange(speed.size), cell.shape)), orders.weighted_power)
     level = sound_power_level(power)
-    shown = int(np.flatnonzero(np.any(level >= float(level.max()) - DEPTH, axis=1)).max(initial=0)) + 1
+    rows = int(np.flatnonzero(np.any(level >= float(level.max()) - DEPTH, axis=1)).max(initial=0)) + 1
     middle = 0.5 * (edges[1:] + edges[:-1])
-    return shaded_levels(speed, middle[:shown], level[:shown], LABEL, DEPTH)
+    return shaded_levels(speed, middle[:rows], level[:rows], LABEL, DEPTH)
 
 
 def _level_over_speed(sound: RadiatedSound) -> Figure:
     orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.facts)
     level, total = orders.weighted_level, orders.total_weighted_level
-    shown = shown_orders(sound.order, level.max(axis=1), SHOWN, sound.facts)
+    loudest_orders = drawn_orders(sound.order, level.max(axis=1), MAX_ORDERS, sound.facts)
     floor = float(total.max()) - DEPTH
-    names = [f"order {order_words(sound.order[h], sound.facts)}" for h in shown]
+    names = [f"order {order_label(sound.order[h], sound.facts)}" for h in loudest_orders]
     lines = (
         Line("total", speed, _above(total, floor), palette.INK, width=2.2),
-        *category_lines(speed, names, _above(level[shown], floor)),
+        *category_lines(speed, names, _above(level[loudest_orders], floor)),
     )
-    if (whole := total_line(sound.speed, sound.facts)) is not None:
-        lines += (Line("all of the run", whole[0], _above(whole[1], floor), palette.MUTED, width=1.4),)
+    if (run_sum := total_line(sound.speed, sound.facts)) is not None:
+        lines += (Line("all of the run", run_sum[0], _above(run_sum[1], floor), palette.MUTED, width=1.4),)
     at = int(total.argmax())
     return Figure(
         key="sound_levels",
         title="Sound power of the orders over speed",
-        caption=f"Orders add up in power. The {SHOWN} loudest are shown.",
+        caption=f"Orders add up in power. The {MAX_ORDERS} loudest are shown.",
         alternative=f"The total is largest at {_rpm(sound, at)}: {total[at]:.1f} dB(A).",
         content=(Panel(x, Axis(LABEL), lines),),
         table=_levels_table(sound, level, total),
@@ -146,7 +146,7 @@ def _bearing_levels(sound: RadiatedSound) -> Figure:
     (x, speed), total = row_axis(sound.speed, sound.facts), sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
-    maximum = np.argsort(-alone.max(axis=1), kind="stable")[:SHOWN]
+    maximum = np.argsort(-alone.max(axis=1), kind="stable")[:MAX_ORDERS]
     lines = (
         Line("all", speed, _above(total, floor), palette.INK, width=2.2),
         *category_lines(speed, [sound.bearing[b] for b in maximum], _above(alone[maximum], floor)),
@@ -205,7 +205,7 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
         sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
     ):
         speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((order_words(order, sound.facts), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
+        rows.append((order_label(order, sound.facts), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 
@@ -220,7 +220,7 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
 
 def _loudest_table(sound: RadiatedSound) -> Table:
     columns = {
-        "order": lambda point: order_words(point.order, sound.facts),
+        "order": lambda point: order_label(point.order, sound.facts),
         "speed, rpm": lambda point: number(point.speed / RPM, 5),
         "frequency, Hz": lambda point: number(point.frequency, 5),
         "dB(A)": lambda point: f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
@@ -244,9 +244,9 @@ def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
     )
 
 
-def _where(point: LoudPoint, facts: Json) -> str:
+def _where(point: LoudPoint, metadata: Json) -> str:
     speed, hertz = number(point.speed / RPM, 4), number(point.frequency, 4)
-    return f"order {order_words(point.order, facts)} at {speed} rpm, {hertz} Hz"
+    return f"order {order_label(point.order, metadata)} at {speed} rpm, {hertz} Hz"
 
 
 def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
@@ -257,45 +257,45 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         where += f", of it {floor[at]:.1f} dB(A) ± {engineering(float(off[at]), 2)} dB in those not listed"
     if (band := sound.facts["band"]) is not None:
         where += f"; {ends(band['largest_total'])} over the ranges of guesses"
-        where += "".join(f"; {words}" for words in narrowest(sound.facts))
-    shown = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
+        where += "".join(f"; {text}" for text in narrowest(sound.facts))
+    headlines = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     if band is not None and sound.speed.size > 1:
         mean = band["mean_total"]
         level = f"{mean['level_db_a']:.1f} dB(A)"
-        shown.append(Headline("mean over the speeds", level, f"of the power, all orders; {ends(mean)}"))
-    shown += [
-        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", words)
-        for point, words in zip(points, _sentences(sound), strict=True)
+        headlines.append(Headline("mean over the speeds", level, f"of the power, all orders; {ends(mean)}"))
+    headlines += [
+        Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", text)
+        for point, text in zip(points, _sentences(sound), strict=True)
     ]
     if (pressure := sound.facts.get("pressure")) is not None:
-        shown.append(_pressure_headline(pressure, sound.facts))
+        headlines.append(_pressure_headline(pressure, sound.facts))
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         first = f"from {number(parting[0], 4)} rpm on"
-        shown.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
-    return tuple(shown)
+        headlines.append(Headline("flanks part at", f"{parting.size} of {sound.speed.size} speeds", first))
+    return tuple(headlines)
 
 
-def _pressure_headline(pressure: Json, facts: Json) -> Headline:
+def _pressure_headline(pressure: Json, metadata: Json) -> Headline:
     """Say the level of the complaint's order, without one of the loudest, at the microphone."""
-    asked_for = facts.get("complaint", {}).get("order", np.nan)
-    own = [row for row in pressure["orders"] if np.isclose(row["order"], asked_for, rtol=1e-6)]
-    row = own[0] if own else max(pressure["orders"], key=lambda row: row["level_db_a"])
-    words = f"order {order_words(row['order'], facts)} at {number(row['speed_rpm'], 4)} rpm"
+    complaint_order = metadata.get("complaint", {}).get("order", np.nan)
+    marked = [row for row in pressure["orders"] if np.isclose(row["order"], complaint_order, rtol=1e-6)]
+    row = marked[0] if marked else max(pressure["orders"], key=lambda row: row["level_db_a"])
+    remark = f"order {order_label(row['order'], metadata)} at {number(row['speed_rpm'], 4)} rpm"
     if row["low_db_a"] is not None:
-        words += f"; {row['low_db_a']:.1f} to {row['high_db_a']:.1f}, the band of its sound power"
+        remark += f"; {row['low_db_a']:.1f} to {row['high_db_a']:.1f}, the band of its sound power"
     name = f"sound pressure level at {_microphone(pressure)}"
-    return Headline(name, f"{row['level_db_a']:.1f} dB(A)", words)
+    return Headline(name, f"{row['level_db_a']:.1f} dB(A)", remark)
 
 
 def _microphone(pressure: Json) -> str:
     return f"({', '.join(f'{value:g}' for value in pressure['microphone_mm'])}) mm"
 
 
-def _pressure_table(pressure: Json, facts: Json) -> Table:
+def _pressure_table(pressure: Json, metadata: Json) -> Table:
     """List the orders, each where it is loudest."""
     columns = {
-        "order": lambda row: order_words(row["order"], facts),
+        "order": lambda row: order_label(row["order"], metadata),
         "dB(A)": lambda row: f"{row['level_db_a']:.1f}",
         "from": lambda row: "" if row["low_db_a"] is None else f"{row['low_db_a']:.1f}",
         "to": lambda row: "" if row["high_db_a"] is None else f"{row['high_db_a']:.1f}",
@@ -310,7 +310,7 @@ def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
     for housing in sound.housing:
         compared = sound.facts["models"][housing]
         if compared.get("predicted"):
-            order, speed = order_words(compared["order"], sound.facts), number(compared["speed"] / RPM, 4)
+            order, speed = order_label(compared["order"], sound.facts), number(compared["speed"] / RPM, 4)
             rows = tuple(_model(name, compared) for name in compared["predicted"])
             title = f"Radiation models of {housing} at order {order}, {speed} rpm"
             yield Table(title, _MODEL_HEAD, rows)
@@ -330,7 +330,7 @@ def _model(name: str, compared: Json) -> tuple[str, ...]:
     )
 
 
-def _place(region: Mapping[str, Any]) -> str:
+def _region_name(region: Mapping[str, Any]) -> str:
     """Name a region: its housing, the axis that it faces, the named points next to it."""
     named = f" ({', '.join(region['points'])})" if region["points"] else ""
     return f"{region['housing']} at {region['facing']}{named}"
@@ -339,7 +339,7 @@ def _place(region: Mapping[str, Any]) -> str:
 def _main_region(sound: RadiatedSound) -> str:
     """Say through which region most of the loudest point leaves."""
     region = sound.facts["regions"][0][0]
-    return f"{100.0 * region['share']:.0f} % leaves {_place(region)}"
+    return f"{100.0 * region['share']:.0f} % leaves {_region_name(region)}"
 
 
 def _region_table(sound: RadiatedSound) -> Table:
@@ -349,9 +349,9 @@ def _region_table(sound: RadiatedSound) -> Table:
         for region in regions
     ]
     columns = {
-        "order": lambda region: order_words(region["point"].order, sound.facts),
+        "order": lambda region: order_label(region["point"].order, sound.facts),
         "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
-        "region": _place,
+        "region": _region_name,
         "share, %": lambda region: f"{100.0 * region['share']:.1f}",
         "mW/m²": lambda region: number(1e3 * region["power"] / region["area"], 3),
         "center, mm": lambda region: ", ".join(f"{round(value / MM)}" for value in region["center"]),
@@ -363,15 +363,15 @@ def _region_table(sound: RadiatedSound) -> Table:
 
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     draws = (_sound_map, _level_over_speed, _third_octaves, _bearing_levels, _panel_intensity)
-    shown = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
-    shown += excitation_figures(sound.facts)
+    figures = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
+    figures += excitation_figures(sound.facts)
     if sound.facts.get("over_time") is None:
-        return shown
-    return (*shown, third_octaves_over_time(sound.facts))
+        return figures
+    return (*figures, third_octaves_over_time(sound.facts))
 
 
 def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
-    yield from force_words(sound.facts)
+    yield from force_rows(sound.facts)
     for name in sound.housing:
         yield from _radiation_limits(sound, name)
     parting = sound.speed[~sound.in_contact] / RPM
@@ -390,11 +390,11 @@ def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str,
         f"{number(about['inner_area'], 3)} m² of inner walls left out",
     )
     if highest > resolved > 0.0:
-        words = "which the mesh does not resolve, equivalent radiated power"
-        yield f"above {number(resolved, 3)} Hz", words
+        limitation = "which the mesh does not resolve, equivalent radiated power"
+        yield f"above {number(resolved, 3)} Hz", limitation
     if highest > valid:
-        words = "0.7 of the highest mode kept, modes are missing: keep more"
-        yield f"above {number(valid, 3)} Hz", words
+        limitation = "0.7 of the highest mode kept, modes are missing: keep more"
+        yield f"above {number(valid, 3)} Hz", limitation
     if lines := compared.get("lines"):
         where = (
             f"{number(line['frequency'], 4)} Hz ({line['level'] - line['estimate']:+.1f} dB)"
@@ -417,7 +417,7 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from _sentences(sound)
     if (excites := excitation_table(sound.facts)) is not None:
         yield excites
-    yield from (f"{what}: {words}" for what, words in _limits(sound))
+    yield from (f"{what}: {text}" for what, text in _limits(sound))
     yield from _model_tables(sound)
     yield from uncertainty_tables(sound.facts)
     yield from narrowest(sound.facts)
@@ -429,17 +429,17 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
 
 
 def _page(sound: RadiatedSound) -> Page:
-    whole = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
+    page = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
     tables = tuple(uncertainty_tables(sound.facts))
     if missing := sound.facts["sensitivities_left_out"]:
         tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
     if (pressure := sound.facts.get("pressure")) is not None:
-        heard = Section("Sound pressure", tables=(_pressure_table(pressure, sound.facts),))
-        bands = (heard, *bands)
+        pressure_section = Section("Sound pressure", tables=(_pressure_table(pressure, sound.facts),))
+        bands = (pressure_section, *bands)
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)
-    return replace(whole, sections=(*whole.sections, *bands, accuracy))
+    return replace(page, sections=(*page.sections, *bands, accuracy))
 
 
 PAGE = Presentation(_sound_map, _page, _text)

@@ -10,14 +10,14 @@ from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Panel, largest, number
 
-SHOWN, SHOWN_MODES = 12, 8
+MAX_PARTS, MAX_MODES = 12, 8
 """Modes in the table of contributions, and in the bars."""
 
 
 def share_rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
     """Return rows of a table in %, of points, and of the surface where there is one."""
     every = np.vstack([shares.point, shares.surface]) if with_surface else shares.point
-    maximum = largest(np.max(np.abs(every), axis=0), SHOWN)
+    maximum = largest(np.max(np.abs(every), axis=0), MAX_PARTS)
     return [
         (
             shares.name[p],
@@ -30,7 +30,7 @@ def share_rows(shares: Shares, with_surface: bool) -> list[tuple[str, ...]]:
 
 def share_panel(shares: Shares, part: FloatArray) -> Panel:
     """Draw contributions (p,) as bars that add up to 100 %, the small ones together."""
-    maximum = largest(np.abs(part), SHOWN_MODES)
+    maximum = largest(np.abs(part), MAX_MODES)
     values = [100.0 * float(part[p]) for p in maximum]
     names = [_name(shares, p) for p in maximum]
     if len(maximum) < part.size:
@@ -45,6 +45,6 @@ def _name(shares: Shares, index: int) -> str:
     return f"{number(hertz, 4)} Hz" if np.isfinite(hertz) else shares.name[index]
 
 
-def speed_words(rms: float) -> str:
+def velocity_text(rms: float) -> str:
     """Return a root mean square velocity, m/s, as text."""
     return f"{number(rms / MM_PER_S, 3)} mm/s rms"

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 
 from bounds.types import Json
 from lineofaction.report.drawing.figure import Table, number
-from lineofaction.report.drawing.marks import order_words
+from lineofaction.report.drawing.marks import order_label
 
-SHOWN_ORDERS, SHOWN_CAUSES = 6, 3
+MAX_ORDERS, MAX_CAUSES = 6, 3
 MIN_NARROWED = 0.1
 """dB."""
 
@@ -25,18 +25,18 @@ NARROWER = {
 """What a user does about a contribution to a band."""
 
 
-def uncertainty_tables(facts: Json) -> Iterator[Table]:
+def uncertainty_tables(metadata: Json) -> Iterator[Table]:
     """Yield the table of bands and that of sensitivities, as far as they are known."""
-    if facts["band"] is not None:
-        yield _band_table(facts["band"], facts)
-    if facts["sensitivities"]:
-        yield _cost_table(facts["sensitivities"])
+    if metadata["band"] is not None:
+        yield _band_table(metadata["band"], metadata)
+    if metadata["sensitivities"]:
+        yield _cost_table(metadata["sensitivities"])
 
 
-def _band_table(band: Json, facts: Json) -> Table:
-    loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:SHOWN_ORDERS]
+def _band_table(band: Json, metadata: Json) -> Table:
+    loudest = sorted(band["orders"], key=lambda row: -row["largest"]["level_db_a"])[:MAX_ORDERS]
     levels = [("largest of all orders", band["largest_total"]), ("mean power", band["mean_total"])]
-    levels += [(f"largest of order {order_words(row['order'], facts)}", row["largest"]) for row in loudest]
+    levels += [(f"largest of order {order_label(row['order'], metadata)}", row["largest"]) for row in loudest]
     columns = {
         "over the speeds": lambda row: row[0],
         "dB(A)": lambda row: f"{row[1]['level_db_a']:.1f}",
@@ -50,14 +50,14 @@ def _band_table(band: Json, facts: Json) -> Table:
 def _causes(level: Json) -> Iterator[str]:
     below, above = level["below_db"], level["above_db"]
     names = sorted(above, key=lambda name: -max(below[name], above[name]))
-    for name in names[:SHOWN_CAUSES]:
+    for name in names[:MAX_CAUSES]:
         if max(below[name], above[name]) > 0.0:
             yield f"{name.replace('_', ' ')} -{below[name]:.1f} +{above[name]:.1f}"
 
 
-def narrowest(facts: Json) -> Iterator[str]:
+def narrowest(metadata: Json) -> Iterator[str]:
     """Say what would narrow the band of the largest level most."""
-    level = (facts["band"] or {}).get("largest_total", {})
+    level = (metadata["band"] or {}).get("largest_total", {})
     for name, left in level.get("widths_without_db", {}).items():
         if name in NARROWER and level["width_db"] - left >= MIN_NARROWED:
             width = level["width_db"]

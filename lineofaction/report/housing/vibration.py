@@ -24,32 +24,32 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import order_words, shown_orders
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.surface_view import shape_figure
-from lineofaction.report.housing.forces import force_words, row_axis
+from lineofaction.report.housing.forces import force_rows, row_axis
 from lineofaction.report.housing.measured_vibration import (
     measured_figure,
     measured_page,
     measured_series,
     measured_text,
 )
-from lineofaction.report.housing.shares import share_panel, share_rows, speed_words
+from lineofaction.report.housing.shares import share_panel, share_rows, velocity_text
 from lineofaction.report.presentation import Presentation, dynamics_page, model_text
 from lineofaction.report.response.excitations import excitation_figures, excitation_table
 
-Shown = TypeVar("Shown")
+View = TypeVar("View")
 _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "nearest mode, Hz", "rms, mm/s",
     "level, dB re 1 nm/s", "within valid modes",
 )  # fmt: skip
-SHOWN_ORDERS, SHOWN_POINTS, SHOWN_SEATS = 6, 3, 4
+MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
 
 
 def _where(analysis: VibrationAnalysis) -> str:
     vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_words(vibration.order[h], analysis.facts)} at {speed} rpm, {hertz} Hz"
+    return f"order {order_label(vibration.order[h], analysis.facts)} at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:
@@ -64,7 +64,7 @@ def _largest_table(result: HousingVibrationResult) -> Table:
         hertz = float(vibration.frequency[s, h])
         near = result.natural_frequency[int(np.argmin(np.abs(result.natural_frequency - hertz)))]
         speed = number(float(vibration.speed[s]) / RPM, 5)
-        order = order_words(vibration.order[h], result.analysis.facts)
+        order = order_label(vibration.order[h], result.analysis.facts)
         size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
         valid = "yes" if vibration.valid[s, h] else "no"
         rows.append((name, order, speed, number(hertz, 5), number(near, 5), *size, valid))
@@ -105,7 +105,7 @@ def _velocity_figure(result: HousingVibrationResult) -> Figure:
     analysis = result.analysis
     vibration = analysis.vibration
     size = {f"velocity of {name}": vibration.rms[k] for k, name in enumerate(vibration.point)}
-    size = dict(sorted(size.items(), key=lambda pair: -float(pair[1].max()))[:SHOWN_POINTS])
+    size = dict(sorted(size.items(), key=lambda pair: -float(pair[1].max()))[:MAX_POINTS])
     if analysis.deflection is not None:
         size["velocity normal to the outer hull"] = np.sqrt(vibration.mean_square_velocity)
     return Figure(
@@ -114,7 +114,7 @@ def _velocity_figure(result: HousingVibrationResult) -> Figure:
         caption="Root mean square velocity under the forces of the bearings: of points all directions "
         "together, of the outer hull (no walls of cavities) its mean square normal to it. Dashed: above "
         f"{number(vibration.highest_valid_frequency, 4)} Hz, 0.7 of the highest mode kept.",
-        alternative=_words(result),
+        alternative=_alternative(result),
         content=tuple(_velocity_panel(analysis, name, rms / MM_PER_S) for name, rms in size.items()),
         table=_largest_table(result),
     )
@@ -125,9 +125,9 @@ def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> 
     vibration = analysis.vibration
     x, speed = row_axis(vibration.speed, analysis.facts)
     lines = []
-    for k, h in enumerate(shown_orders(vibration.order, rms.max(axis=0), SHOWN_ORDERS, analysis.facts)):
+    for k, h in enumerate(drawn_orders(vibration.order, rms.max(axis=0), MAX_ORDERS, analysis.facts)):
         valid, color = vibration.valid[:, h], palette.category(k)
-        order = f"order {order_words(vibration.order[h], analysis.facts)}"
+        order = f"order {order_label(vibration.order[h], analysis.facts)}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):
             onward = ~valid | np.append(~valid[1:], False)
@@ -155,13 +155,13 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
         point, axis = _fastest(analysis)
         title = f"{analysis.vibration.point[point]} along {'xyz'[axis]}"
         gain = mobilities.point[point, axis]
-        maximum = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:SHOWN_SEATS]
+        maximum = np.argsort(-np.abs(gain[nearest] * force), kind="stable")[:MAX_SEATS]
         panels.append(Panel(x, per_force, curves(np.abs(gain), maximum), marks, title=title))
         phase = curves(np.degrees(np.angle(gain)), maximum)
         panels.append(Panel(x, Axis("phase, °", limits=(-180.0, 180.0)), phase))
     if analysis.deflection is not None:
         gain = np.sqrt(mobilities.surface)
-        maximum = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:SHOWN_SEATS]
+        maximum = np.argsort(-gain[nearest] * np.abs(force), kind="stable")[:MAX_SEATS]
         panels.append(Panel(x, per_force, curves(gain, maximum), title="root mean square of the outer hull"))
     return Figure(
         key="housing_transfer",
@@ -196,7 +196,7 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
             f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
             for shares, part in both
         ),
-        content=tuple(share_panel(*each) for each in both),
+        content=tuple(share_panel(*part) for part in both),
         table=_contribution_table(result),
     )
 
@@ -215,12 +215,12 @@ def _shape_figure(result: HousingVibrationResult) -> Figure | None:
     return shape_figure("housing_shape", what, shape, unit)
 
 
-def _words(result: HousingVibrationResult) -> str:
+def _alternative(result: HousingVibrationResult) -> str:
     analysis, vibration = result.analysis, result.analysis.vibration
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     text = f"Shown in detail: {_where(analysis)}."
     if beyond.size:
-        orders = ", ".join(order_words(order, analysis.facts) for order in beyond[:SHOWN_ORDERS])
+        orders = ", ".join(order_label(order, analysis.facts) for order in beyond[:MAX_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
     return text
 
@@ -230,10 +230,10 @@ def _page(result: HousingVibrationResult) -> Page:
     first, *others = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
     shapes = () if shape is None else (shape,)
     drawn = (first, *shapes, *others, *excitation_figures(result.analysis.facts))
-    whole = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.facts)
-    rests = Table("Forces that move the housing", ("what", "how"), force_words(result.analysis.facts))
+    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.facts)
+    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.facts))
     accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
-    return replace(whole, sections=(*whole.sections, accuracy))
+    return replace(page, sections=(*page.sections, accuracy))
 
 
 def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
@@ -244,10 +244,10 @@ def _headlines(result: HousingVibrationResult) -> tuple[Headline, ...]:
         rms = vibration.rms[(slice(None), *at)]
         fastest = int(np.argmax(rms))
         name = f"velocity of {vibration.point[fastest]}"
-        first = Headline(name, speed_words(float(rms[fastest])), _where(analysis))
+        first = Headline(name, velocity_text(float(rms[fastest])), _where(analysis))
     else:
         rms_of_hull = float(vibration.mean_square_velocity[at]) ** 0.5
-        first = Headline("velocity of the outer hull", speed_words(rms_of_hull))
+        first = Headline("velocity of the outer hull", velocity_text(rms_of_hull))
     maximum = []
     for what, shares in (("bearing", analysis.bearings), ("mode", analysis.modes)):
         part = shares.surface if surface else shares.point[0]
@@ -266,10 +266,10 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
         yield excites
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
-        orders = ", ".join(order_words(order, analysis.facts) for order in beyond)
+        orders = ", ".join(order_label(order, analysis.facts) for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
-    yield from (f"{what}: {words}" for what, words in force_words(analysis.facts))
+    yield from (f"{what}: {text}" for what, text in force_rows(analysis.facts))
     yield from model_text(analysis.facts)
 
 
@@ -278,14 +278,14 @@ def _first_figure(result: HousingVibrationResult) -> Figure:
 
 
 def _by_kind(
-    modeled: Callable[[HousingVibrationResult], Shown], measured: Callable[[MeasuredHousingVibration], Shown]
-) -> Callable[[Result], Shown]:
+    modeled: Callable[[HousingVibrationResult], View], measured: Callable[[MeasuredHousingVibration], View]
+) -> Callable[[Result], View]:
     """Return what shows a result by the kind of its housing."""
 
-    def shown(result: Result) -> Shown:
+    def rendered(result: Result) -> View:
         return measured(result) if isinstance(result, MeasuredHousingVibration) else modeled(result)
 
-    return shown
+    return rendered
 
 
 PAGE = Presentation(

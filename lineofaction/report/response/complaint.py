@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from dynamics.mechanism.passing import MESH, SAME, Passing
-from lineofaction.gearbox.convert.complaint import Complaint, beside, grouped, sentence, words
+from lineofaction.gearbox.convert.complaint import Complaint, grouped, harmonic_label, offset_text, sentence
 from lineofaction.gearbox.studies.complaint.run import AnsweredComplaint
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
@@ -55,7 +55,7 @@ def _figure(answer: AnsweredComplaint) -> Figure:
 def _listed(complaint: Complaint) -> list[tuple[Passing, ...]]:
     """Return what is shown: what is within the tolerance, then the nearest of the others."""
     within = complaint.within
-    others = grouped(each for each in complaint.passing if each not in within)
+    others = grouped(passing for passing in complaint.passing if passing not in within)
     return [*grouped(within), *others[:OTHERS]]
 
 
@@ -71,7 +71,7 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
     ends = np.array(AROUND)
     rpm = ends * speed / RPM
     lines = tuple(
-        Line(words(alike), rpm, alike[0].order * rpm / 60.0, color, dash, width)
+        Line(harmonic_label(alike), rpm, alike[0].order * rpm / 60.0, color, dash, width)
         for alike, color, dash, width in _looks(complaint)
     )
     low, high = ends * frequency
@@ -82,18 +82,26 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
 def _by_order(complaint: Complaint) -> Panel:
     """Draw what passes as points at its order and its distance."""
     lines = tuple(
-        Line(words(alike), np.array([each.order]), np.array([100.0 * each.distance]), color, dash, 0.0, True)
+        Line(
+            harmonic_label(alike),
+            np.array([candidate.order]),
+            np.array([100.0 * candidate.distance]),
+            color,
+            dash,
+            0.0,
+            True,
+        )
         for alike, color, dash, _ in _looks(complaint)
-        for each in alike[:1]
+        for candidate in alike[:1]
     )
     x, y = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
     return Panel(x, y, lines, (Reference("complaint", complaint.order),))
 
 
 def _modes_in(answer: AnsweredComplaint) -> tuple[Reference, ...]:
-    shown = zip(answer.modes, MODES_AT, strict=False)
+    modes = zip(answer.modes, MODES_AT, strict=False)
     return tuple(
-        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", at) for mode, at in shown
+        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", at) for mode, at in modes
     )
 
 
@@ -101,7 +109,7 @@ def _passing_table(answer: AnsweredComplaint) -> Table:
     complaint = answer.complaint
     forces = dict(zip(complaint.within, answer.forces, strict=True))
     columns = {
-        "what": words,
+        "what": harmonic_label,
         "order": lambda alike: number(alike[0].order, 5),
         "frequency, Hz": lambda alike: number(complaint.hertz(alike[0].order) or np.nan, 5),
         "off, %": lambda alike: f"{100.0 * alike[0].distance:+.2f}",
@@ -134,23 +142,27 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     first, *others = grouped(complaint.within)
     several = any(alike[0].excitation.kind == MESH for alike in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
-    shown = [Headline("complaint", words(first), beside(complaint, first[0]) + ranked)]
+    headlines = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
     if others:
-        names = "; ".join(f"{words(alike)} {beside(complaint, alike[0])}" for alike in others)
-        shown.append(Headline("passes there too", names, _apart(first[0], [alike[0] for alike in others])))
-    nearest = grouped(each for each in complaint.passing if each.excitation.kind == MESH)
+        names = "; ".join(f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in others)
+        headlines.append(
+            Headline("passes there too", names, _resolution(first[0], [alike[0] for alike in others]))
+        )
+    nearest = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
     if first[0].excitation.kind != MESH and nearest:
-        shown.append(Headline("nearest mesh order", words(nearest[0]), beside(complaint, nearest[0][0])))
+        headlines.append(
+            Headline("nearest mesh order", harmonic_label(nearest[0]), offset_text(complaint, nearest[0][0]))
+        )
     if answer.modes:
         mode = answer.modes[0]
         remark = f"{mode.kind}, {20.0 * np.log10(mode.amplification):+.1f} dB"
-        shown.append(Headline("mode within reach", f"{number(mode.frequency)} Hz", remark))
-    return tuple(shown)
+        headlines.append(Headline("mode within reach", f"{number(mode.frequency)} Hz", remark))
+    return tuple(headlines)
 
 
-def _apart(first: Passing, others: Sequence[Passing]) -> str:
+def _resolution(first: Passing, others: Sequence[Passing]) -> str:
     """Say how well frequency and speed have to be known to tell what passes apart."""
-    gaps = [gap for each in others if (gap := abs(each.order / first.order - 1.0)) > SAME]
+    gaps = [gap for other in others if (gap := abs(other.order / first.order - 1.0)) > SAME]
     if not gaps:
         return "the same at every speed"
     return f"told apart by a frequency and speed known to {engineering(50.0 * min(gaps), 2)} %"
@@ -177,7 +189,7 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
             f"flanks part: a linear mesh would pull by {share} % of its mean force, so no force here holds; "
             "loa steady and loa simulate have it"
         )
-    if any(each.excitation.kind == MESH for each in complaint.within) and not np.any(
+    if any(candidate.excitation.kind == MESH for candidate in complaint.within) and not np.any(
         np.isfinite([force.force for force in answer.forces])
     ):
         yield "forces are not known: no speed, or nothing excites the linear response"

@@ -10,10 +10,10 @@ import numpy as np
 from bounds import engineering
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
-from lineofaction.report.drawing.marks import order_words
+from lineofaction.report.drawing.marks import order_label
 
 Row = Mapping[str, Any]
-SHOWN = 6
+MAX_HARMONIC = 6
 """Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
 _QUANTITIES = {
     "transmission_error": ("transmission error, nm", 1e9),
@@ -24,9 +24,9 @@ _WIDTH = 0.8
 """Of all bars of a harmonic together."""
 
 
-def excitation_table(facts: Mapping[str, Any]) -> Table | None:
+def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     """List what excites, of every mesh its first harmonics; None where it is not known, as of a run."""
-    rows = _shown(facts)
+    rows = _low_harmonics(metadata)
     if not rows:
         return None
     head = "mesh", "load, N m", "harmonic", "order", *(label for label, _ in _QUANTITIES.values())
@@ -35,7 +35,7 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
             row["mesh"],
             number(row["torque"], 4),
             "" if row["harmonic"] is None else str(row["harmonic"]),
-            order_words(row["order"], facts),
+            order_label(row["order"], metadata),
             *(_with_error(row, name, scale) for name, (_, scale) in _QUANTITIES.items()),
         )
         for row in rows
@@ -43,20 +43,20 @@ def excitation_table(facts: Mapping[str, Any]) -> Table | None:
     return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
 
 
-def orders_left_out(facts: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     """Say how much of a long table's excitation a response does not list; nothing where it lists all."""
-    if not (left_out := facts.get("lines_left_out")):
+    if not (left_out := metadata.get("lines_left_out")):
         return ()
     share = engineering(100.0 * left_out["force"], 2)
     part = f"up to {share} % of the exciting force of a mesh order (rms)"
     totals = "have" if left_out.get("in_totals") else "lack"
-    words = f"{left_out['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
-    return (("weaker orders of a long table", words),)
+    text = f"{left_out['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
+    return (("weaker orders of a long table", text),)
 
 
-def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:
+def excitation_figures(metadata: Mapping[str, Any]) -> tuple[Figure, ...]:
     """Draw what excites: a panel for each quantity that does, a color for each mesh."""
-    rows, table = _shown(facts), excitation_table(facts)
+    rows, table = _low_harmonics(metadata), excitation_table(metadata)
     if table is None:
         return ()
     meshes = list(dict.fromkeys(row["mesh"] for row in rows))
@@ -69,15 +69,15 @@ def excitation_figures(facts: Mapping[str, Any]) -> tuple[Figure, ...]:
         caption="Amplitudes of the harmonics at the static mesh forces; from bottom to top of the pale bars "
         "they lie within the errors of the table.",
         alternative=f"The largest transmission error is {size} nm in order "
-        f"{order_words(largest['order'], facts)} of {largest['mesh']}.",
+        f"{order_label(largest['order'], metadata)} of {largest['mesh']}.",
         content=tuple(_panel(rows, name, meshes) for name in acting),
         table=table,
     )
     return (figure,) if acting else ()
 
 
-def _shown(facts: Mapping[str, Any]) -> list[Row]:
-    return [row for row in facts.get("excitations", ()) if (row["harmonic"] or 0) <= SHOWN]
+def _low_harmonics(metadata: Mapping[str, Any]) -> list[Row]:
+    return [row for row in metadata.get("excitations", ()) if (row["harmonic"] or 0) <= MAX_HARMONIC]
 
 
 def _with_error(row: Row, name: str, scale: float) -> str:
@@ -89,14 +89,14 @@ def _panel(rows: list[Row], name: str, meshes: list[str]) -> Panel:
     label, scale = _QUANTITIES[name]
     width, bars = _WIDTH / len(meshes), []
     for index, mesh in enumerate(meshes):
-        own = [row for row in rows if row["mesh"] == mesh and row["harmonic"]]
-        at = np.array([row["harmonic"] for row in own]) + (index - 0.5 * (len(meshes) - 1)) * width
-        size = scale * np.array([row[name] for row in own])
-        error = scale * np.array([row[f"error_of_{name}"] or 0.0 for row in own])
+        mesh_rows = [row for row in rows if row["mesh"] == mesh and row["harmonic"]]
+        at = np.array([row["harmonic"] for row in mesh_rows]) + (index - 0.5 * (len(meshes) - 1)) * width
+        size = scale * np.array([row[name] for row in mesh_rows])
+        error = scale * np.array([row[f"error_of_{name}"] or 0.0 for row in mesh_rows])
         bars.append(Bars(mesh, at, size, 0.0, width, palette.category(index)))
         bars.append(
             Bars("error", at, size + error, np.maximum(size - error, 0.0), 0.4 * width, palette.INK, True)
         )
-    names = tuple((float(k), str(k)) for k in range(1, SHOWN + 1))
-    x = Axis("harmonic of the mesh", limits=(0.4, SHOWN + 0.6), names=names)
+    names = tuple((float(k), str(k)) for k in range(1, MAX_HARMONIC + 1))
+    x = Axis("harmonic of the mesh", limits=(0.4, MAX_HARMONIC + 0.6), names=names)
     return Panel(x, Axis(label), bars=tuple(bars))

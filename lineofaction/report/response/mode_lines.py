@@ -51,16 +51,16 @@ def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[M
     """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
     frequencies, whirls = _frequencies(run, mesh_frequency)
     modes = run.modes["over_speed"] if whirling(run) else run.modes
-    kept: list[ModeLine] = []
+    lines: list[ModeLine] = []
     for index in np.argsort(frequencies[:, 0]) if frequencies.size else ():
         values = frequencies[index]
-        apart = all(np.max(np.abs(line.frequency - values)) > MIN_DISTANCE * top for line in kept)
-        if 0.0 < values[0] < top and apart:
+        is_separate = all(np.max(np.abs(line.frequency - values)) > MIN_DISTANCE * top for line in lines)
+        if 0.0 < values[0] < top and is_separate:
             name = whirl_name(whirls[index]) if whirling(run) else "natural modes"
             shares = dict(modes["moves"][index]) if "moves" in modes else {}
             maximum = str(next(iter(shares)) if "moves" in modes else modes["freedom"][int(index)])
-            kept.append(ModeLine(name, _COLORS[name], values, maximum, shares))
-    return kept[:MAX_MODES]
+            lines.append(ModeLine(name, _COLORS[name], values, maximum, shares))
+    return lines[:MAX_MODES]
 
 
 def _frequencies(run: RunResult, mesh_frequency: FloatArray) -> tuple[FloatArray, list[float]]:
@@ -142,15 +142,15 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     energy : str
         Of the label.
     """
-    place, base = np.arange(float(len(modes))), np.zeros(len(modes))
+    position, base = np.arange(float(len(modes))), np.zeros(len(modes))
     bars = []
     for index, part in enumerate(_largest_parts(shares)):
         top = base + [100.0 * of.get(part, 0.0) for of in shares]
-        bars.append(Bars(part, place, top, base, _WIDTH, palette.CATEGORIES[index]))
+        bars.append(Bars(part, position, top, base, _WIDTH, palette.CATEGORIES[index]))
         base = top
     rest = np.where(base > 0.0, 100.0, 0.0)
     if np.any(rest > base + 0.5):
-        bars.append(Bars(OTHERS, place, rest, base, _WIDTH, palette.GRID))
+        bars.append(Bars(OTHERS, position, rest, base, _WIDTH, palette.GRID))
     return Panel(
         Axis.of_names(modes, "mode"), Axis(f"share of the {energy}, %", limits=(0.0, 100.0)), bars=tuple(bars)
     )

@@ -10,7 +10,7 @@ from bounds import leftover
 from dynamics.linearize import ModalAnalysis
 from dynamics.linearize.modal_analysis import LARGE
 from dynamics.linearize.mode_energy import freedom_parts
-from lineofaction.gearbox.studies.modes.run import moved_surface
+from lineofaction.gearbox.studies.modes.run import surface_shape
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
@@ -30,8 +30,8 @@ from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.mode_lines import mode_bars, whirl_name
 
 ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
-SHOWN_PARTS = 2
-SHOWN_MODES, PRINTED_MODES = 10, 20
+MAX_PARTS = 2
+MAX_MODES, PRINTED_MODES = 10, 20
 HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
 MIN_TOP = 1.0  # Hz
 ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
@@ -49,10 +49,10 @@ def _modal_figures(modes: ModalAnalysis) -> tuple[Figure, ...]:
 
 def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
     """Draw the housing in the lowest mode at rest in which it moves much; nothing without its surface."""
-    its_own = [move == "housing" for _, move in freedom_parts(modes.freedom)]
-    share = modes.natural_kinetic_energy[:, its_own].sum(axis=1)
+    of_housing = [move == "housing" for _, move in freedom_parts(modes.freedom)]
+    share = modes.natural_kinetic_energy[:, of_housing].sum(axis=1)
     lowest = np.flatnonzero((modes.natural_frequency > 0.0) & (share > LARGE))[:1]
-    shapes = [moved_surface(modes, modes.natural_shape[mode]) for mode in lowest]
+    shapes = [surface_shape(modes, modes.natural_shape[mode]) for mode in lowest]
     return tuple(
         shape_figure(
             "modal_housing",
@@ -82,7 +82,7 @@ def _campbell(modes: ModalAnalysis) -> Figure:
         title="Campbell diagram: whirl modes over speed",
         caption="Damped frequencies about the static equilibrium with gyroscopic, Coriolis and centripetal "
         "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
-        alternative=_words(modes),
+        alternative=_alternative(modes),
         content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(modes, speed, top))),),
         table=_critical_table(modes),
     )
@@ -122,43 +122,41 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
     """Every mode by its sense of whirl; points between two speeds take that of the first."""
     for name, (color, dash) in WHIRLS.items():
         for mode in range(modes.frequency.shape[1]):
-            here = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
-            if not np.any(here):
+            at_whirl = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
+            if not np.any(at_whirl):
                 continue
-            shown = here | np.append(False, here[:-1])
-            frequency = np.where(shown, modes.frequency[:, mode], np.nan)
+            drawn = at_whirl | np.append(False, at_whirl[:-1])
+            frequency = np.where(drawn, modes.frequency[:, mode], np.nan)
             yield Line(name.removeprefix("whirl "), speed, frequency, color, dash, 1.6)
 
 
 def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
     """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
-    shown = np.flatnonzero(modes.natural_frequency > 0.0)[:SHOWN_MODES]
-    names = [f"{number(modes.natural_frequency[mode], 4)} Hz" for mode in shown]
-    held = [modes.held_by(modes.natural_strain_energy[mode]) for mode in shown]
-    moved = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in shown]
-    alike = (
-        f"At most the {SHOWN_MODES} lowest modes; those of one frequency are any combination of each other."
-    )
+    lowest = np.flatnonzero(modes.natural_frequency > 0.0)[:MAX_MODES]
+    names = [f"{number(modes.natural_frequency[mode], 4)} Hz" for mode in lowest]
+    strain = [modes.held_by(modes.natural_strain_energy[mode]) for mode in lowest]
+    kinetic = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in lowest]
+    alike = f"At most the {MAX_MODES} lowest modes; those of one frequency are any combination of each other."
     return (
         Figure(
             key="modal_energy",
             title="Strain energy of the natural modes at rest",
             caption=f"Strain energy by mesh, bearing, coupling and drive. {alike}",
-            alternative=_energy_words(names, held, "strain"),
-            content=(mode_bars(names, held, "strain energy"),),
+            alternative=_energy_text(names, strain, "strain"),
+            content=(mode_bars(names, strain, "strain energy"),),
             table=_modes_table(modes),
         ),
         Figure(
             key="modal_motion",
             title="Kinetic energy of the natural modes at rest",
             caption=f"Kinetic energy by shaft and kind of motion. {alike}",
-            alternative=_energy_words(names, moved, "kinetic"),
-            content=(mode_bars(names, moved, "kinetic energy"),),
+            alternative=_energy_text(names, kinetic, "kinetic"),
+            content=(mode_bars(names, kinetic, "kinetic energy"),),
         ),
     )
 
 
-def _energy_words(names: list[str], shares: list[dict[str, float]], energy: str) -> str:
+def _energy_text(names: list[str], shares: list[dict[str, float]], energy: str) -> str:
     if not names:
         return "Nothing vibrates."
     part, share = next(iter(shares[0].items()))
@@ -181,8 +179,8 @@ def _modes_table(modes: ModalAnalysis, maximum: int | None = None) -> Table:
 
 
 def _shares(parts: dict[str, float]) -> str:
-    shown = [f"{name} {100.0 * share:.0f} %" for name, share in parts.items() if share >= 0.005]
-    return ", ".join(shown[:SHOWN_PARTS]) or "none"
+    listed = [f"{name} {100.0 * share:.0f} %" for name, share in parts.items() if share >= 0.005]
+    return ", ".join(listed[:MAX_PARTS]) or "none"
 
 
 def _critical_table(modes: ModalAnalysis) -> Table:
@@ -222,7 +220,7 @@ def _critical_kind(modes: ModalAnalysis, index: int) -> tuple[str, str]:
     return modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode]), whirl
 
 
-def _words(modes: ModalAnalysis) -> str:
+def _alternative(modes: ModalAnalysis) -> str:
     if not modes.critical_speed.size:
         return "No mesh order meets a mode in this range."
     minimum = int(np.argmin(modes.critical_damping_ratio))

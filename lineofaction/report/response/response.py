@@ -21,7 +21,7 @@ from lineofaction.report.drawing.figure import (
     category_lines,
     number,
 )
-from lineofaction.report.drawing.marks import order_words, shown_orders
+from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
@@ -29,7 +29,7 @@ from lineofaction.report.response.excitations import excitation_figures, excitat
 MIN_SHARE = 1e-3
 """%, of what is listed."""
 
-SHOWN_ORDERS, SHOWN_PEAKS, PRINTED_PEAKS = 6, 15, 4
+MAX_ORDERS, MAX_PEAKS, PRINTED_PEAKS = 6, 15, 4
 """Peaks of a quantity on the page and on a terminal."""
 WITH_MESHES = (
     "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
@@ -50,8 +50,8 @@ def _power_table(response: ForcedResponse) -> Table:
     by_part = np.sum(power.loss[:, at], axis=1)
     rows = []
     for kind, lost in power.by_kind().items():
-        own = [part for part, each in enumerate(power.kind) if each == kind]
-        maximum = max(own, key=lambda part: by_part[part])
+        same_kind = [part for part, name in enumerate(power.kind) if name == kind]
+        maximum = max(same_kind, key=lambda part: by_part[part])
         share = 100.0 * float(lost[at] / total[at])
         if abs(share) >= MIN_SHARE:
             rows.append((kind, power.sink[maximum], number(lost[at], 3), number(share, 3)))
@@ -91,10 +91,10 @@ def _total(response: ForcedResponse) -> FloatArray:
 def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
     size = np.max(quantities[1 if response.mesh else 0][1], axis=0) if quantities else np.empty(0)
-    shown = shown_orders(response.order[: size.size], size, SHOWN_ORDERS, response.facts)
-    names, panels = [f"order {order_words(response.order[h], response.facts)}" for h in shown], []
+    drawn = drawn_orders(response.order[: size.size], size, MAX_ORDERS, response.facts)
+    names, panels = [f"order {order_label(response.order[h], response.facts)}" for h in drawn], []
     for label, amplitude in quantities:
-        panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, shown].T)))
+        panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, drawn].T)))
     if response.mesh:
         line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
         panels.append(
@@ -106,7 +106,7 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
         key="response",
         title="Forced response to transmission errors and loads" if response.mesh else "Forced response",
         caption=WITH_MESHES if response.mesh else WITHOUT_MESHES,
-        alternative=_words(response),
+        alternative=_alternative(response),
         content=tuple(panels),
         table=_peak_table(response),
     )
@@ -124,8 +124,8 @@ def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArr
     force = _bearing_force(response)
     if force.size:
         name = response.facts.get("complaint", {}).get("bearing")
-        own = int(np.argmax(np.max(force, axis=(1, 2)))) if name is None else response.bearing.index(name)
-        quantities.append((f"force on {response.bearing[own]}, N", force[own]))
+        bearing = int(np.argmax(np.max(force, axis=(1, 2)))) if name is None else response.bearing.index(name)
+        quantities.append((f"force on {response.bearing[bearing]}, N", force[bearing]))
     return quantities
 
 
@@ -134,7 +134,7 @@ def _bearing_force(response: ForcedResponse) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(np.abs(response.bearing_force[:, :3]) ** 2, axis=1)))
 
 
-def _peak_table(response: ForcedResponse, maximum: int = SHOWN_PEAKS) -> Table:
+def _peak_table(response: ForcedResponse, maximum: int = MAX_PEAKS) -> Table:
     every = peaks(response)
     listed = [
         peak
@@ -143,7 +143,7 @@ def _peak_table(response: ForcedResponse, maximum: int = SHOWN_PEAKS) -> Table:
     ]
     columns = {
         "force of": lambda peak: f"{peak.quantity.removesuffix('_force')} {peak.name}",
-        "order": lambda peak: order_words(peak.order, response.facts),
+        "order": lambda peak: order_label(peak.order, response.facts),
         "speed, rpm": lambda peak: number(peak.speed / RPM, 5),
         "frequency, Hz": lambda peak: number(peak.frequency, 5),
         "nearest mode, Hz": lambda peak: number(peak.natural_frequency, 5),
@@ -153,7 +153,7 @@ def _peak_table(response: ForcedResponse, maximum: int = SHOWN_PEAKS) -> Table:
     return Table.of("Peaks over speed, the largest first", listed, columns)
 
 
-def _words(response: ForcedResponse) -> str:
+def _alternative(response: ForcedResponse) -> str:
     if not response.mesh:
         return " ".join(f"{part.name}: {part.value}, {part.remark}." for part in _headlines(response))
     size = np.abs(response.mesh_force)
@@ -168,13 +168,13 @@ def _words(response: ForcedResponse) -> str:
 
 def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
     parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
-    own = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
-    own += [("force on bearing", response.bearing, force)]
-    shown = [_largest(what, names, size, response) for what, names, size in own if size.size]
+    forces = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
+    forces += [("force on bearing", response.bearing, force)]
+    headlines = [_largest(what, names, size, response) for what, names, size in forces if size.size]
     if not parting.size:
-        return tuple(shown)
+        return tuple(headlines)
     at = f"{parting.size} of {response.speed.size} speeds"
-    return (shown[0], Headline("flanks part at", at, f"from {number(parting[0], 4)} rpm on"))
+    return (headlines[0], Headline("flanks part at", at, f"from {number(parting[0], 4)} rpm on"))
 
 
 def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
@@ -184,8 +184,8 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
 
 
 def _at(response: ForcedResponse, speed: int, order: int) -> str:
-    words = order_words(response.order[order], response.facts)
-    return f"order {words} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
+    label = order_label(response.order[order], response.facts)
+    return f"order {label} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
@@ -206,24 +206,24 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield from (f"{what}: {words}" for what, words in orders_left_out(response.facts))
-    yield from _left_out_words(response)
+    yield from (f"{what}: {text}" for what, text in orders_left_out(response.facts))
+    yield from _left_out_text(response)
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
 
 
-def _left_out_words(response: ForcedResponse) -> Iterator[str]:
+def _left_out_text(response: ForcedResponse) -> Iterator[str]:
     """Say what the orders that are not listed make of the bearing force that is largest in all orders."""
     if response.bearing_floor.size:
         square, floor = response.bearing_mean_square, response.bearing_floor
         at = np.unravel_index(int(np.argmax(square)), square.shape)
         rms = float(np.sqrt(square[at]))
-        words = f"{number(float(np.sqrt(floor[at])), 3)} N of it in the orders not listed"
+        remark = f"{number(float(np.sqrt(floor[at])), 3)} N of it in the orders not listed"
         error = engineering(rms - float(np.sqrt(max(square[at] - response.bearing_floor_error[at], 0.0))), 2)
         where = f"{response.bearing[at[0]]} at {number(float(response.speed[at[1]]) / RPM, 4)} rpm"
-        yield f"largest rms force of all orders: {number(rms, 4)} ± {error} N on {where}, {words}"
+        yield f"largest rms force of all orders: {number(rms, 4)} ± {error} N on {where}, {remark}"
 
 
 PAGE = dynamics_presentation("Forced response", _figures, _headlines, _text)

@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
-APART = 0.1  # of the axis: nearer folds share a label
+MIN_DISTANCE = 0.1  # of the axis: nearer folds share a label
 MARKED = 80  # sweeps of more motions are drawn as lines
 _BEARING_HEAD = ("bearing", "state", "rms force, N")
 _MESH_HEAD = (
@@ -43,13 +43,15 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends)
     quantities = _quantities(states, mesh)
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
-    panels = tuple(Panel(x, Axis(label), tuple(_lines(states, shown)), marks) for label, shown in quantities)
+    panels = tuple(
+        Panel(x, Axis(label), tuple(_lines(states, values)), marks) for label, values in quantities
+    )
     return Figure(
         key="steady",
         title="Periodic steady states over speed",
         caption="Motions at constant speed by shooting. Line: the branch, solid where stable, dashed where "
         "not. Points: steady states at slowly rising and falling speeds. Error: alternating part.",
-        alternative=_words(states),
+        alternative=_alternative(states),
         content=panels,
         table=_steady_table(states),
     )
@@ -80,24 +82,24 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
     """Return the folds in rpm that lie apart: corners come in clusters, of which the outermost counts."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
-    kept: list[float] = []
+    separate: list[float] = []
     if folds.size:
         middle = 0.5 * (folds.min() + folds.max())
         for speed in folds[np.argsort(-np.abs(folds - middle), kind="stable")]:
-            if all(abs(speed - other) > APART * (ends[1] - ends[0]) for other in kept):
-                kept.append(float(speed))
-    return kept
+            if all(abs(speed - other) > MIN_DISTANCE * (ends[1] - ends[0]) for other in separate):
+                separate.append(float(speed))
+    return separate
 
 
 def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
     on = np.flatnonzero(states.curve == BRANCH)
     stable = states.instability[on] == 0
-    beside = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
+    boundary = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
     looks: tuple[tuple[str, Dash], ...] = (("branch, stable", "solid"), ("branch, unstable", "dash"))
-    for (name, dash), here, joined in zip(looks, (stable, ~stable), (False, beside), strict=True):
-        if np.any(here):
-            line = np.where(here | joined, values[on], np.nan)
+    for (name, dash), in_part, joined in zip(looks, (stable, ~stable), (False, boundary), strict=True):
+        if np.any(in_part):
+            line = np.where(in_part | joined, values[on], np.nan)
             yield Line(name, states.speed[on] / RPM, line, palette.INK, dash, 1.3)
     for curve, name, color in _SWEEPS:
         there = np.flatnonzero(states.curve == curve)
@@ -159,7 +161,7 @@ def _contact_name(parted: float, coasting: float) -> str:
     return f"lift-off, {100.0 * parted:.0f} %" if parted > 0.0 else "driving flank"
 
 
-def _words(states: SteadyStates) -> str:
+def _alternative(states: SteadyStates) -> str:
     if np.all(states.status != 0):
         return "No periodic motion was found."
     if not states.mesh:

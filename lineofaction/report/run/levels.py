@@ -51,17 +51,17 @@ def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: f
     `along` (B,) is speed or time of the blocks, rising or falling; `line` (K,) are frequencies or orders,
     equally spaced from 0, of which those above 0 and up to `top` are shown; `amplitude` is (B, K).
     """
-    kept = np.flatnonzero((line > 0.0) & (line <= top))
-    group = max(int(np.ceil(kept.size / LINES)), 1)
-    kept = kept[: kept.size // group * group]
-    rows = amplitude[:, kept].reshape(amplitude.shape[0], -1, group).max(axis=-1)
+    drawn = np.flatnonzero((line > 0.0) & (line <= top))
+    group = max(int(np.ceil(drawn.size / LINES)), 1)
+    drawn = drawn[: drawn.size // group * group]
+    rows = amplitude[:, drawn].reshape(amplitude.shape[0], -1, group).max(axis=-1)
     order = np.argsort(along)
     even = np.linspace(along.min(), along.max(), along.size)
     middle = 0.5 * (along[order][1:] + along[order][:-1])
     columns = rows[order][np.searchsorted(middle, even)]
     level = 20.0 * np.log10(np.maximum(columns / max(float(columns.max()), 1e-300), 1e-12))
     z = np.clip(level + MAP_DEPTH, 0.0, None).T
-    height = line[kept].reshape(-1, group).mean(axis=-1)
+    height = line[drawn].reshape(-1, group).mean(axis=-1)
     return HeatMap(even, height, z, f"level above −{MAP_DEPTH:g} dB of the largest, dB", MAP_DEPTH)
 
 
@@ -107,7 +107,7 @@ def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure
         caption="Overall: rms about the mean in blocks of whole base pitches. Orders: "
         f"{signal.scale} values of those named, or of the {NAMED} largest, resampled to equal steps of "
         f"position. {validity(valid, top)}",
-        alternative=_words(signal, made, abscissa, unit_of(axis.label)),
+        alternative=_alternative(signal, made, abscissa, unit_of(axis.label)),
         content=(Panel(axis, level, lines),),
         table=_table(signal, made, overall, cuts, (axis, abscissa)),
     )
@@ -120,7 +120,7 @@ def largest_orders(signal: Signal, made: Waterfall) -> tuple[int, ...]:
     return tuple(sorted(largest[:NAMED]))
 
 
-def _words(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str:
+def _alternative(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str:
     overall = signal.magnitude(made.rms)
     worst = int(np.argmax(overall))
     orders = range(1, int(made.line[-1]) + 1)
@@ -197,7 +197,7 @@ def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
         caption="Color: amplitude of each block's spectrum, in dB below the largest. Dotted: "
         f"multiples of the mesh frequency. {MODES_CAPTION[whirling(run)]}, one for those that lie together. "
         f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
-        alternative=_campbell_words(signal, made, amplitude, (axis, along), modes),
+        alternative=_campbell_text(signal, made, amplitude, (axis, along), modes),
         content=(_panel(made, amplitude, axis, along, top, modes),),
         table=mode_table(run, top, ORDERS),
     )
@@ -214,8 +214,8 @@ def _panel(
 ) -> Panel:
     shade = level_map(along, made.line, amplitude, top)
     heights = (order * made.mesh_frequency for order in range(1, ORDERS + 1))
-    shown = (np.where(height <= top, height, np.nan) for height in heights)
-    lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in shown]
+    visible = (np.where(height <= top, height, np.nan) for height in heights)
+    lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in visible]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
     notes = [*_order_notes(made, along, top), *_mode_notes(along, modes)]
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
@@ -239,7 +239,7 @@ def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
         yield Note(float(along[start]), at, f"{mode.moves} {number(at, 4)} Hz")
 
 
-def _campbell_words(
+def _campbell_text(
     signal: Signal,
     made: Waterfall,
     amplitude: FloatArray,
@@ -263,12 +263,12 @@ def _campbell_words(
 def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
     """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
     modes = mode_lines(run, made.mesh_frequency, _top_frequency(run, signal, made))
-    shown = [mode for mode in modes if mode.shares]
-    if not shown:
+    with_shares = [mode for mode in modes if mode.shares]
+    if not with_shares:
         return None
-    names = [f"{number(mode.frequency[0], 4)} Hz" for mode in shown]
+    names = [f"{number(mode.frequency[0], 4)} Hz" for mode in with_shares]
     where = "whirl modes at the highest speed of the run" if whirling(run) else "natural modes"
-    part, share = max(shown[0].shares.items(), key=lambda item: item[1])
+    part, share = max(with_shares[0].shares.items(), key=lambda item: item[1])
     return Figure(
         key="mode_shares",
         title="What moves in the modes of the Campbell diagram",
@@ -276,7 +276,7 @@ def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | Non
         "at the start of the run. Parts below a twentieth are among the others.",
         alternative=f"In the lowest mode, {names[0]}, {number(100.0 * share, 2)} % of the kinetic energy are "
         f"of {part}.",
-        content=(mode_bars(names, [mode.shares for mode in shown], "kinetic energy"),),
+        content=(mode_bars(names, [mode.shares for mode in with_shares], "kinetic energy"),),
     )
 
 

@@ -22,7 +22,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table, number, unit_of
 from lineofaction.report.drawing.page import Headline, Part, Section
 from lineofaction.report.drawing.placing import envelope
-from lineofaction.report.drawing.tables import facts, ledger_section
+from lineofaction.report.drawing.tables import ledger_section, settings_table
 from lineofaction.report.run.levels import (
     campbell,
     frequency_blocks,
@@ -40,8 +40,8 @@ from lineofaction.report.run.signals import (
     signal_over_time,
     signal_spectrum,
 )
-from lineofaction.report.run.sound import Heard, sound_of
-from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, shown_signal
+from lineofaction.report.run.sound import RunSignal, sound_of
+from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, selected_signal
 
 PITCHES = 16
 SHARE, ROWS = 1e-3, 12  # of the largest mesh order
@@ -113,8 +113,8 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
     except InputError:  # fewer than four revolutions
         return ()
     minimum = SHARE * max(line.amplitude for line in lines if line.number == 0)
-    beside = sorted((s for s in lines if s.number and s.amplitude > minimum), key=lambda s: -s.amplitude)
-    if not beside:
+    bands = sorted((s for s in lines if s.number and s.amplitude > minimum), key=lambda s: -s.amplitude)
+    if not bands:
         return ()
     columns = {
         "mesh order": lambda line: str(line.mesh_order),
@@ -123,7 +123,7 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
         f"amplitude, {signal.quantity.unit} peak": lambda line: number(line.amplitude, 3),
     }
     caption = f"Sidebands of the {signal.name}, once per revolution of a gear and its multiples"
-    return (Table.of(caption, beside[:ROWS], columns),)
+    return (Table.of(caption, bands[:ROWS], columns),)
 
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
@@ -154,7 +154,7 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
 
     Raises `BadInput`: the run does not hold what the view names.
     """
-    signal = shown_signal(run, view)
+    signal = selected_signal(run, view)
     seen = along_direction(run, signal)
     over_time = signal_over_time(run, signal)
     spectrum = (signal_spectrum(seen, signal),) if has_spectrum(run) else ()
@@ -173,15 +173,15 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
         "Accuracy of the run",
         tables=(_accuracy(run), _sampling(run), _peaks(run)),
         folded=(
-            facts(
+            settings_table(
                 "Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name}
             ),
         ),
         part=Part.ACCURACY,
     )
     text = "The scene with all defaults, in SI."
-    scene = Section("Scene", text, folded=(facts("Scene", run.case),), part=Part.INPUT)
-    steps = facts("Step statistics", vars(run.statistics))
+    scene = Section("Scene", text, folded=(settings_table("Scene", run.case),), part=Part.INPUT)
+    steps = settings_table("Step statistics", vars(run.statistics))
     elapsed = run.receipt.get("wall_seconds", {})
     rows = tuple(
         (name.replace("_", " "), number(spent, 3), number(elapsed.get(name, np.nan), 3))
@@ -204,18 +204,18 @@ def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
     of_orders = order_map(run, signal, orders)
     figures = (
         levels_over_speed(run, signal, orders),
-        replace(of_orders, sound=sound_of((Heard(signal.name, run, signal),), of_orders.content[0].x)),
+        replace(of_orders, sound=sound_of((RunSignal(signal.name, run, signal),), of_orders.content[0].x)),
         campbell(run, signal, frequencies),
         mode_shares(run, signal, frequencies),
         octave_bands(run, signal, frequencies),
     )
-    shown = tuple(figure for figure in figures if figure is not None)
-    return (Section("Levels and orders", figures=shown, tables=_sideband_tables(run, signal)),)
+    drawn = tuple(figure for figure in figures if figure is not None)
+    return (Section("Levels and orders", figures=drawn, tables=_sideband_tables(run, signal)),)
 
 
 def _forces(run: RunResult) -> tuple[Section, ...]:
     factor = _dynamic_factor_figure(run) if run.nominal_force[0] > 0.0 and has_orders(run) else None
-    shown = tuple(figure for figure in (factor, _planet_sharing(run)) if figure is not None)
+    drawn = tuple(figure for figure in (factor, _planet_sharing(run)) if figure is not None)
     shares = contact_shares(run)
     states = tuple(shares[0])
     rows = tuple(
@@ -225,7 +225,7 @@ def _forces(run: RunResult) -> tuple[Section, ...]:
     flanks = {"off": "apart, %", "both": "both flanks, %"}
     head = ("mesh", *(flanks.get(state, f"{state} flank, %") for state in states))
     contact = Table("Contact state, share of the samples", head, rows)
-    return (Section("Mesh forces", figures=shown, tables=(contact,)),)
+    return (Section("Mesh forces", figures=drawn, tables=(contact,)),)
 
 
 def _accuracy(run: RunResult) -> Table:

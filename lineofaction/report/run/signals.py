@@ -81,8 +81,8 @@ def _panel(
 ) -> Panel:
     lines = []
     for index, (component, values) in enumerate(signal.components(run).items()):
-        own = values[window]
-        time, decimated = envelope(run.time[window], own - own.mean() if about_mean else own)
+        selected = values[window]
+        time, decimated = envelope(run.time[window], selected - selected.mean() if about_mean else selected)
         name = component or signal.quantity.noun
         lines.append(Line(name, time, decimated, palette.category(index), width=1.2))
     return Panel(Axis.over("time, s", run.time[window]), Axis(label), tuple(lines), title=title)
@@ -106,8 +106,8 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
     """Draw the amplitude spectrum."""
     window = spectrum_window(run.time)
     frequency, amplitude = amplitude_spectrum(run, signal, window)
-    whole, of = order_frequency(run, signal.mesh), counted_by(run)
-    mesh = whole[window]
+    mesh_frequency, of = order_frequency(run, signal.mesh), counted_by(run)
+    mesh = mesh_frequency[window]
     valid = highest_valid_order(run, signal.mesh)
     first, last = (number(run.time[at], 3) for at in (window.start, window.stop - 1))
     return Figure(
@@ -116,8 +116,8 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
         caption=f"From {first} to {last} s, "
         f"{_NAMES[signal.window]} window, {signal.scale} values. "
         f"Dashed: the {of} frequency in the middle of the window and its multiples. "
-        f"{validity(valid, float(whole.max()), of)}",
-        alternative=_spectrum_words(signal, frequency, amplitude, mesh, of),
+        f"{validity(valid, float(mesh_frequency.max()), of)}",
+        alternative=_spectrum_text(signal, frequency, amplitude, mesh, of),
         content=(_spectrum_panel(signal, frequency, amplitude, float(np.median(mesh)), valid),),
         table=_spectrum_table(signal, frequency, amplitude, mesh, (of, valid)),
     )
@@ -163,15 +163,15 @@ def _spectrum_panel(
 ) -> Panel:
     last = max(min(ORDERS, valid), 1)
     end = float(np.clip((last + 0.5) * mesh or np.inf, frequency[0], frequency[-1]))  # a line at least
-    shown = frequency <= end
+    inside = frequency <= end
     orders = [Reference(f"{k}×", k * mesh) for k in range(1, last + 1) if k * mesh < end]
-    line = Line(signal.name, frequency[shown], np.maximum(amplitude[shown], 1e-12), palette.BLUE, width=1.2)
-    top = float(amplitude[shown].max())
+    line = Line(signal.name, frequency[inside], np.maximum(amplitude[inside], 1e-12), palette.BLUE, width=1.2)
+    top = float(amplitude[inside].max())
     y = Axis(f"amplitude, {signal.unit}", "log", (1e-5 * top, 3.0 * top))
     return Panel(Axis("frequency, Hz", limits=(0.0, end)), y, (line,), tuple(orders))
 
 
-def _spectrum_words(
+def _spectrum_text(
     signal: Signal, frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, of: str
 ) -> str:
     peak = int(np.argmax(amplitude))
@@ -251,7 +251,7 @@ def dynamic_error(run: RunResult, mesh: int = 0) -> Figure:
         caption="The static curve is the table at the nominal force and the same position; the dynamic one "
         "responds to its steps as an oscillating system.",
         alternative=f"Peak to peak in µm: {'; '.join(swings)}.",
-        content=tuple(_error_panel(run, errors, way, *each) for each in windows.items()),
+        content=tuple(_error_panel(run, errors, way, *window) for window in windows.items()),
         table=_error_table(run, mesh, errors, windows),
     )
 

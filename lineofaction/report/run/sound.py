@@ -24,7 +24,7 @@ from lineofaction.report.run.view import (
     RunView,
     Signal,
     same_view,
-    shown_signal,
+    selected_signal,
     signal_recording,
 )
 from model_studies.record_file import read_record
@@ -37,7 +37,7 @@ LONGEST = 300.0
 
 
 @dataclass(frozen=True)
-class Heard:
+class RunSignal:
     """A run to listen to: its name, the run, and what is shown of it."""
 
     name: str
@@ -57,17 +57,17 @@ class Heard:
         return {"quantity": name, **part, **along}
 
 
-def heard_runs(runs: dict[str, RunResult], view: RunView) -> Iterator[Heard]:
+def run_signals(runs: dict[str, RunResult], view: RunView) -> Iterator[RunSignal]:
     """Yield runs by their names as they are heard; the others are heard as the first one is.
 
     Raises `BadInput`: a run does not hold what the view names.
     """
     for name, run in runs.items():
         try:
-            signal = shown_signal(run, view)
+            signal = selected_signal(run, view)
         except BadInput as error:
             raise error.within(name) from None
-        yield Heard(name, run, signal)
+        yield RunSignal(name, run, signal)
         view = same_view(view, signal)
 
 
@@ -81,41 +81,41 @@ def full_scale_of(recordings: list[Recording]) -> float:
         ) from None
 
 
-def sound_of(heard: tuple[Heard, ...], axis: Axis) -> Sound | None:
+def sound_of(signals: tuple[RunSignal, ...], axis: Axis) -> Sound | None:
     """Return the sound of runs beside a plot over `axis`, their speed or time; None if one is silent."""
-    passed = max(_passed(one) for one in heard)
+    passed = max(_passed(one) for one in signals)
     rate = PAGE_RATE if passed <= PASSED * PAGE_RATE else SAMPLE_RATE
     try:
-        recordings = [one.recording(rate) for one in heard]
+        recordings = [one.recording(rate) for one in signals]
     except BadInput:
         return None
     scale = full_scale_of(recordings)
     fits = SAMPLE_BYTES * sum(one.samples.size for one in recordings) <= PAGE_BYTES
     what = ". ".join(dict.fromkeys(one.quantity for one in recordings))
-    together = " of all, which play at their true relative level" if len(heard) > 1 else ""
+    together = " of all, which play at their true relative level" if len(signals) > 1 else ""
     return Sound(
-        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, heard)), 3)} Hz, which the run holds. Full "
+        f"Sound: {what}. From 20 Hz to {number(min(map(_passed, signals)), 3)} Hz, which the run holds. Full "
         f"scale{together}: {number(scale, 2)} {recordings[0].unit}.",
-        tuple(_track(one, axis) for one in heard),
+        tuple(_track(one, axis) for one in signals),
         tuple(wav_file(one, scale) for one in recordings) if fits else (),
     )
 
 
-def _passed(heard: Heard) -> float:
+def _passed(source: RunSignal) -> float:
     """Return the highest frequency that a run holds, Hz."""
-    return float(heard.run.receipt["sampling"]["pass_frequency"])
+    return float(source.run.receipt["sampling"]["pass_frequency"])
 
 
-def _track(heard: Heard, axis: Axis) -> Track:
+def _track(source: RunSignal, axis: Axis) -> Track:
     """Return where a run is on the axis as it plays."""
-    run = heard.run
+    run = source.run
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
     along = time
     if unit_of(axis.label) == "rpm":
-        speed = run.speed[run.shaft.index(driving_shaft(run, heard.signal.mesh))]
+        speed = run.speed[run.shaft.index(driving_shaft(run, source.signal.mesh))]
         along = np.interp(time, run.time, np.abs(speed)) * 30.0 / np.pi
-    mesh_frequency = np.interp(time, run.time, np.abs(run.mesh_frequency[heard.signal.mesh]))
-    return Track(heard.name, time - time[0], along, heard.query, mesh_frequency)
+    mesh_frequency = np.interp(time, run.time, np.abs(run.mesh_frequency[source.signal.mesh]))
+    return Track(source.name, time - time[0], along, source.query, mesh_frequency)
 
 
 def stored_sound(inputs: Json) -> Json:
@@ -138,8 +138,8 @@ def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]
     for run in runs:
         _require_short(float(np.ptp(run.time)))
     view = RunView(**named)
-    first = Heard("", runs[0], shown_signal(runs[0], view))
-    others = heard_runs(dict(zip(("against",), runs[1:], strict=False)), same_view(view, first.signal))
+    first = RunSignal("", runs[0], selected_signal(runs[0], view))
+    others = run_signals(dict(zip(("against",), runs[1:], strict=False)), same_view(view, first.signal))
     return [one.recording() for one in (first, *others)]
 
 

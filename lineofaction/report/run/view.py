@@ -138,7 +138,7 @@ class Signal:
         return np.asarray(np.sqrt(np.sum(taken**2, axis=0)) if vector else np.abs(taken))
 
 
-def shown_signal(run: RunResult, view: RunView) -> Signal:
+def selected_signal(run: RunResult, view: RunView) -> Signal:
     """Find what the view names in a run.
 
     Raises `BadInput`: the run has no such quantity, part or order, or the view no such window or scale.

@@ -35,7 +35,7 @@ _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
 """By load: figures of one page share them."""
 _EQUAL = 1e-6
 MAX_CURVES = 8
-_APART = 1.1  # of what would let two neighbors touch
+_MIN_SPACING = 1.1  # of what would let two neighbors touch
 _MIN = 0.15  # of the largest ripple, between neighbors that would not touch anyway
 _ROOM = 0.04  # of the height
 _TONES = 3
@@ -61,41 +61,41 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
     return float(database.misalignment[m]), float(database.center_distance_change[d])
 
 
-def pitches_shown(database: SteDatabase) -> int:
+def drawn_pitches(database: SteDatabase) -> int:
     """Return how many base pitches plots show: two, or a longer period up to its first 40."""
     return 2 if database.period == 1 else min(database.period, MAX_PITCHES)
 
 
 def position_axis(database: SteDatabase) -> Axis:
     """Return the axis of the positions shown."""
-    return Axis(POSITION_LABEL, limits=(0, pitches_shown(database)))
+    return Axis(POSITION_LABEL, limits=(0, drawn_pitches(database)))
 
 
-def shown_rows(database: SteDatabase) -> tuple[FloatArray, NDArray[np.int64]]:
+def drawn_rows(database: SteDatabase) -> tuple[FloatArray, NDArray[np.int64]]:
     """Return the positions shown, (n,), and the row of the table that holds each; the last closes them."""
-    shown, rows = pitches_shown(database), np.arange(database.position.size)
+    pitches, rows = drawn_pitches(database), np.arange(database.position.size)
     if database.period == 1:
         position = np.concatenate([database.position, database.position + 1.0, [2.0]])
         return position, np.concatenate([rows, rows, [0]])
-    inside = database.position < shown
-    last = np.searchsorted(database.position, shown) % database.position.size
-    return np.append(database.position[inside], shown), np.append(rows[inside], last)
+    inside = database.position < pitches
+    last = np.searchsorted(database.position, pitches) % database.position.size
+    return np.append(database.position[inside], pitches), np.append(rows[inside], last)
 
 
-def ste_shown(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+def drawn_ste(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown, (n,), and STE there at every load, (n, F) in m.
 
     A table with failed points cannot be interpolated: it shows its stored points with gaps.
     """
     if database.n_failed:
         m, d = aligned_index(database)
-        position, rows = shown_rows(database)
+        position, rows = drawn_rows(database)
         return position, database.static_transmission_error[rows][:, :, m, d]
     if database.period > 1:
-        shown = pitches_shown(database)
-        once, values = _interpolated(database, shown, max(POINTS_PER_PITCH // shown, _FEWEST_POINTS))
-        end = database.ste(float(shown), database.force, *aligned(database))
-        return np.append(once, float(shown)), np.concatenate([values, end[None]])
+        pitches = drawn_pitches(database)
+        once, values = _interpolated(database, pitches, max(POINTS_PER_PITCH // pitches, _FEWEST_POINTS))
+        end = database.ste(float(pitches), database.force, *aligned(database))
+        return np.append(once, float(pitches)), np.concatenate([values, end[None]])
     once, values = _interpolated(database, 1, POINTS_PER_PITCH)
     position = np.concatenate([once, once + 1.0, [2.0]])
     return position, np.concatenate([values, values, values[:1]])
@@ -122,7 +122,7 @@ def load_curve(database: SteDatabase, load: int) -> Curve:
     return known[load]
 
 
-def shown_loads(database: SteDatabase) -> tuple[int, ...]:
+def drawn_loads(database: SteDatabase) -> tuple[int, ...]:
     """Return the indices of the loads that plots show.
 
     A table may reach down to a load far below the rest, which serves the extraction near lift-off only.
@@ -145,9 +145,9 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
 
 def few_loads(database: SteDatabase, maximum: int = MAX_LINES) -> tuple[int, ...]:
     """Return the indices of the loads shown, at most `maximum`: those nearest to evenly spaced torques."""
-    loads = np.array(shown_loads(database))
+    loads = np.array(drawn_loads(database))
     if loads.size <= maximum:
-        return shown_loads(database)
+        return drawn_loads(database)
     torque = database.torque[loads]
     even = np.linspace(torque[0], torque[-1], maximum)
     return tuple(int(k) for k in np.unique(loads[np.abs(torque[:, None] - even).argmin(axis=0)]))
@@ -158,8 +158,8 @@ def load_lines(
 ) -> tuple[Line, ...]:
     """Draw `values` (n, F), with error bands if given, as one line for each of a few loads, labeled by it."""
     labels, loads = load_labels(database), few_loads(database)
-    shown = [labels[k] for k in loads]
-    return ordered_lines(x, shown, values.T[[*loads]], None if bands is None else bands.T[[*loads]])
+    names = [labels[k] for k in loads]
+    return ordered_lines(x, names, values.T[[*loads]], None if bands is None else bands.T[[*loads]])
 
 
 def um_of(estimates: Sequence[Estimate]) -> FloatArray:
@@ -169,7 +169,7 @@ def um_of(estimates: Sequence[Estimate]) -> FloatArray:
 
 def middle_load(database: SteDatabase) -> int:
     """Return the index of the middle one of the loads shown."""
-    loads = shown_loads(database)
+    loads = drawn_loads(database)
     return loads[len(loads) // 2]
 
 
@@ -178,7 +178,7 @@ def headline_load(database: SteDatabase, force: float | None = None) -> int:
     return middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
 
 
-def pairs_in_words(database: SteDatabase, load: int) -> str:
+def pair_count_text(database: SteDatabase, load: int) -> str:
     """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
     low, high = pair_range(database, load)
     if low == high:
@@ -225,7 +225,7 @@ class HarrisScale:
         """
         ripple = max(float((np.nanmax(one, axis=0) - np.nanmin(one, axis=0)).max()) for one in maps)
         above = max(float(np.nanmax(one[:, :-1] - one[:, 1:], initial=0.0)) for one in maps)
-        step = max(_APART * above, _MIN * ripple) or 1.0
+        step = max(_MIN_SPACING * above, _MIN * ripple) or 1.0
         drawn = np.concatenate([(one + step * np.arange(one.shape[1])).ravel() for one in maps])
         low, high = float(np.nanmin(drawn)), float(np.nanmax(drawn))
         room = _ROOM * (high - low) or 1.0
@@ -244,8 +244,8 @@ def harris_panel(
 def ste_curves(database: SteDatabase) -> Figure:
     """Draw STE less its mean at a few loads, and at more of them as a Harris map."""
     curves = [load_curve(database, load) for load in range(database.force.size)]
-    ripple, shown = _ripple(database, curves), pitches_shown(database)
-    panels = (ripple, _harris(database, curves)) if len(shown_loads(database)) > 1 else (ripple,)
+    ripple, pitches = _ripple(database, curves), drawn_pitches(database)
+    panels = (ripple, _harris(database, curves)) if len(drawn_loads(database)) > 1 else (ripple,)
     caption = (
         "STE: displacement on the transverse line of action by which the driven gear lags, relative to "
         f"conjugate motion; drawn less its mean. {_bands(ripple)}{_carriers(database)}"
@@ -254,9 +254,9 @@ def ste_curves(database: SteDatabase) -> Figure:
         caption += f" The teeth differ: the curve repeats after {database.period} base pitches."
     return Figure(
         key="ste",
-        title=f"Static transmission error over {'two' if shown == 2 else shown} base pitches",
+        title=f"Static transmission error over {'two' if pitches == 2 else pitches} base pitches",
         caption=caption,
-        alternative=_words(database, curves),
+        alternative=_alternative(database, curves),
         content=panels,
         table=_table(database, curves),
     )
@@ -298,7 +298,7 @@ def _harris(database: SteDatabase, curves: list[Curve]) -> Panel:
 
 def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown (n,), and STE there less the mean of each load (n, F), µm."""
-    position, values = ste_shown(database)
+    position, values = drawn_ste(database)
     return position, 1e6 * (values - np.array([curve.mean.value for curve in curves]))
 
 
@@ -317,8 +317,8 @@ def _bands(ripple: Panel) -> str:
 
 
 def _carriers(database: SteDatabase) -> str:
-    load = shown_loads(database)[-1]
-    carried = f"At {load_labels(database)[load]} {pairs_in_words(database, load)}"
+    load = drawn_loads(database)[-1]
+    carried = f"At {load_labels(database)[load]} {pair_count_text(database, load)}"
     return (
         f"{carried}: low where more do, high where fewer."
         if _steps_with_pairs(database, load)
@@ -326,8 +326,8 @@ def _carriers(database: SteDatabase) -> str:
     )
 
 
-def _words(database: SteDatabase, curves: list[Curve]) -> str:
-    labels, loads = load_labels(database), shown_loads(database)
+def _alternative(database: SteDatabase, curves: list[Curve]) -> str:
+    labels, loads = load_labels(database), drawn_loads(database)
     ends = {labels[k]: curves[k] for k in (loads[-1], loads[0])}
     parts = [
         f"{_band(curve.peak_to_peak, 3)} µm at {label}, about a mean of {um(curve.mean.value, 3)} µm"

@@ -27,13 +27,13 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.ste.curves import (
     aligned,
     aligned_index,
+    drawn_loads,
+    drawn_rows,
     load_curve,
     load_labels,
     load_lines,
     middle_load,
     position_axis,
-    shown_loads,
-    shown_rows,
     um_of,
 )
 
@@ -44,7 +44,7 @@ _ROOM = 0.02  # of the range of torques, beside its ends
 
 def ripple_over_torque(database: SteDatabase) -> Figure:
     """Draw peak-to-peak with its error, and harmonics as they are and in dB, over torque."""
-    curves = {load: load_curve(database, load) for load in shown_loads(database)}
+    curves = {load: load_curve(database, load) for load in drawn_loads(database)}
     across, torque = _torque_axis(np.array([curve.torque for curve in curves.values()]))
     value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
     known = ~(error >= value)  # also where no error was estimated
@@ -56,7 +56,7 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
         title="Ripple over torque",
         caption="Peak-to-peak STE with the band of its error, and its mesh harmonics; dotted: below their "
         "errors.",
-        alternative=_ripple_words({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
+        alternative=_ripple_text({f"at {load_labels(database)[k]}": c for k, c in curves.items()}),
         content=(
             ripple_panel(across, (line,), title="Peak to peak"),
             _harmonics(across, torque, value, known, "amplitude, µm"),
@@ -83,7 +83,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
     return Panel(across, Axis(label), tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}")
 
 
-def _ripple_words(curves: dict[str, Curve]) -> str:
+def _ripple_text(curves: dict[str, Curve]) -> str:
     """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
     minimum, maximum = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
@@ -136,7 +136,7 @@ def deviation_curves(database: SteDatabase) -> Figure:
         caption="Bands: errors. Each deviation alone, the other at its stored value nearest to zero. "
         "Misalignment > 0: the gap grows towards the +z end of the face, and the load moves to the −z end. "
         "Seen from +z, the driving gear turns clockwise.",
-        alternative=" ".join(_words(database, deviation) for deviation in deviations),
+        alternative=" ".join(_deviation_text(database, deviation) for deviation in deviations),
         content=tuple(_panel(database, deviation) for deviation in deviations),
         table=_deviation_table(database, deviations),
     )
@@ -168,14 +168,14 @@ def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
     return ripple_panel(deviation.axis, lines)
 
 
-def _words(database: SteDatabase, deviation: _Deviation) -> str:
+def _deviation_text(database: SteDatabase, deviation: _Deviation) -> str:
     names = [f"at {name}" for name in deviation.places]
-    said = _ripple_words(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
+    said = _ripple_text(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
     return f"At {load_labels(database)[-1]} {said[0].lower()}{said[1:]}"
 
 
 def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Table:
-    loads, labels = shown_loads(database), load_labels(database)
+    loads, labels = drawn_loads(database), load_labels(database)
     rows = tuple(
         (name, *(um(row[k].peak_to_peak.value) for k in loads))
         for deviation in deviations
@@ -221,14 +221,14 @@ def face_load(database: SteDatabase) -> Figure:
 
 def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
     """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
-    position, rows = shown_rows(database)
+    position, rows = drawn_rows(database)
     names = [f"misalignment {number(1e6 * float(m), 3)} µm" for m in database.requested_nodes(MISALIGNMENT)]
     return ordered_lines(position, names, values[rows].T, labeled=len(names) > 1)
 
 
 def flanks_over_torque(database: SteDatabase) -> Figure:
     """Draw the largest pressure over torque, and where the load moves along the face, its range."""
-    loads = list(shown_loads(database))
+    loads = list(drawn_loads(database))
     m, d = aligned_index(database)
     across, torque = _torque_axis(database.torque[loads])
     pressure = 1e-6 * np.nanmax(database.max_pressure[:, loads, m, d], axis=0)
@@ -245,7 +245,7 @@ def flanks_over_torque(database: SteDatabase) -> Figure:
         else "Flank pressure and load centroid over torque",
         caption="The largest Hertz pressure of the mesh cycle at every stored load"
         + ("; then how far the load's centroid is from the pinion's mid-face." if len(panels) > 1 else "."),
-        alternative=_flanks_words(database, loads, pressure),
+        alternative=_flanks_text(database, loads, pressure),
         content=panels,
         table=_flanks_table(database, loads, pressure, ends),
     )
@@ -262,7 +262,7 @@ def _centroid(across: Axis, torque: FloatArray, ends: FloatArray) -> Panel:
     return Panel(across, Axis("load centroid, mm"), lines, (mark,), title="Load along the face")
 
 
-def _flanks_words(database: SteDatabase, loads: list[int], pressure: FloatArray) -> str:
+def _flanks_text(database: SteDatabase, loads: list[int], pressure: FloatArray) -> str:
     names, torque = load_labels(database), database.torque
     first, last = loads[0], loads[-1]
     growth = f"{number(torque[last] / torque[first], 3)} times the torque"

@@ -12,7 +12,7 @@ from bounds import leftover
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.answers import inserted_json, source_rows
-from lineofaction.gearbox.convert.effects import by_size, influence_place, influence_words, trifles_title
+from lineofaction.gearbox.convert.effects import by_size, influence_point, influence_text, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
 from lineofaction.report.drawing.page import Headline, Part, Section
@@ -20,17 +20,17 @@ from lineofaction.report.drawing.tables import (
     EffectRow,
     effect_table,
     effects_section,
-    facts,
     records,
+    settings_table,
     side_by_side,
 )
 from lineofaction.report.pair import data_sheet_section, pair_of, tolerance_class_of
 from lineofaction.report.ste.curves import (
     aligned_index,
+    drawn_loads,
     headline_load,
     load_curve,
     load_labels,
-    shown_loads,
     ste_curves,
 )
 from lineofaction.report.ste.over_torque import (
@@ -66,7 +66,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     at = (slice(None), load, *aligned_index(database))
     pressure = float(np.nanmax(database.max_pressure[at]))
     edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
-    remark = f"{UNBOUNDED}{edge_words(edge)}"
+    remark = f"{UNBOUNDED}{edge_text(edge)}"
     curve, label = load_curve(database, load), load_labels(database)[load]
     figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
     biases = _over_face(curve)
@@ -89,7 +89,7 @@ def _over_face(curve: Curve) -> tuple[str, str]:
     return mean, ripple
 
 
-def edge_words(pressure: float) -> str:
+def edge_text(pressure: float) -> str:
     """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
     if pressure <= 0.0:
         return ""
@@ -113,9 +113,9 @@ def static_results(database: SteDatabase, force: float | None = None) -> tuple[S
 
 def _transmission_error(database: SteDatabase) -> Section:
     figures = [ste_curves(database)]
-    figures += [ripple_over_torque(database)] if len(shown_loads(database)) > 1 else []
+    figures += [ripple_over_torque(database)] if len(drawn_loads(database)) > 1 else []
     figures += [ste_spectrum(database)]
-    figures += [ste_waterfall(database)] if len(shown_loads(database)) > 1 else []
+    figures += [ste_waterfall(database)] if len(drawn_loads(database)) > 1 else []
     figures += [deviation_curves(database)] if has_deviations(database) else []
     return Section("Static transmission error", figures=tuple(figures))
 
@@ -137,7 +137,7 @@ def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...
 
 
 def _flanks(database: SteDatabase) -> tuple[Section, ...]:
-    figures: list[Figure] = [flanks_over_torque(database)] if len(shown_loads(database)) > 1 else []
+    figures: list[Figure] = [flanks_over_torque(database)] if len(drawn_loads(database)) > 1 else []
     figures += [face_load(database)] if has_face_load(database) else []
     return (Section("Flank pressure and load along the face", figures=tuple(figures)),) if figures else ()
 
@@ -162,7 +162,10 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
     receipt = Section(
         "Receipt of the table",
         tables=(Table("Time by stage", ("stage", "CPU s", "wall s"), rows),),
-        folded=(facts("Receipt", _without(metadata.receipt, "stages")), facts("Made with", made)),
+        folded=(
+            settings_table("Receipt", _without(metadata.receipt, "stages")),
+            settings_table("Made with", made),
+        ),
         part=Part.RECEIPT,
     )
     return contact_effects(boundary_ledger(metadata.effect_ledger)), accuracy, case, receipt
@@ -171,29 +174,29 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
 def contact_effects(ledger: Any) -> Section:
     """Tabulate which effects were simulated, why, and their influence; trifles and decisions are folded."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
-    shown, trifles = by_size(entries)
-    where = influence_place(entries)
+    large, trifles = by_size(entries)
+    where = influence_point(entries)
     text = f"Effects in the contact: estimated change without each, {where}." if where else ""
     folded: tuple[Table, ...] = (
         (effect_table(trifles_title(trifles), map(_effect_row, trifles)),) if trifles else ()
     )
     decision = [{title: entry.get(field) for field, title in _DECISIONS.items()} for entry in entries]
     folded += (records("Decisions on the effects in the contact", decision),)
-    return effects_section(text, map(_effect_row, shown), folded)
+    return effects_section(text, map(_effect_row, large), folded)
 
 
 def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
-    return entry["name"], "contact", entry["on"], influence_words(entry), entry["reason"]
+    return entry["name"], "contact", entry["on"], influence_text(entry), entry["reason"]
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
     """Tabulate both gears beside each other, then the rest of the case."""
     pair = case.get("pair")
     if not isinstance(pair, dict) or not {"pinion", "wheel"} <= set(pair):
-        return (facts("Case", case),)
+        return (settings_table("Case", case),)
     gears = side_by_side("Gears", {"pinion (drives)": pair["pinion"], "wheel": pair["wheel"]})
     rest = {**_without(pair, "pinion", "wheel"), **_without(case, "pair")}
-    return gears, facts("Pair, loads and accuracy", rest)
+    return gears, settings_table("Pair, loads and accuracy", rest)
 
 
 def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from lineofaction.report.drawing.figure import (
     um,
 )
 from lineofaction.report.drawing.marks import TORQUE
-from lineofaction.report.ste.curves import load_curve, load_labels, middle_load, shown_loads
+from lineofaction.report.ste.curves import drawn_loads, load_curve, load_labels, middle_load
 
 ORDERS = 20
 LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie between two mesh orders
@@ -50,7 +50,7 @@ def ste_spectrum(database: SteDatabase) -> Figure:
             if database.period > 1
             else ""
         ),
-        alternative=_spectrum_words(label, names, amplitude, error),
+        alternative=_spectrum_text(label, names, amplitude, error),
         content=(_panel(order, amplitude, error),),
         table=Table("Orders of the transmission error", ("mesh order", "amplitude, µm", "error, µm"), rows),
     )
@@ -62,8 +62,8 @@ def _spectrum_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
         values = np.array([[e.value, e.error] for e in curve.harmonics[:ORDERS]])
         return np.arange(1.0, len(values) + 1.0), values[:, 0], values[:, 1]
     lines = curve.spectrum
-    shown = lines.order <= LONG_ORDERS + 1e-9
-    return lines.order[shown], lines.amplitude[shown], lines.error[shown]
+    inside = lines.order <= LONG_ORDERS + 1e-9
+    return lines.order[inside], lines.amplitude[inside], lines.error[inside]
 
 
 def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel:
@@ -85,7 +85,7 @@ def _level(values: FloatArray) -> FloatArray:
     return np.where(np.isfinite(level), level, np.nan)
 
 
-def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, error: FloatArray) -> str:
+def _spectrum_text(label: str, names: Sequence[str], amplitude: FloatArray, error: FloatArray) -> str:
     maximum = int(np.argmax(amplitude))
     size = f"{um(amplitude[maximum], 3)} µm"
     text = f"At {label} {names[maximum]} is the largest, {size}"
@@ -97,7 +97,7 @@ def _spectrum_words(label: str, names: Sequence[str], amplitude: FloatArray, err
 
 def ste_waterfall(database: SteDatabase) -> Figure:
     """Draw the level of every order at every load; what is below its error stays blank."""
-    loads = shown_loads(database)
+    loads = drawn_loads(database)
     curves = [load_curve(database, load) for load in loads]
     order = _spectrum_of(curves[0])[0]
     amplitude, error = (np.stack([_spectrum_of(curve)[k] for curve in curves]) for k in (1, 2))
@@ -114,7 +114,7 @@ def ste_waterfall(database: SteDatabase) -> Figure:
         key="ste_waterfall",
         title="Spectrum of the transmission error over torque",
         caption=_waterfall_caption(order, middles, error),
-        alternative=_waterfall_words(database, names, level),
+        alternative=_waterfall_text(database, names, level),
         content=(Panel(x, Axis.over(TORQUE, torque), shade=shade),),
         table=_waterfall_table(database, names, level),
     )
@@ -126,9 +126,9 @@ def _order_names(curve: Curve, order: FloatArray) -> Sequence[str]:
 
 def _in_cells(order: FloatArray, level: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the middles of so few cells that each is seen (n,), and the largest levels in them (F, n)."""
-    each = -(-order.size // _CELLS)
-    starts = np.arange(0, order.size, each)
-    width = np.minimum(starts + each, order.size) - starts
+    count = -(-order.size // _CELLS)
+    starts = np.arange(0, order.size, count)
+    width = np.minimum(starts + count, order.size) - starts
     return order[starts] + 0.5 * (width - 1) * order[0], np.fmax.reduceat(level, starts, axis=1)
 
 
@@ -142,11 +142,11 @@ def _waterfall_caption(order: FloatArray, cells: FloatArray, error: FloatArray) 
     )
 
 
-def _waterfall_words(database: SteDatabase, names: Sequence[str], level: FloatArray) -> str:
+def _waterfall_text(database: SteDatabase, names: Sequence[str], level: FloatArray) -> str:
     if np.isnan(level).all():
         return "No order exceeds its error at any load."
     load, order = divmod(int(np.nanargmax(level)), level.shape[1])
-    at = load_labels(database)[shown_loads(database)[load]]
+    at = load_labels(database)[drawn_loads(database)[load]]
     text = f"{names[order]} at {at} is the largest: {level[load, order]:.1f} dB re 1 µm."
     return f"{text[0].upper()}{text[1:]}"
 
@@ -154,11 +154,11 @@ def _waterfall_words(database: SteDatabase, names: Sequence[str], level: FloatAr
 def _waterfall_table(database: SteDatabase, names: Sequence[str], level: FloatArray) -> Table:
     """List the orders that are largest at any load."""
     maximum = np.nan_to_num(np.fmax.reduce(level, axis=0), nan=-np.inf)
-    shown = [k for k in largest(maximum, _COLUMNS) if np.isfinite(maximum[k])]
+    columns = [k for k in largest(maximum, _COLUMNS) if np.isfinite(maximum[k])]
     labels = load_labels(database)
     rows = tuple(
-        (labels[load], *("below its error" if np.isnan(row[k]) else f"{row[k]:.1f}" for k in shown))
-        for load, row in zip(shown_loads(database), level, strict=True)
+        (labels[load], *("below its error" if np.isnan(row[k]) else f"{row[k]:.1f}" for k in columns))
+        for load, row in zip(drawn_loads(database), level, strict=True)
     )
-    head = ("torque", *(f"{names[k]}" for k in shown))
+    head = ("torque", *(f"{names[k]}" for k in columns))
     return Table("Levels of the largest orders, dB re 1 µm", head, rows)

@@ -27,18 +27,18 @@ from lineofaction.report.pair import iso_mesh_stiffness, pair_of
 from lineofaction.report.ste.curves import (
     aligned,
     aligned_index,
+    drawn_loads,
+    drawn_pitches,
+    drawn_rows,
+    drawn_ste,
     load_curve,
     load_labels,
     load_lines,
     mean_over,
     middle_load,
+    pair_count_text,
     pair_range,
-    pairs_in_words,
-    pitches_shown,
     position_axis,
-    shown_loads,
-    shown_rows,
-    ste_shown,
 )
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)
@@ -70,7 +70,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
         key="mesh_stiffness",
         title="Mesh stiffness",
         caption=_CAPTION + (_STANDARD if iso is not None else ""),
-        alternative=_stiffness_words(database, position, values, iso),
+        alternative=_stiffness_text(database, position, values, iso),
         content=(Panel(position_axis(database), y, lines, references),),
         table=_stiffness_table(database, position, values, iso),
     )
@@ -78,13 +78,13 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
 
 def secant_stiffness_curves(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown (n,) and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
-    position, values = ste_shown(database)
-    facts = database.facts
-    force = database.force * math.cos(facts.base_helix_angle)
-    return position, force / (values * facts.face_width)
+    position, values = drawn_ste(database)
+    geometry = database.facts
+    force = database.force * math.cos(geometry.base_helix_angle)
+    return position, force / (values * geometry.face_width)
 
 
-def _stiffness_words(
+def _stiffness_text(
     database: SteDatabase, position: FloatArray, values: FloatArray, iso: float | None
 ) -> str:
     load = middle_load(database)
@@ -113,8 +113,8 @@ def _stiffness_table(
 
 def load_sharing(database: SteDatabase) -> Figure:
     """Draw the force on each pair against position at the lowest, middle and highest load."""
-    shown = shown_loads(database)
-    loads = sorted({shown[0], middle_load(database), shown[-1]})
+    drawn = drawn_loads(database)
+    loads = sorted({drawn[0], middle_load(database), drawn[-1]})
     heaviest = loads[-1]
     m, d = aligned_index(database)
     share = float(np.nanmax(database.load_share[:, heaviest, m, d]))
@@ -126,7 +126,7 @@ def load_sharing(database: SteDatabase) -> Figure:
         title="Load sharing between tooth pairs",
         caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
         "normal forces sum to that of the torque. Pair 0 touches at the pitch point at position 0; pair +1 "
-        f"is one pitch ahead.{_shown_of_all(database)}",
+        f"is one pitch ahead.{_truncation_text(database)}",
         alternative=f"A pair carries at most {force}, at {load_labels(database)[heaviest]}. "
         f"{_alone(database, loads)}",
         content=tuple(_sharing_panel(database, load) for load in loads),
@@ -134,10 +134,10 @@ def load_sharing(database: SteDatabase) -> Figure:
     )
 
 
-def _shown_of_all(database: SteDatabase) -> str:
+def _truncation_text(database: SteDatabase) -> str:
     """Say where a period is longer than what is drawn."""
-    shown, period = pitches_shown(database), database.period
-    return f" Shown are the first {shown} of {period} base pitches." if shown < period else ""
+    pitches, period = drawn_pitches(database), database.period
+    return f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
 
 
 def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
@@ -147,16 +147,16 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
     Returns the positions (n,) and, per pair that carries load somewhere, its share there.
     """
     m, d = aligned_index(database)
-    position, rows = shown_rows(database)
+    position, rows = drawn_rows(database)
     share = database.load_share[rows, load, m, d, :]
     first, last = int(database.pair[0]), int(database.pair[-1])
     followed = {}
-    for pair in range(first - pitches_shown(database), last + 1):
+    for pair in range(first - drawn_pitches(database), last + 1):
         column = pair + np.floor(position).astype(int) - first
         stored = (column >= 0) & (column <= last - first)
-        whole = np.where(stored, share[np.arange(rows.size), np.clip(column, 0, last - first)], 0.0)
-        if np.nanmax(whole) > _CARRIES:
-            followed[pair] = whole
+        complete = np.where(stored, share[np.arange(rows.size), np.clip(column, 0, last - first)], 0.0)
+        if np.nanmax(complete) > _CARRIES:
+            followed[pair] = complete
     return position, followed
 
 
@@ -207,7 +207,7 @@ def _in_mesh(share: FloatArray) -> FloatArray:
 def _alone(database: SteDatabase, loads: list[int]) -> str:
     if all(pair_range(database, load)[0] > 1 for load in loads):
         return (
-            "; ".join(f"{pairs_in_words(database, load)} at {load_labels(database)[load]}" for load in loads)
+            "; ".join(f"{pair_count_text(database, load)} at {load_labels(database)[load]}" for load in loads)
             + ": no pair is ever alone."
         )
     m, d = aligned_index(database)
@@ -249,7 +249,7 @@ def budget_figure(database: SteDatabase, load: int) -> Figure | None:
         caption="Each part is its displacement along the line of action, weighted by the forces on the "
         "flanks. Teeth, bodies and contact are springs in closed form here: their mean is "
         f"{number(mean, 4)} µm, that of the table {number(table_mean, 4)} µm.",
-        alternative=_budget_words(parts, mean, load_labels(database)[load]),
+        alternative=_budget_text(parts, mean, load_labels(database)[load]),
         content=(_budget_panel(parts, mean),),
         table=_budget_table(parts, mean),
     )
@@ -289,22 +289,22 @@ def _parts(budget: DeflectionBudget) -> dict[str, tuple[float, ...]]:
 
 
 def _budget_panel(parts: dict[str, tuple[float, ...]], mean: float) -> Panel:
-    place, sizes = np.arange(float(len(parts))), np.array([sum(sides) for sides in parts.values()])
+    position, sizes = np.arange(float(len(parts))), np.array([sum(sides) for sides in parts.values()])
     notes = tuple(
         Note(
             float(x) - 0.2,
             max(float(size), 0.0),
             f"{number(size, 3)} µm, {number(100.0 * float(size) / mean, 2)} %",
         )
-        for x, size in zip(place, sizes, strict=True)
+        for x, size in zip(position, sizes, strict=True)
     )
     ends = (min(0.0, _BUDGET_MARGIN * float(sizes.min())), _BUDGET_MARGIN * float(sizes.max()))
-    bars = Bars("part of the mean STE", place, sizes, 0.0, 0.6, palette.BLUE)
+    bars = Bars("part of the mean STE", position, sizes, 0.0, 0.6, palette.BLUE)
     x, y = Axis.of_names(tuple(parts), beyond=_NOTE), Axis("part of the mean STE, µm", limits=ends)
     return Panel(x, y, notes=notes, bars=(bars,))
 
 
-def _budget_words(parts: dict[str, tuple[float, ...]], mean: float, label: str) -> str:
+def _budget_text(parts: dict[str, tuple[float, ...]], mean: float, label: str) -> str:
     name = max(parts, key=lambda name: sum(parts[name]))
     size = sum(parts[name])
     share = f"{number(size, 3)} of {number(mean, 4)} µm, {number(100.0 * size / mean, 2)} %"

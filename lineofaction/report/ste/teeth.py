@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase, ToothLoads
 from fe_contact.types import BoolArray
-from lineofaction.gearbox.convert.answers import GEARS, teeth_words
+from lineofaction.gearbox.convert.answers import GEARS, teeth_text
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import (
     Axis,
@@ -49,18 +49,18 @@ def tooth_headlines(database: SteDatabase, load: int) -> tuple[Headline, ...]:
     """Name the teeth of the largest force and of the largest pressure of each gear whose teeth differ."""
     label = load_labels(database)[load]
     headlines = []
-    for own in teeth_at(database, load):
-        at = f"tooth of the {GEARS[own.gear]} at {label}"
-        if own.most_loaded:
-            headlines.append(Headline(f"most loaded {at}", teeth_words(own.most_loaded), _size(own)))
-        if own.most_pressed:
-            remark = f"{_megapascal(own.pressure.max())}; {UNBOUNDED}"
-            headlines.append(Headline(f"most pressed {at}", teeth_words(own.most_pressed), remark))
+    for loads in teeth_at(database, load):
+        at = f"tooth of the {GEARS[loads.gear]} at {label}"
+        if loads.most_loaded:
+            headlines.append(Headline(f"most loaded {at}", teeth_text(loads.most_loaded), _size(loads)))
+        if loads.most_pressed:
+            remark = f"{_megapascal(loads.pressure.max())}; {UNBOUNDED}"
+            headlines.append(Headline(f"most pressed {at}", teeth_text(loads.most_pressed), remark))
     return tuple(headlines)
 
 
-def _size(own: ToothLoads) -> str:
-    return f"{number(own.force.max(), 4)} N, {own.over_mean:.3f} times the mean tooth"
+def _size(loads: ToothLoads) -> str:
+    return f"{number(loads.force.max(), 4)} N, {loads.over_mean:.3f} times the mean tooth"
 
 
 def _megapascal(pressure: float) -> str:
@@ -70,9 +70,9 @@ def _megapascal(pressure: float) -> str:
 def tooth_sections(database: SteDatabase, load: int) -> tuple[Section, ...]:
     """Show the largest load on each tooth where teeth differ, and the pressure on its way through mesh."""
     teeth = teeth_at(database, load)
-    loaded = tuple(own for own in teeth if own.most_loaded)
+    loaded = tuple(loads for loads in teeth if loads.most_loaded)
     figures = [_loads(database, load, loaded)] if loaded else []
-    figures += [_pressures(database, load, own) for own in teeth if own.most_pressed]
+    figures += [_pressures(database, load, loads) for loads in teeth if loads.most_pressed]
     return (Section("Load of each tooth", figures=tuple(figures)),) if figures else ()
 
 
@@ -83,39 +83,40 @@ def _loads(database: SteDatabase, load: int, teeth: tuple[ToothLoads, ...]) -> F
         caption="The largest normal force on a tooth over all mates that it meets in the "
         f"{database.period} base pitches of the table. Teeth count in the order of meshing: tooth 1 of both "
         f"gears touches at the pitch point at position 0.{_derived(database, load)}",
-        alternative=" ".join(_finding(own) for own in teeth),
-        content=tuple(_bars(own) for own in teeth),
+        alternative=" ".join(_finding(loads) for loads in teeth),
+        content=tuple(_bars(loads) for loads in teeth),
         table=_table(teeth),
     )
 
 
-def _finding(own: ToothLoads) -> str:
-    minimum = int(np.argmin(own.force))
+def _finding(loads: ToothLoads) -> str:
+    minimum = int(np.argmin(loads.force))
     return (
-        f"The largest force on the {GEARS[own.gear]} is on {teeth_words(own.most_loaded)}, {_size(own)}; "
-        f"on tooth {minimum + 1} it is least, {number(own.force[minimum], 4)} N."
+        f"The largest force on the {GEARS[loads.gear]} is on {teeth_text(loads.most_loaded)}, "
+        f"{_size(loads)}; "
+        f"on tooth {minimum + 1} it is least, {number(loads.force[minimum], 4)} N."
     )
 
 
 def _derived(database: SteDatabase, load: int) -> str:
     """Say what derivatives may change of the forces, where base pitches follow from them."""
-    missed = database.metadata.receipt.get("cycle", {}).get("share_error")
-    if missed is None:
+    share_error = database.metadata.receipt.get("cycle", {}).get("share_error")
+    if share_error is None:
         return ""
-    force = number(float(missed) * float(database.force[load]), 2)
+    force = number(float(share_error) * float(database.force[load]), 2)
     return f" Base pitches by derivatives: within {force} N at 99 % of the drawn points."
 
 
-def _bars(own: ToothLoads) -> Panel:
-    force, name = own.force, GEARS[own.gear]
+def _bars(loads: ToothLoads) -> Panel:
+    force, name = loads.force, GEARS[loads.gear]
     maximum, mean = float(force.max()), float(force.mean())
     return Panel(
-        _tooth_axis(own),
+        _tooth_axis(loads),
         Axis("largest normal force, N", limits=(0.0, _ABOVE * maximum)),
         references=(Reference("", mean, "horizontal"),),
         title=f"{name.capitalize()}; dashed: mean {number(mean, 4)} N",
-        notes=_notes(own.most_loaded, maximum, force.size),
-        bars=(Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, _COLORS[own.gear]),),
+        notes=_notes(loads.most_loaded, maximum, force.size),
+        bars=(Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, _COLORS[loads.gear]),),
     )
 
 
@@ -130,83 +131,83 @@ def _notes(teeth: tuple[int, ...], height: float, count: int) -> tuple[Note, ...
     )
 
 
-def _tooth_axis(own: ToothLoads) -> Axis:
+def _tooth_axis(loads: ToothLoads) -> Axis:
     """Return the axis of teeth, named at whole numbers."""
-    count = own.force.size
+    count = loads.force.size
     step = next((size for size in _STEPS if count <= _TICKS * size), count)
     names = tuple((float(tooth), str(tooth)) for tooth in range(step, count + 1, step))
-    return Axis(f"tooth of the {GEARS[own.gear]}", limits=(0.5, count + 0.5), names=names)
+    return Axis(f"tooth of the {GEARS[loads.gear]}", limits=(0.5, count + 0.5), names=names)
 
 
 def _table(teeth: tuple[ToothLoads, ...]) -> Table:
     rows = tuple(
         (
-            GEARS[own.gear],
+            GEARS[loads.gear],
             str(tooth + 1),
-            number(own.force[tooth], 4),
-            f"{own.force[tooth] / own.force.mean():.3f}",
+            number(loads.force[tooth], 4),
+            f"{loads.force[tooth] / loads.force.mean():.3f}",
         )
-        for own in teeth
-        for tooth in np.argsort(-own.force, kind="stable")[:_RANKED]
+        for loads in teeth
+        for tooth in np.argsort(-loads.force, kind="stable")[:_RANKED]
     )
     return Table(
         "Most loaded teeth", ("gear", "tooth", "largest normal force, N", "over the mean tooth"), rows
     )
 
 
-def _pressures(database: SteDatabase, load: int, own: ToothLoads) -> Figure:
-    missed = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
-    peak, least = float(own.pressure.max()), int(np.argmin(own.pressure))
+def _pressures(database: SteDatabase, load: int, loads: ToothLoads) -> Figure:
+    error = database.metadata.receipt.get("cycle", {}).get("pressure_error_relative")
+    peak, least = float(loads.pressure.max()), int(np.argmin(loads.pressure))
     derived = (
         ""
-        if missed is None
-        else f" Base pitches by derivatives: within {_megapascal(missed * peak)} at 99 % of the drawn points."
+        if error is None
+        else f" Base pitches by derivatives: within {_megapascal(error * peak)} at 99 % of the drawn points."
     )
-    name = GEARS[own.gear]
+    name = GEARS[loads.gear]
     return Figure(
         key=f"tooth_pressures_{name}",
         title=f"Pressure on each tooth of the {name} at {load_labels(database)[load]}",
         caption="Map: the largest Hertz pressure anywhere on a tooth, away from edges, as its pair passes "
         "through mesh, the largest of all its mates; blank: nothing touches. Curves: the most pressed tooth "
         f"beside the mean of all teeth.{derived}",
-        alternative=f"The largest pressure on the {name} is on {teeth_words(own.most_pressed)}, "
-        f"{_megapascal(peak)}; on tooth {least + 1} it is least, {_megapascal(own.pressure[least])}.",
-        content=(_map(own), _way(own)),
-        table=_pressure_table(own),
+        alternative=f"The largest pressure on the {name} is on {teeth_text(loads.most_pressed)}, "
+        f"{_megapascal(peak)}; on tooth {least + 1} it is least, {_megapascal(loads.pressure[least])}.",
+        content=(_map(loads), _way(loads)),
+        table=_pressure_table(loads),
     )
 
 
-def _in_mesh(own: ToothLoads) -> tuple[Axis, BoolArray]:
+def _in_mesh(loads: ToothLoads) -> tuple[Axis, BoolArray]:
     """Return the axis of the way through mesh, and which columns lie between where any tooth is pressed."""
-    pressed = np.flatnonzero((own.pressure_over_phase > 0.0).any(axis=0))
-    inside = np.zeros(own.phase.size, dtype=bool)
+    pressed = np.flatnonzero((loads.pressure_over_phase > 0.0).any(axis=0))
+    inside = np.zeros(loads.phase.size, dtype=bool)
     inside[max(pressed[0] - 1, 0) : pressed[-1] + 2] = True
-    return Axis.over(_WAY, own.phase[inside]), inside
+    return Axis.over(_WAY, loads.phase[inside]), inside
 
 
-def _map(own: ToothLoads) -> Panel:
-    x, inside = _in_mesh(own)
-    pressure = 1e-6 * own.pressure_over_phase[:, inside]
+def _map(loads: ToothLoads) -> Panel:
+    x, inside = _in_mesh(loads)
+    pressure = 1e-6 * loads.pressure_over_phase[:, inside]
     teeth, touching = np.arange(1.0, len(pressure) + 1.0), np.where(pressure > 0.0, pressure, np.nan)
-    shade = HeatMap.spanning(own.phase[inside], teeth, touching, "Hertz pressure, MPa")
-    return Panel(x, _tooth_axis(own), shade=shade)
+    shade = HeatMap.spanning(loads.phase[inside], teeth, touching, "Hertz pressure, MPa")
+    return Panel(x, _tooth_axis(loads), shade=shade)
 
 
-def _way(own: ToothLoads) -> Panel:
-    x, inside = _in_mesh(own)
-    pressure = 1e-6 * own.pressure_over_phase[:, inside]
-    phase, worst = own.phase[inside], own.most_pressed[0]
+def _way(loads: ToothLoads) -> Panel:
+    x, inside = _in_mesh(loads)
+    pressure = 1e-6 * loads.pressure_over_phase[:, inside]
+    phase, worst = loads.phase[inside], loads.most_pressed[0]
     lines = (
-        Line(f"tooth {worst}", phase, pressure[worst - 1], _COLORS[own.gear]),
+        Line(f"tooth {worst}", phase, pressure[worst - 1], _COLORS[loads.gear]),
         Line("mean of all teeth", phase, np.nanmean(pressure, axis=0), palette.MUTED, "dash"),
     )
     y = Axis("largest Hertz pressure, MPa", limits=(0.0, 1.05 * float(np.nanmax(pressure))))
     return Panel(x, y, lines)
 
 
-def _pressure_table(own: ToothLoads) -> Table:
+def _pressure_table(loads: ToothLoads) -> Table:
     rows = tuple(
-        (str(tooth + 1), number(1e-6 * own.pressure[tooth], 4))
-        for tooth in np.argsort(-own.pressure, kind="stable")[:_RANKED]
+        (str(tooth + 1), number(1e-6 * loads.pressure[tooth], 4))
+        for tooth in np.argsort(-loads.pressure, kind="stable")[:_RANKED]
     )
-    return Table(f"Most pressed teeth of the {GEARS[own.gear]}", ("tooth", "largest pressure, MPa"), rows)
+    return Table(f"Most pressed teeth of the {GEARS[loads.gear]}", ("tooth", "largest pressure, MPa"), rows)

@@ -44,7 +44,7 @@ class InMillimeters(Reader):
     def name(self) -> str:
         return f"{self.field}_mm"
 
-    def own_unit(self, unit: str) -> Unit:
+    def field_unit(self, unit: str) -> Unit:
         return Unit("mm" if unit else "", 1e-3)
 
     def unit(self, value: float, unit: str) -> Unit:
@@ -81,7 +81,7 @@ def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
     low, high = 1.0 / 3.0, 4.2333e-3 * 0.5 * 1e3
     with pytest.raises(RefusedValue) as caught:
         CHECKS.within("length", 5.0, low, high)
-    factor = reader.own_unit("").factor
+    factor = reader.field_unit("").factor
     ends = [float(end) * factor for end in re.findall(NUMBER, caught.value.bound.worded(reader))]
     assert len(ends) == 2
     for end, outside in zip(ends, (1.0 - 1e-5, 1.0 + 1e-5), strict=True):

@@ -29,7 +29,7 @@ from fe_contact.options import Run
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
-from lineofaction.cli.kept_tables import tabled_scene
+from lineofaction.cli.cached_tables import tabled_scene
 from lineofaction.cli.status import run_status
 from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost
 from lineofaction.gearbox.convert import plan
@@ -112,8 +112,8 @@ def test_what_is_not_afforded_says_why_and_what_one_motion_takes(
     one, many = costs[1], costs[30]
     assert one.seconds < LONG < many.seconds and one.remedy == ""
     assert f"at 3000 rpm takes {engineering(one.seconds, 2)} CPU s" in many.remedy
-    assert f"({engineering(many.seconds / 3600.0, 2)} h)" in many.words and many.words.endswith(many.remedy)
-    assert (StudyCost(()) + many).words == many.words
+    assert f"({engineering(many.seconds / 3600.0, 2)} h)" in many.text and many.text.endswith(many.remedy)
+    assert (StudyCost(()) + many).text == many.text
 
 
 def test_of_a_usual_search_a_scatter_costs_by_its_nodes(case: CheckedCase) -> None:
@@ -135,7 +135,7 @@ def test_drawn_teeth_cost_each_solved_pair_a_revolution_of_their_gear() -> None:
     assert revolutions("1=1um") == []
     by_gear = {gear: revolutions(f"1-{gear}=60nm")[0] for gear in ("pinion", "wheel")}
     assert {work.pieces for work in by_gear.values()} == {12}
-    assert by_gear["wheel"].each / by_gear["pinion"].each == pytest.approx(59 / 21)
+    assert by_gear["wheel"].piece_seconds / by_gear["pinion"].piece_seconds == pytest.approx(59 / 21)
     assert revolutions("1-pinion=60nm", 4096) == [by_gear["pinion"]]
 
 
@@ -164,7 +164,7 @@ def test_pairs_of_scatter_are_solved_on_one_compliance(
     monkeypatch.setattr(ContactWork, "of_flanks", lambda _, positions, loads: positions * loads)
     told = {part.name: part for part in predicted("scatter", {"samples": 5, "exact": 5}, case).parts}
     assert told["pairs"].pieces == 5 + scatter._TANGENT
-    assert counts == {"pairs": 5 * told["pairs"].each, "compliance": told["compliance"].seconds}
+    assert counts == {"pairs": 5 * told["pairs"].piece_seconds, "compliance": told["compliance"].seconds}
 
 
 @pytest.mark.parametrize("misalignment", [0.0, 10.0])
@@ -178,7 +178,7 @@ def test_a_pair_of_scatter_is_solved_once_however_it_is_misaligned(misalignment:
 def test_the_cost_is_said_as_parts_of_a_whole() -> None:
     gears, values = Work("gears", 1.6), Work("values", 1.6, 24)
     whole = StudyCost((gears,), 2.0**30) + StudyCost((values, Work("values", 0.8, 24), Work("beside", 0.01)))
-    assert whole.words == "about 59 CPU s, 1 GiB: gears 1.6 s, 48 values at 1.2 s"
+    assert whole.text == "about 59 CPU s, 1 GiB: gears 1.6 s, 48 values at 1.2 s"
 
 
 @pytest.mark.parametrize("seconds", [1.0, 40.0])
@@ -266,7 +266,9 @@ def test_a_complaint_costs_its_lines_at_one_speed_and_of_a_case_next_to_nothing(
     for hertz in (150.0, 1500.0):
         inputs = validated(study.inputs, {"frequency_hz": hertz, "speed_rpm": 450.0})
         costs[hertz] = study_cost(study, study.run.narrowed(scene, inputs), folder, inputs)
-    lines = [part.each for cost in costs.values() if cost for part in cost.parts if part.name == "lines"]
+    lines = [
+        part.piece_seconds for cost in costs.values() if cost for part in cost.parts if part.name == "lines"
+    ]
     one, ten = (each - neglected_check._VARYING for each in lines)
     assert ten == pytest.approx(10.0 * one)
     inputs = validated(study.inputs, {"frequency_hz": 150.0, "speed_rpm": 450.0})
@@ -484,7 +486,7 @@ def test_the_status_checks_each_case_of_a_unit_once(tmp_path: Path, monkeypatch:
         return decision(own, cache)
 
     monkeypatch.setattr(CheckedCase, "_checked", checked_and_counted)
-    monkeypatch.setattr(CASES, "_kept", OrderedDict())
+    monkeypatch.setattr(CASES, "_cases", OrderedDict())
     monkeypatch.setattr(plan, "_decision", decided_and_counted)
     run_status(tmp_path / "unit", as_json=True)
     assert set(checks.values()) == {1}

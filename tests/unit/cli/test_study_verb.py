@@ -39,7 +39,7 @@ from lineofaction.gearbox.studies.study.design import design_of
 from lineofaction.gearbox.studies.study.request import factor_places, names_with_planets
 from lineofaction.gearbox.studies.study.run import RUN
 from lineofaction.gearbox.studies.study.scenes import VariedScene, _part_name, places_of, with_value
-from lineofaction.gearbox.subjects import scene_of, with_own_cases
+from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from lineofaction.report.document import write_report
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
@@ -261,7 +261,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> SceneInput:
     text = SCENE.format(duration=0.05, speed=300.0, rate=20e3)
     text = text.replace('database_file = "ste.nc"', 'case_file = "case.toml"')
     (folder / "scene.toml").write_text(text, encoding="utf-8")
-    return with_own_cases(*scene_of(folder / "scene.toml"))
+    return with_inline_cases(*scene_of(folder / "scene.toml"))
 
 
 @pytest.fixture(scope="module")

@@ -17,7 +17,7 @@ from small_table import small_table
 from spur_case import spur_case
 
 from lineofaction.cli.commands import app
-from lineofaction.cli.output import FOUND, console, print_parts, table
+from lineofaction.cli.output import EMPHASIS, console, print_parts, table
 from lineofaction.cli.verb_warnings import in_lines
 from lineofaction.cli.verbs import of_imports
 from lineofaction.cli.verbs.of_studies import GROUPS, StudyGroup
@@ -131,7 +131,9 @@ def test_a_unit_is_not_parted(
     for columns in range(20, 120):
         monkeypatch.setenv("COLUMNS", str(columns))
         words = f"largest of all over {unit}"
-        console().print(table(["mesh", words, f"{words} and at rest"], [["one", "1.5", "3"]], words=["mesh"]))
+        console().print(
+            table(["mesh", words, f"{words} and at rest"], [["one", "1.5", "3"]], text_columns=["mesh"])
+        )
         assert capsys.readouterr().out.count(unit) == 2
         assert f"12 {unit}" in in_lines(f"at rest the gear has 12 {unit} in its first mesh", columns)
 
@@ -144,9 +146,9 @@ def test_a_text_wraps_only_where_that_saves_a_block(
         "bearing of the output, motor side",
         ["force of", "order", *(f"number {k}" for k in range(6))],
     )
-    console().print(table(head, [[name, "0.3333 (stage 1)", *["1234567"] * 6]], words=head[:2]))
+    console().print(table(head, [[name, "0.3333 (stage 1)", *["1234567"] * 6]], text_columns=head[:2]))
     assert capsys.readouterr().out.count(name) == 2
-    console().print(table(head[:6], [[name, "0.3333 (stage 1)", *["1234567"] * 4]], words=head[:2]))
+    console().print(table(head[:6], [[name, "0.3333 (stage 1)", *["1234567"] * 4]], text_columns=head[:2]))
     (line, wrapped) = capsys.readouterr().out.splitlines()[-2:]
     assert line.split()[-4:] == ["1234567"] * 4 and wrapped in name
 
@@ -158,7 +160,7 @@ def test_decimal_points_of_a_column_stand_below_each_other(capsys: pytest.Captur
         ["fine", "4.25", "11.6 ±0.1", "+3.2345 %"],
         ["", "", "-", ""],
     ]
-    console().print(table(["mesh", "CPU s", "mean µm", "p-p"], rows, words=["mesh"]))
+    console().print(table(["mesh", "CPU s", "mean µm", "p-p"], rows, text_columns=["mesh"]))
     head, *lines = capsys.readouterr().out.splitlines()
     assert head.split() == ["mesh", "CPU", "s", "mean", "µm", "p-p"]
     (whole, mean, part), (point, other, lower) = (
@@ -193,7 +195,7 @@ def test_a_terminal_breaks_sentences_between_words_and_leaves_paths_whole(
     assert in_lines(text, io.StringIO()) == text, "a pipe has lines of any length"
     shown = Terminal()
     monkeypatch.setattr("sys.stdout", shown)
-    console().print(text, soft_wrap=True, style=FOUND)
+    console().print(text, soft_wrap=True, style=EMPHASIS)
     printed = re.sub(r"\x1b\[[\d;]*m", "", shown.getvalue())
     assert [line.strip() for line in printed.splitlines()] == [line.strip() for line in lines]
 

@@ -6,7 +6,7 @@ import pytest
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis.estimates import position_errors
 from fe_contact.analysis.estimates import table_sample as solved_again
-from fe_contact.sampled import sample_of, some_positions, spread, spread_around
+from fe_contact.sampled import sample_of, sampled_positions, spread, spread_around
 from fe_contact.ste.curve_errors import AT_NODES
 
 LOADS = np.array([100.0, 150.0, 230.0, 400.0, 700.0, 1100.0, 2000.0])
@@ -19,7 +19,7 @@ def test_both_ends_are_always_solved_and_positions_evenly_taken():
         assert (sample[0], sample[-1]) == (0, count - 1)
         assert np.all(np.diff(sample) > 0)
     for count in (8, 31, 32, 63, 64, 110, 768):
-        rows = some_positions(count)
+        rows = sampled_positions(count)
         assert rows[0] == 0 and rows.size >= min(count, 32)
         assert np.unique(np.diff(rows)).size == 1
         assert rows.size < 64 or count < 64
@@ -63,7 +63,7 @@ def test_stated_errors_hardly_depend_on_what_is_sampled(monkeypatch):
     sampled = analyze(GearPair(gear, gear, 40e-3), **how)
     for module in (solved_again, position_errors):
         monkeypatch.setattr(module, "sample_of", lambda count, _: np.arange(count))
-    monkeypatch.setattr(solved_again, "some_positions", np.arange)
+    monkeypatch.setattr(solved_again, "sampled_positions", np.arange)
     whole = analyze(GearPair(gear, gear, 40e-3), **how)
     one, all_ = (table.curve_error[: len(AT_NODES), :2].sum(axis=0) for table in (sampled, whole))
     assert 0.9 < np.median(one / all_) < 1.1

@@ -35,7 +35,7 @@ def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate:
     assert of_machine.splits.keys() == of_sheet.splits.keys()
     for key, one in of_sheet.splits.items():
         other = of_machine.splits[key]
-        assert other.place == pytest.approx(one.place, abs=1e-8)
+        assert other.coordinate == pytest.approx(one.coordinate, abs=1e-8)
         assert (other.slope, other.form) == pytest.approx((one.slope, one.form), abs=1e-10)
     assert of_machine.left_out == []
 

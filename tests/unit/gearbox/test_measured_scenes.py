@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas import SceneInput, validated
 from lineofaction.gearbox.schemas.file_content import FileContentInput
 from lineofaction.gearbox.schemas.files import READERS, side_files, written_out
 from lineofaction.gearbox.schemas.housings import HousingInput
-from lineofaction.gearbox.schemas.named_files import beside
+from lineofaction.gearbox.schemas.named_files import in_folder
 from lineofaction.gearbox.subjects import scene_of
 from service.reading.texts import scene_of_toml
 
@@ -59,7 +59,7 @@ def test_a_scene_file_names_the_file_and_a_request_holds_it(tmp_path: Path) -> N
     folder.mkdir()
     (folder / files[0].name).write_bytes(files[0].unpacked())
     assert table["housings"][0]["frf_file"] == "gearcase.uff"
-    assert validated(SceneInput, written_out(table, beside(folder), READERS)).housings == scene.housings
+    assert validated(SceneInput, written_out(table, in_folder(folder), READERS)).housings == scene.housings
 
 
 def test_a_text_with_its_files_is_read_as_beside_it_on_disk(tmp_path: Path) -> None:

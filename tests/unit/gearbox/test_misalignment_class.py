@@ -24,7 +24,7 @@ def test_a_class_makes_the_axis_and_says_how() -> None:
     made = case({"misalignment_class": 7})
     assert [1e6 * value for value in table_axes(made).misalignments] == pytest.approx([-20, -10, 0, 10, 20])
     allowed = allowed_misalignment(made)
-    assert allowed is not None and allowed.words.startswith("misalignment to 20 µm to either side by class 7")
+    assert allowed is not None and allowed.text.startswith("misalignment to 20 µm to either side by class 7")
     assert allowed_misalignment(case({"misalignment_um": [0.0, 30.0]})) is None
 
 

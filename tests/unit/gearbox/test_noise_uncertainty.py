@@ -22,7 +22,7 @@ from dynamics.noise import (
     sound_sensitivities,
 )
 from dynamics.noise.sound_band import largest_level
-from lineofaction.cli.kept_tables import tabled_scene
+from lineofaction.cli.cached_tables import tabled_scene
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -35,7 +35,7 @@ from lineofaction.gearbox.studies.noise import SensitivityFigures, SoundBandFigu
 from lineofaction.gearbox.studies.noise.uncertainty import (
     GUESSED,
     MEASURED,
-    STATED,
+    SPECIFIED,
     _flank_scenes,
     _sensitivities_of,
     damping_of,
@@ -164,8 +164,8 @@ def test_a_stated_and_a_measured_damping_narrow_its_range(subject: TabledScene) 
             ("modes", {"loss_factor": None, "modal_damping": (0.006, 0.004)}),
         )
     }
-    assert known == {"usual": GUESSED, "loss": STATED, "ratio": STATED, "modes": MEASURED}
-    spans = [np.log(high / low) for low, high in (GUESSED.factors, STATED.factors, MEASURED.factors)]
+    assert known == {"usual": GUESSED, "loss": SPECIFIED, "ratio": SPECIFIED, "modes": MEASURED}
+    spans = [np.log(high / low) for low, high in (GUESSED.factors, SPECIFIED.factors, MEASURED.factors)]
     assert spans == sorted(spans, reverse=True)
 
 

@@ -118,7 +118,7 @@ def test_what_is_gone_is_kept_and_said() -> None:
         20.0,
         "deg",
     )
-    kept = {(change.version, change.place, change.item) for change in changes if change.kept}
+    kept = {(change.version, change.location, change.item) for change in changes if change.unchanged}
     assert ("1.1", "component 1", "lever_arm_of_axial_force") in kept
     assert ("1.3", "component 3", "flank_geometry") in kept
 
@@ -140,7 +140,7 @@ def test_components_of_load_cases_are_upgraded_too() -> None:
     spectrum = LoadSpectrum(1, (LoadCase(1, (part,)),), (part,))
     model, changes = upgrade(Model("1.0", "a", "1", "d", spectra=(spectrum,)), "1.1")
     assert model.spectra[0].cases[0].components[0].attributes[0].id == "operating_radial_bearing_clearance"
-    assert [change.place for change in changes] == [
+    assert [change.location for change in changes] == [
         "load spectrum 1, load case 1, component 1",
         "load spectrum 1, accumulation, component 1",
     ]
@@ -150,14 +150,14 @@ def test_a_value_of_an_enum_is_renamed() -> None:
     kept = Attribute("basis", "enum", "food-grade")
     attribute, changes = upgraded("1.7", "lubricant", kept, NEWEST)
     assert attribute.value == "food_grade"
-    assert not changes[0].kept
+    assert not changes[0].unchanged
 
 
 def test_a_unit_of_another_quantity_is_kept_and_said() -> None:
     width = Attribute("load_distribution_along_face_width", "floating_point_array", (1.0,), "N")
     attribute, changes = upgraded("1.3", "cylindrical_stage", width, "1.4")
     assert attribute == width
-    assert changes[0].kept and "N / mm" in changes[0].words
+    assert changes[0].unchanged and "N / mm" in changes[0].text
 
 
 def test_a_single_entry_becomes_a_value_and_several_are_kept() -> None:
@@ -165,7 +165,7 @@ def test_a_single_entry_becomes_a_value_and_several_are_kept() -> None:
     one, _ = upgraded("1.7", "profile_slope", Attribute(name, old, (50.0,), "mm", "float64"), NEWEST)
     assert (one.kind, one.value, one.code) == ("floating_point", 50.0, None)
     two, changes = upgraded("1.7", "profile_slope", Attribute(name, old, (50.0, 60.0), "mm"), NEWEST)
-    assert two.value == (50.0, 60.0) and changes[0].kept
+    assert two.value == (50.0, 60.0) and changes[0].unchanged
 
 
 def test_a_name_that_is_taken_is_not_given_twice() -> None:
@@ -175,7 +175,7 @@ def test_a_name_that_is_taken_is_not_given_twice() -> None:
     )
     model, changes = upgrade(model_of("1.0", Component(1, CATALOGUE, both)), "1.1")
     assert model.components[0].attributes == both
-    assert changes[0].kept
+    assert changes[0].unchanged
 
 
 def test_2_0_is_2_0_0_and_others_are_refused() -> None:

@@ -163,7 +163,7 @@ def test_an_upgraded_example_has_names_of_the_newest_version(path: Path) -> None
     read = read_rexs(path).model
     model, changes = upgrade(read)
     newest, own = set(names_at("2.0.0").values()), set(names_at(read.version).values())
-    kept = {(change.place, change.item) for change in changes if change.kept}
+    kept = {(change.location, change.item) for change in changes if change.unchanged}
     gone = {place for place, item in kept for part in model.components if item == part.type}
     left = {
         (place, attribute.id)

@@ -15,7 +15,7 @@ from housing_solid import housed_scene, housing, write_block
 
 from dynamics.housings import Bore
 from lineofaction.gearbox.convert.placement import Placement
-from lineofaction.gearbox.from_step.placement import found, placed_bore, seated
+from lineofaction.gearbox.from_step.placement import best_seating, placed_bore, seated
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import file_of
@@ -64,7 +64,7 @@ def bolts() -> list[Bore]:
 def test_a_file_that_is_turned_and_moved_is_put_back(seed: int) -> None:
     rng = np.random.default_rng(seed)
     stands = Placement(rotation(rng.uniform(-2.0, 2.0, 3)), rng.uniform(-1.0, 1.0, 3))
-    held = found(moved([*bores_of(list(AT.values())), *bolts()], stands), AT)
+    held = best_seating(moved([*bores_of(list(AT.values())), *bolts()], stands), AT)
     assert held.placement.axes == pytest.approx(stands.axes, abs=1e-9)
     assert held.placement.origin == pytest.approx(stands.origin, abs=1e-9)
     assert held.bores.keys() == AT.keys()
@@ -73,7 +73,7 @@ def test_a_file_that_is_turned_and_moved_is_put_back(seed: int) -> None:
 
 
 def test_a_file_in_the_frame_of_the_scene_stays_there() -> None:
-    held = found(bores_of(list(AT.values())), AT)
+    held = best_seating(bores_of(list(AT.values())), AT)
     assert held.placement.fields == {}
 
 
@@ -94,7 +94,7 @@ def test_a_unit_that_fits_in_several_ways_is_refused_with_each_of_them() -> None
     even = {name: np.array([at[0], 0.0, 0.0 if "left" in name else 0.2]) for name, at in two.items()}
     bores = moved(bores_of(list(even.values())), Placement(np.eye(3), np.array([0.1, 0.2, 0.3])))
     with pytest.raises(BadInput) as caught:
-        found(bores, even)
+        best_seating(bores, even)
     fault = caught.value.faults[0]
     assert fault.field == "step_file"
     assert "4 are equally good" in fault.bound
@@ -118,7 +118,7 @@ def typed(way: str) -> Placement:
 def test_too_few_bores_place_nothing(names: tuple[str, ...]) -> None:
     bores = moved(bores_of([AT[name] for name in names]), Placement(np.eye(3), np.array([0.1, 0.0, 0.0])))
     with pytest.raises(BadInput, match="step_file") as caught:
-        found(bores, AT)
+        best_seating(bores, AT)
     assert "--origin-mm" in caught.value.faults[0].suggestion
 
 

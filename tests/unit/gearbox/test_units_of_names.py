@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from lineofaction.gearbox.units import UNITS, ending_of, factor, unit_of
-from lineofaction.report.drawing.tables import facts
+from lineofaction.report.drawing.tables import settings_table
 
 
 def test_an_ending_stands_before_those_that_it_ends_with() -> None:
@@ -32,4 +32,4 @@ def test_only_units_beside_those_of_si_have_a_factor() -> None:
     ],
 )
 def test_a_fact_of_a_report_has_its_unit_after_its_words(name: str, words: str) -> None:
-    assert facts("", {name: 1.0}).rows == ((words, "1"),)
+    assert settings_table("", {name: 1.0}).rows == ((words, "1"),)

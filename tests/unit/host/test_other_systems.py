@@ -47,7 +47,7 @@ REFUSED = {
     "win32": (
         host.require_sessions,
         host.lead_session,
-        host.kill_own_group,
+        host.kill_process_group,
         lambda: host.kill_group(0),
         lambda: host.kill(0),
         lambda: host.lower_priority(0),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from model_studies import host_speed
-from model_studies.host_speed import FILE, host_slowness, kept_speed
+from model_studies.host_speed import FILE, cached_speed, host_slowness
 from model_studies.run_log import FILE as LOG
 from model_studies.run_log import corrections, record
 
@@ -20,8 +20,8 @@ def test_the_speed_of_the_host_is_kept(tmp_path, monkeypatch):
 
 
 def test_one_file_keeps_all_speeds(tmp_path):
-    first = [kept_speed(tmp_path, name, lambda: 2.0, (1.0, 3.0)) for name in ("a", "b")]
-    again = [kept_speed(tmp_path, name, lambda: pytest.fail("measured"), (1.0, 3.0)) for name in ("a", "b")]
+    first = [cached_speed(tmp_path, name, lambda: 2.0, (1.0, 3.0)) for name in ("a", "b")]
+    again = [cached_speed(tmp_path, name, lambda: pytest.fail("measured"), (1.0, 3.0)) for name in ("a", "b")]
     assert first == again == [2.0, 2.0]
 
 

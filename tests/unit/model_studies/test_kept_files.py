@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 
 
 class Counted:
@@ -19,7 +19,7 @@ class Counted:
 
 
 def kept(file: Path | None, counted: Counted, keep: bool = True) -> str:
-    return kept_in(
+    return cached_in(
         file,
         Path.read_text,
         counted.make,

@@ -11,7 +11,7 @@ import pytest
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.schemas.report import ReportInput
 from lineofaction.report.binding import bound
-from lineofaction.report.document import page_of, read_inputs, write_whole
+from lineofaction.report.document import page_of, read_inputs, write_page
 from lineofaction.report.drawing.page import Page, Part
 from lineofaction.report.title_block import titled
 
@@ -71,7 +71,7 @@ def test_one_report_alone_stays_as_it_is(pages: dict[str, Page]) -> None:
 
 
 def test_the_bound_page_is_written_with_the_plot_library_once(pages: dict[str, Page], tmp_path: Path) -> None:
-    write_whole(bound(pages), tmp_path / "report.html")
+    write_page(bound(pages), tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text("utf-8")
     assert text.count('id="library"') == 1
     assert all(f"second stage: {words}" in text for words in ("transverse section", "peak to peak"))

@@ -15,7 +15,7 @@ from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.ste import Curve, Metadata, PairFacts, SteDatabase
 from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.pair import pair_of
-from lineofaction.report.ste.curves import MAX_LINES, few_loads, load_labels, shown_loads
+from lineofaction.report.ste.curves import MAX_LINES, drawn_loads, few_loads, load_labels
 from lineofaction.report.ste.page import static_results
 
 POSITIONS = 48
@@ -124,7 +124,7 @@ def curves(database: SteDatabase, misalignment: float = 0.0) -> dict[str, Curve]
         labels[k].removesuffix(" N m"): database.curve(
             force=float(database.force[k]), misalignment=misalignment
         )
-        for k in shown_loads(database)
+        for k in drawn_loads(database)
     }
 
 
@@ -290,7 +290,7 @@ def check_flanks(figure: Figure, database: SteDatabase) -> None:
     found = rf"{ends}: {NUMBER} times for {NUMBER} times"
     ((minimum, first, maximum, last, growth, by),) = re.findall(found, figure.alternative)
     ends = [load_labels(database).index(f"{torque} N m") for torque in (first, last)]
-    assert ends == [shown_loads(database)[0], shown_loads(database)[-1]]
+    assert ends == [drawn_loads(database)[0], drawn_loads(database)[-1]]
     low, high = (1e-6 * float(database.max_pressure[:, k, 0, 0].max()) for k in ends)
     assert says(minimum, low) and says(maximum, high) and says(growth, high / low)
     assert says(by, float(database.torque[ends[1]] / database.torque[ends[0]]))
@@ -343,7 +343,7 @@ CHECKS = {
 
 
 def check_loads(database: SteDatabase) -> None:
-    shown = shown_loads(database)
+    shown = drawn_loads(database)
     chosen = few_loads(database)
     assert chosen == shown if len(shown) <= MAX_LINES else len(chosen) <= MAX_LINES
     assert (chosen[0], chosen[-1]) == (shown[0], shown[-1])

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.ste import SteDatabase
 from lineofaction.report.document import Inputs, page_of
 from lineofaction.report.drawing.figure import Axis, Figure, HeatMap, Line, Panel
-from lineofaction.report.drawing.marks import marked, marks_of, of_run, order_words, shown_orders
+from lineofaction.report.drawing.marks import drawn_orders, marked, marks_of, of_run, order_label
 
 MARKS: dict[str, Any] = {
     "axes": {"speed of input, rpm": 1200.0, "speed of output, rpm": 600.0, "frequency, Hz": 400.0},
@@ -89,8 +89,8 @@ def test_a_run_is_marked_by_the_pitches_and_the_driver_of_the_mesh_that_is_shown
 
 def test_the_order_of_the_complaint_is_among_those_shown() -> None:
     order, sizes = np.array([2.0 / 3.0, 1.0, 4.0 / 3.0, 2.0]), np.array([0.1, 3.0, 1.0, 2.0])
-    assert shown_orders(order, sizes, 2, {}) == [1, 3]
-    assert shown_orders(order, sizes, 2, {"complaint": MARKS}) == [0, 1]
+    assert drawn_orders(order, sizes, 2, {}) == [1, 3]
+    assert drawn_orders(order, sizes, 2, {"complaint": MARKS}) == [0, 1]
 
 
 def test_a_result_without_a_complaint_has_no_marks() -> None:
@@ -124,9 +124,9 @@ def references_of(panel: Panel) -> list[str]:
 
 def test_an_order_between_those_of_the_mesh_is_named_and_found_by_its_number() -> None:
     facts = {"turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 3.0}}}
-    named = order_words(2.0 / 3.0, facts)
+    named = order_label(2.0 / 3.0, facts)
     assert named == "0.6667 (mesh 1 - pinion 1)"
-    assert [order_words(2.0, facts), order_words(0.7, facts), order_words(2.0 / 3.0, {})] == [
+    assert [order_label(2.0, facts), order_label(0.7, facts), order_label(2.0 / 3.0, {})] == [
         "2",
         "0.7",
         "0.6667",

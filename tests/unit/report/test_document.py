@@ -179,7 +179,7 @@ def test_a_page_and_its_images_draw_a_column_of_panels_once(
 
     monkeypatch.setattr(document, "png", counted)
     section = Section("Figures", "Two.", (column, row))
-    document.write_whole(replace(PAGE, sections=(section,)), tmp_path / "page.html", tmp_path)
+    document.write_page(replace(PAGE, sections=(section,)), tmp_path / "page.html", tmp_path)
     assert calls == [(column.key, 2), ("row", 2), ("row", 1)]
     for drawn in (column, row):
         assert (tmp_path / f"{drawn.key}.png").read_bytes() == png(drawn)

@@ -17,7 +17,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Note, Panel, legend_names
 from lineofaction.report.drawing.image import panel_sheet, png
 from lineofaction.report.drawing.interactive import plotly_figure
-from lineofaction.report.drawing.placing import line_labels, placed, spread_apart
+from lineofaction.report.drawing.placing import line_labels, placed, spread_positions
 from lineofaction.report.pair import pair_drawing
 from lineofaction.report.response.mode_lines import OTHERS, _largest_parts, mode_bars
 
@@ -41,7 +41,7 @@ def sorted_gaps(middles: np.ndarray, heights: np.ndarray) -> np.ndarray:
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8))
 def test_no_label_covers_another_and_all_are_in_the_panel(ends: list[float]) -> None:
     wanted, heights = np.array(ends), np.full(len(ends), HEIGHT)
-    middles = spread_apart(wanted, heights)
+    middles = spread_positions(wanted, heights)
     assert np.all(sorted_gaps(middles, heights) >= -1e-12)
     assert middles.min() >= 0.5 * HEIGHT - 1e-12 and middles.max() <= 1.0 - 0.5 * HEIGHT + 1e-12
     for (a, b), (low, high) in (
@@ -52,11 +52,11 @@ def test_no_label_covers_another_and_all_are_in_the_panel(ends: list[float]) -> 
 
 def test_labels_that_are_apart_stand_at_their_lines() -> None:
     wanted = np.array([0.9, 0.2, 0.5])
-    np.testing.assert_allclose(spread_apart(wanted, np.full(3, HEIGHT)), wanted)
+    np.testing.assert_allclose(spread_positions(wanted, np.full(3, HEIGHT)), wanted)
 
 
 def test_labels_of_lines_that_end_together_stand_about_their_end() -> None:
-    middles = spread_apart(np.full(3, 0.5), np.array([0.1, 0.2, 0.1]))
+    middles = spread_positions(np.full(3, 0.5), np.array([0.1, 0.2, 0.1]))
     np.testing.assert_allclose(middles, [0.35, 0.5, 0.65])
 
 

@@ -22,7 +22,7 @@ from dynamics.acoustics.sound_quality import is_steady
 from dynamics.housings import ReducedHousing, scene_housing
 from dynamics.housings.reduced_housing import PointMotion
 from dynamics.joints import Housing
-from dynamics.noise import heard_estimate, pressure_recording, sound_limit, velocity_recording
+from dynamics.noise import pressure_recording, recording_estimate, sound_limit, velocity_recording
 from dynamics.orders import driving_speed
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
@@ -148,7 +148,7 @@ def moved_file(moved: RunResult, tmp_path: Path) -> Path:
 
 
 def heard_at(housing: ReducedHousing, moved: RunResult) -> Recording:
-    place, estimate = np.array([0.6, 0.8, -0.2]), heard_estimate(housing, moved)
+    place, estimate = np.array([0.6, 0.8, -0.2]), recording_estimate(housing, moved)
     return pressure_recording(housing, moved, place, estimate=estimate)
 
 

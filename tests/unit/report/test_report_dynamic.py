@@ -30,7 +30,7 @@ from lineofaction.report.run.signals import (
     signal_spectrum,
     spectrum_window,
 )
-from lineofaction.report.run.view import RunView, Travel, shown_signal, travel, window_speeds
+from lineofaction.report.run.view import RunView, Travel, selected_signal, travel, window_speeds
 
 
 def test_position_is_unwrapped_and_speed_is_the_driver_s(run: RunResult) -> None:
@@ -58,7 +58,7 @@ def test_dynamic_and_static_error_are_drawn_at_three_speeds(run: RunResult) -> N
 
 
 def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
-    signal = shown_signal(run, RunView())
+    signal = selected_signal(run, RunView())
     assert (signal.name, signal.unit) == ("force on bearing right", "N rms")
     whole, detail = signal_over_time(run, signal).content  # type: ignore[misc]
     assert [line.name for line in whole.lines] == ["y"]
@@ -68,7 +68,7 @@ def test_the_bearing_that_varies_most_is_shown(run: RunResult) -> None:
 
 def test_over_a_few_pitches_the_ripple_is_drawn_about_its_mean(run: RunResult) -> None:
     shifted = replace(run, bearing_force=run.bearing_force + 1e5)
-    signal = shown_signal(shifted, RunView())
+    signal = selected_signal(shifted, RunView())
     _, detail = signal_over_time(shifted, signal).content  # type: ignore[misc]
     assert detail.y.label.endswith("less its mean, N")
     (ripple,) = (line.y for line in detail.lines if line.name == "y")  # alone has any
@@ -77,12 +77,12 @@ def test_over_a_few_pitches_the_ripple_is_drawn_about_its_mean(run: RunResult) -
 
 
 def test_the_view_names_bearing_quantity_and_scale(run: RunResult) -> None:
-    other = shown_signal(run, RunView(bearing="left", scale="peak"))
+    other = selected_signal(run, RunView(bearing="left", scale="peak"))
     assert (other.part, other.unit) == ("left", "N peak")
-    error = shown_signal(run, RunView(quantity="transmission_error"))
+    error = selected_signal(run, RunView(quantity="transmission_error"))
     (drawn,) = error.components(run).values()
     np.testing.assert_array_equal(drawn, 1e6 * run.dynamic_transmission_error[0])
-    peak, effective = (shown_signal(run, RunView(scale=scale)) for scale in ("peak", "rms"))
+    peak, effective = (selected_signal(run, RunView(scale=scale)) for scale in ("peak", "rms"))
     amplitude = np.ones((2, 3, 5))
     np.testing.assert_allclose(peak.amplitude(amplitude), np.sqrt(3.0))
     np.testing.assert_allclose(effective.amplitude(amplitude), np.sqrt(1.5))
@@ -104,7 +104,7 @@ def test_the_view_names_bearing_quantity_and_scale(run: RunResult) -> None:
 def test_a_view_that_the_run_cannot_serve_is_refused(run: RunResult, view: RunView, field: str) -> None:
     bare = replace(run, bearing_acceleration=np.empty((0, 3, run.time.size)))
     with pytest.raises(BadInput, match=field):
-        shown_signal(bare, view)
+        selected_signal(bare, view)
 
 
 def test_a_sine_shows_its_amplitude(run: RunResult) -> None:
@@ -115,7 +115,7 @@ def test_a_sine_shows_its_amplitude(run: RunResult) -> None:
     sine = replace(run, bearing_force=force)
     window = slice(0, int(run.sample_rate))  # 1 s
     for scale, factor in (("peak", 1.0), ("rms", np.sqrt(0.5))):
-        signal = shown_signal(sine, RunView(scale=scale))
+        signal = selected_signal(sine, RunView(scale=scale))
         frequency, amplitude = amplitude_spectrum(sine, signal, window)
         assert frequency[np.argmax(amplitude)] == 100.0
         assert amplitude.max() == pytest.approx(5.0 * factor, rel=1e-9)
@@ -125,7 +125,7 @@ def test_a_sine_shows_its_amplitude(run: RunResult) -> None:
 def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
     window = spectrum_window(run.time)
     mesh = run.mesh_frequency[0, window]
-    frequency, amplitude = amplitude_spectrum(run, shown_signal(run, RunView()), window)
+    frequency, amplitude = amplitude_spectrum(run, selected_signal(run, RunView()), window)
     (first, weak), (second, strong), *others = order_amplitudes(frequency, amplitude, mesh)
     assert mesh.min() - 10 <= first <= mesh.max() + 10
     assert second == pytest.approx(2 * first, abs=10)
@@ -133,7 +133,7 @@ def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
 
 
 def test_orders_are_marked_at_multiples_of_the_mesh_frequency(run: RunResult) -> None:
-    (panel,) = signal_spectrum(run, shown_signal(run, RunView())).content  # type: ignore[misc]
+    (panel,) = signal_spectrum(run, selected_signal(run, RunView())).content  # type: ignore[misc]
     marks = [reference.value for reference in panel.references]
     np.testing.assert_allclose(marks, np.arange(1, 7) * marks[0])  # what the rate holds
     assert marks[0] == pytest.approx(20 * 900 * 0.925 / 60, rel=1e-3)

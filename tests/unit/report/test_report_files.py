@@ -31,7 +31,7 @@ from lineofaction.report.run.signals import (
     signal_spectrum,
     spectrum_window,
 )
-from lineofaction.report.run.view import RunView, shown_signal
+from lineofaction.report.run.view import RunView, selected_signal
 
 Work = Callable[[dict[str, Any]], Any]
 
@@ -202,10 +202,10 @@ def test_the_spectrum_of_a_run_has_order_1(rotor_run: Path, tmp_path: Path) -> N
     result = RunResult.from_netcdf(rotor_run)
     assert order_frequency(result) == pytest.approx(np.full(result.time.size, SPEED))
     assert highest_valid_order(result) == math.floor(1000.0 / 2.56 / SPEED)
-    figure = signal_spectrum(result, shown_signal(result, RunView(scale="peak")))
+    figure = signal_spectrum(result, selected_signal(result, RunView(scale="peak")))
     assert "shaft frequency" in figure.caption
     (line,) = figure.content[0].lines
-    history = signal_over_time(result, shown_signal(result, RunView()))
+    history = signal_over_time(result, selected_signal(result, RunView()))
     assert history.content[1].title == "three turns at 3844 rpm"
     window = order_frequency(result)[spectrum_window(result.time)]
     first, second = order_amplitudes(line.x, line.y, window)[:2]

@@ -243,9 +243,9 @@ def test_a_pressure_at_a_kink_says_over_which_length_it_is_averaged(flanks: Load
 def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:
-    assert len(PAGE.beside(flanks, database).alarms) == 1
+    assert len(PAGE.with_database(flanks, database).alarms) == 1
     own = replace(flanks, scene=replace(flanks.scene, facts=database.facts))
-    assert PAGE.beside(own, database).alarms == PAGE.page(flanks).alarms == ()
+    assert PAGE.with_database(own, database).alarms == PAGE.page(flanks).alarms == ()
     flanks.to_netcdf(tmp_path / "flanks.nc")
     database.to_netcdf(tmp_path / "ste.nc")
     both = [tmp_path / "ste.nc", tmp_path / "flanks.nc"]

@@ -44,7 +44,7 @@ from lineofaction.report.run.page import (
     dynamic_results,
 )
 from lineofaction.report.run.signals import TOO_SHORT, octave_bands
-from lineofaction.report.run.view import RunView, shown_signal
+from lineofaction.report.run.view import RunView, selected_signal
 
 MODES = {
     "frequency": [0.0, 300.0, 301.0, 900.0],
@@ -59,12 +59,12 @@ def panel(figure) -> Panel:
 
 
 def diagram(run: RunResult):
-    signal = shown_signal(run, RunView())
+    signal = selected_signal(run, RunView())
     return campbell(run, signal, frequency_blocks(run, signal))
 
 
 def levels(run: RunResult, **view):
-    signal = shown_signal(run, RunView(**view))
+    signal = selected_signal(run, RunView(**view))
     return panel(levels_over_speed(run, signal, order_blocks(run, signal)))
 
 
@@ -146,14 +146,14 @@ def test_the_largest_orders_are_cut_unless_named(run: RunResult) -> None:
 
 
 def test_an_order_map_has_its_lines_at_the_orders_of_the_run(run: RunResult) -> None:
-    signal = shown_signal(run, RunView())
+    signal = selected_signal(run, RunView())
     shade = panel(order_map(run, signal, order_blocks(run, signal))).shade
     assert isinstance(shade, HeatMap)
     np.testing.assert_allclose(shade.y[np.argmax(shade.z, axis=0)], 2.0, atol=1.0 / 16)
 
 
 def test_octave_bands_hold_the_power_of_the_signal(run: RunResult) -> None:
-    signal = shown_signal(run, RunView())
+    signal = selected_signal(run, RunView())
     blocks = frequency_blocks(run, signal)
     figure = octave_bands(run, signal, blocks)
     maximum = panel(figure).lines[0]
@@ -181,7 +181,7 @@ def test_load_sharing_is_drawn_for_sun_and_ring_and_only_for_planets() -> None:
 
 
 def sidebands_of(run: RunResult):
-    return _sideband_tables(run, shown_signal(run, RunView()))
+    return _sideband_tables(run, selected_signal(run, RunView()))
 
 
 def test_sidebands_are_tabulated_with_what_modulates(run: RunResult) -> None:
@@ -253,7 +253,7 @@ def test_a_defect_of_drawing_is_no_damage_of_the_file(
     study = STUDIES["response"]
 
     monkeypatch.setattr(f"{STORED}.read_stored", lambda _study, _file: object())
-    monkeypatch.setattr(f"{STORED}.page_beside", _defect)
+    monkeypatch.setattr(f"{STORED}.page_with_database", _defect)
     with pytest.raises(ValueError, match="argmax of an empty sequence"):
         _study_page(study, tmp_path / "response.nc")
 

@@ -21,7 +21,7 @@ from lineofaction.report.document import Inputs, page_of, read_inputs
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section, html, is_number
-from lineofaction.report.drawing.tables import facts, records, side_by_side
+from lineofaction.report.drawing.tables import records, settings_table, side_by_side
 from lineofaction.report.pair import data_sheet_section, pair_of, pair_remarks
 from lineofaction.report.ste.page import (
     case_tables,
@@ -54,7 +54,7 @@ def figure(key: str = "ste", title: str = "STE") -> Figure:
 
 
 def page(title: str = "Report", **changes: object) -> Page:
-    section = Section("Static", "Text.", (figure(),), (facts("Case", {"center_distance_mm": 80.0}),))
+    section = Section("Static", "Text.", (figure(),), (settings_table("Case", {"center_distance_mm": 80.0}),))
     given = {"headlines": (Headline("mean STE", "6.245 µm", "± 0.02"),), "sections": (section,)} | changes
     return Page(title, "A pair.", **given)  # type: ignore[arg-type]
 
@@ -123,7 +123,7 @@ def test_the_contents_lead_to_every_section() -> None:
 
 
 def test_settings_become_rows_with_units() -> None:
-    table = facts(
+    table = settings_table(
         "Case", {"pair": {"normal_module_mm": 4.0, "pinion": {"teeth": 20}}, "none": None, "on": True}
     )
     assert table.rows == (("pair · normal module, mm", "4"), ("pair · pinion · teeth", "20"), ("on", "yes"))
@@ -146,7 +146,7 @@ def test_records_keep_every_field() -> None:
     ],
 )
 def test_no_digit_is_lost(value: object, text: str) -> None:
-    assert facts("Case", {"load": value}).rows == (("load", text),)
+    assert settings_table("Case", {"load": value}).rows == (("load", text),)
 
 
 def test_both_gears_stand_beside_each_other() -> None:

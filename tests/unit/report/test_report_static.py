@@ -18,12 +18,12 @@ from lineofaction.report.drawing.figure import Panel, number
 from lineofaction.report.flank.flank import line_load_figure
 from lineofaction.report.pair import iso_mesh_stiffness
 from lineofaction.report.ste.curves import (
-    pitches_shown,
+    drawn_loads,
+    drawn_pitches,
+    drawn_rows,
+    drawn_ste,
     position_axis,
-    shown_loads,
-    shown_rows,
     ste_curves,
-    ste_shown,
 )
 from lineofaction.report.ste.over_torque import (
     deviation_curves,
@@ -42,7 +42,7 @@ from lineofaction.report.ste.stiffness import (
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
-    position, values = ste_shown(database)
+    position, values = drawn_ste(database)
     first = position < 1.0
     second = (position >= 1.0) & (position < 2.0)
     assert position[0] == 0.0
@@ -53,7 +53,7 @@ def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
 
 
 def test_stored_points_are_on_the_curve(database: SteDatabase) -> None:
-    position, values = ste_shown(database)
+    position, values = drawn_ste(database)
     at = np.searchsorted(position, database.position)
     stored = database.static_transmission_error[:, :, 0, 0]
     np.testing.assert_allclose(values[at], stored, rtol=1e-9)
@@ -67,9 +67,9 @@ def test_the_ripple_is_drawn_in_micrometers_with_its_mean_in_the_label(database:
     """And in the Harris map every load is higher than the last by the same step."""
     ripple, harris = panels_of(database)
     assert [line.name for line in ripple.lines] == ["10 N m", "100 N m", "400 N m"]
-    position, ste = ste_shown(database)
+    position, ste = drawn_ste(database)
     offsets = []
-    for load, line, mapped in zip(shown_loads(database), ripple.lines, harris.lines, strict=True):
+    for load, line, mapped in zip(drawn_loads(database), ripple.lines, harris.lines, strict=True):
         curve = database.curve(force=float(database.force[load]))
         np.testing.assert_array_equal(line.x, position)
         np.testing.assert_allclose(line.y, 1e6 * (ste[:, load] - curve.mean.value), rtol=1e-9)
@@ -84,7 +84,7 @@ def test_the_ripple_is_drawn_in_micrometers_with_its_mean_in_the_label(database:
 
 def test_the_band_is_half_the_error_of_peak_to_peak(database: SteDatabase) -> None:
     lines = panels_of(database)[0].lines
-    for load, line in zip(shown_loads(database), lines, strict=True):
+    for load, line in zip(drawn_loads(database), lines, strict=True):
         error = database.peak_to_peak(force=float(database.force[load])).error
         assert 2.0 * line.band == pytest.approx(1e6 * error)
 
@@ -97,7 +97,7 @@ def test_the_table_has_every_load_with_its_error(database: SteDatabase) -> None:
 
 
 def test_the_load_that_serves_lift_off_is_not_drawn(database: SteDatabase) -> None:
-    assert shown_loads(database) == (1, 2, 3)
+    assert drawn_loads(database) == (1, 2, 3)
 
 
 def test_shares_sum_to_one_wherever_a_pair_is(database: SteDatabase) -> None:
@@ -142,7 +142,7 @@ def test_a_database_without_a_case_has_no_iso_line(database: SteDatabase) -> Non
 
 
 def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged: SteDatabase) -> None:
-    position, values = ste_shown(damaged)
+    position, values = drawn_ste(damaged)
     assert math.isnan(values[5, 2])
     assert np.count_nonzero(np.isnan(values)) == 2
     assert len(position) == 129
@@ -174,7 +174,7 @@ def test_ripple_over_torque_is_that_of_the_curves(database: SteDatabase) -> None
     solid = [{drawn.name: drawn for drawn in panel.lines if not drawn.label} for panel in (linear, level)]
     dotted = [[drawn for drawn in panel.lines if drawn.label] for panel in (linear, level)]
     assert [[drawn.label for drawn in lines] for lines in dotted] == [list("12345678")] * 2
-    for k, load in enumerate(shown_loads(database)):
+    for k, load in enumerate(drawn_loads(database)):
         curve = database.curve(force=float(database.force[load]))
         assert line.y[k] == pytest.approx(1e6 * curve.peak_to_peak.value)
         assert line.band[k] == pytest.approx(1e6 * curve.peak_to_peak.error)
@@ -294,7 +294,7 @@ Tables = Callable[..., SteDatabase]
 
 def test_a_period_is_shown_whole_once(with_pitch_errors: Tables) -> None:
     table = with_pitch_errors()
-    position, values = ste_shown(table)
+    position, values = drawn_ste(table)
     assert (position[0], position[-1]) == (0.0, 3.0)
     assert np.all(np.diff(position) > 0.0)
     assert values[-1] == pytest.approx(values[0])
@@ -307,10 +307,10 @@ def test_a_period_is_shown_whole_once(with_pitch_errors: Tables) -> None:
 
 def test_of_a_long_period_the_first_pitches_are_shown_and_go_on(with_pitch_errors: Tables) -> None:
     table = with_pitch_errors(50)
-    position, values = ste_shown(table)
-    assert (pitches_shown(table), position[-1]) == (40, 40.0)
+    position, values = drawn_ste(table)
+    assert (drawn_pitches(table), position[-1]) == (40, 40.0)
     assert values[-1] == pytest.approx(table.static_transmission_error[40 * 64, :, 0, 0])
-    rows = shown_rows(table)[1]
+    rows = drawn_rows(table)[1]
     assert (rows[-1], rows.size) == (40 * 64, 40 * 64 + 1)
 
 
@@ -321,7 +321,7 @@ def test_every_pair_is_followed_and_the_shares_sum_to_one(
     table = database if period == 1 else with_pitch_errors(period)
     position, followed = pair_shares(table, 2)
     assert np.sum(list(followed.values()), axis=0) == pytest.approx(np.ones(position.size))
-    assert len(followed) == pitches_shown(table) + 1
+    assert len(followed) == drawn_pitches(table) + 1
     for share in followed.values():  # one stretch of mesh each
         assert np.count_nonzero(np.diff((share > 0.0).astype(int)) == 1) <= 1
 

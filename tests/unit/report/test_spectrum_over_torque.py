@@ -11,7 +11,7 @@ import pytest
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.spectrum import even_positions
 from lineofaction.report.drawing.figure import FloatArray, HeatMap
-from lineofaction.report.ste.curves import load_curve, load_labels, shown_loads
+from lineofaction.report.ste.curves import drawn_loads, load_curve, load_labels
 from lineofaction.report.ste.page import static_results
 from lineofaction.report.ste.spectrum import ste_waterfall
 
@@ -47,8 +47,8 @@ def test_the_orders_of_a_row_hold_the_mean_square_of_the_curve(
     """Parseval: half the sum of the squared amplitudes."""
     table = with_orders(database if period == 1 else with_pitch_errors(period), amplitudes, 0.0)
     shade = shade_of(table)
-    assert shade.z.shape == (len(shown_loads(table)), shade.x.size)
-    for load, level in zip(shown_loads(table), shade.z, strict=True):
+    assert shade.z.shape == (len(drawn_loads(table)), shade.x.size)
+    for load, level in zip(drawn_loads(table), shade.z, strict=True):
         ste = 1e6 * table.curve(force=float(table.force[load]), at=even_positions(period)).ste
         drawn = 0.5 * np.sum(np.where(level > shade.minimum, 10.0 ** (level / 10.0), 0.0))
         assert drawn == pytest.approx(float(np.var(ste)), rel=1e-4)
@@ -61,7 +61,7 @@ def test_the_orders_of_a_row_hold_the_mean_square_of_the_curve(
 def test_what_is_below_its_error_is_blank_and_all_else_is_drawn(database: SteDatabase) -> None:
     table = with_orders(database, {1.0: 2e-6, 3.0: 1e-7}, 0.01)
     shade = shade_of(table)
-    for load, level in zip(shown_loads(table), shade.z, strict=True):
+    for load, level in zip(drawn_loads(table), shade.z, strict=True):
         tones = load_curve(table, load).harmonics
         assert 0.0 < tones[2].value < tones[2].error
         assert list(np.isnan(level)) == [not tone.value > tone.error for tone in tones]
@@ -82,7 +82,7 @@ def test_a_long_period_has_few_cells_of_which_each_shows_its_largest_order(with_
     figure, shade = ste_waterfall(table), shade_of(table)
     assert shade.x.size == 300
     assert "A cell is as wide as 2 orders" in figure.caption
-    levels = [_level(load_curve(table, load).spectrum.amplitude[:600]) for load in shown_loads(table)]
+    levels = [_level(load_curve(table, load).spectrum.amplitude[:600]) for load in drawn_loads(table)]
     largest = np.max(np.reshape(levels, (-1, 300, 2)), axis=2)
     drawn = np.isfinite(shade.z) & (shade.z > shade.minimum)
     assert drawn.any()
@@ -98,7 +98,7 @@ def test_the_finding_names_order_load_and_level(database: SteDatabase) -> None:
     figure = ste_waterfall(table)
     assert figure.alternative == "Order 2 at 400 N m is the largest: 9.5 dB re 1 µm."
     assert figure.table is not None
-    assert [row[0] for row in figure.table.rows] == [load_labels(table)[k] for k in shown_loads(table)]
+    assert [row[0] for row in figure.table.rows] == [load_labels(table)[k] for k in drawn_loads(table)]
     assert figure.table.head == ("torque", "order 1", "order 2")
 
 

@@ -17,7 +17,7 @@ from lineofaction.gearbox.schemas.reading import read_model
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import BEARING, HOUSING, PINION, SHAFT, WHEEL, Body, Hull, Ring
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
-from lineofaction.report.document import page_json, page_of, read_inputs, write_whole
+from lineofaction.report.document import page_json, page_of, read_inputs, write_page
 from lineofaction.report.drawing.bodies import LIGHT, SHADE, THROUGH, Camera, rendered
 from lineofaction.report.drawing.image import still
 from lineofaction.report.drawing.page import Page
@@ -193,7 +193,7 @@ def test_the_report_of_a_study_of_a_scene_has_one_picture_of_its_unit(verb: str,
     read = page_of(read_inputs([file]))
     assert [*map(is_picture, read.sections)].count(True) == 1
     assert read.sections[0].title == "Unit"
-    write_whole(read, page, still_only=True)
+    write_page(read, page, still_only=True)
     (alternative,) = pictures(page.read_text("utf-8"))
     assert alternative.startswith("The gear unit. 1 shaft and 2 bearings. Shafts: ")
     assert all(figure["plot"]["data"] for one in page_json(read)["sections"] for figure in one["figures"])
@@ -212,7 +212,7 @@ def test_results_of_one_scene_bound_together_share_its_picture(tmp_path: Path) -
 
 def test_a_page_with_plots_has_a_picture_that_is_none(tmp_path: Path) -> None:
     page = with_picture(Page("Title", "", (), ()), bodies(ROTOR))
-    write_whole(page, tmp_path / "page.html")
+    write_page(page, tmp_path / "page.html")
     text = (tmp_path / "page.html").read_text("utf-8")
     assert len(pictures(text)) == 1
     assert 'class="plot"' not in text

@@ -77,7 +77,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Iterator[Calls]:
 
     monkeypatch.setattr(Case, "model_validate_json", read)
     for cases in (preparations.CASES, scene_before_tables.CASES):
-        monkeypatch.setattr(cases, "_kept", type(cases)()._kept)
+        monkeypatch.setattr(cases, "_cases", type(cases)()._cases)
     _replace(monkeypatch, "gear_pair", convert, converted)
     _replace(monkeypatch, "check_request", check, checked)
     yield calls

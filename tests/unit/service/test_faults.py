@@ -18,7 +18,7 @@ from bounds import (
     Quantity,
     SiNote,
     Text,
-    Words,
+    Wording,
     above,
     at_least,
     at_most,
@@ -125,7 +125,7 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
         ("a finite number", "a finite number"),
     ],
 )
-def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Words, shown: str) -> None:
+def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Wording, shown: str) -> None:
     found = translated(InputError("center_distance", 0.08, bound))
     assert isinstance(found, BadInput)
     assert found.faults[0].bound == shown
@@ -227,7 +227,7 @@ def test_a_line_that_is_no_toml_is_shown_with_what_is_expected(tmp_path: Path) -
 def test_a_value_that_was_set_is_in_no_line() -> None:
     with pytest.raises(BadInput) as error:
         read_model(Case, InputFile(SPUR, (Override("pair.pinion.teeth", 2.5),)))
-    assert [fault.place for fault in error.value.faults] == [""]
+    assert [fault.location for fault in error.value.faults] == [""]
 
 
 def test_json_over_http_stays_as_it_was(tmp_path: Path) -> None:

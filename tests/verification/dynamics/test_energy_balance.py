@@ -243,14 +243,14 @@ def test_a_window_run_again_as_it_was_is_the_run(make):
     """Law, loads and counted quanta at its start are right: only the choice of steps is another."""
     system = assemble(make())
     starts = window_starts(system)
-    found = integrate(system, static_equilibrium(system), system.scene.integration, whole=starts)
-    looked = _windows(system, found.states.rows, found.whole)
+    found = integrate(system, static_equilibrium(system), system.scene.integration, modal_samples=starts)
+    looked = _windows(system, found.states.rows, found.modal_states)
     assert [window.first for window in looked] == starts.tolist()
     for window in looked:
         again = window.repeated(window.system, system.scene.integration)
         assert again is not None
         assert again.rms < 1e-9 < 1e-3 * np.ptp(window.error)
-    assert found.states.moved[-1].any() == (system.scene.drives[0].name == "ring held")
+    assert found.states.quanta[-1].any() == (system.scene.drives[0].name == "ring held")
 
 
 def test_a_minimal_receipt_states_the_tolerance_and_changes_no_series():

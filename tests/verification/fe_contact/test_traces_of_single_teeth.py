@@ -11,7 +11,7 @@ from tooth_traces import SHAPES, on_profile, sampled_gap, traced_pair
 
 from fe_contact import AnalysisOptions, Gear, GearPair, Run, TableAxes, ToothFlank
 from fe_contact.analysis.deviating_cycle import cycle_contact
-from fe_contact.analysis.pairs.kept_contact import problems_in_parts
+from fe_contact.analysis.pairs.solved_contact import problems_in_parts
 from fe_contact.contact import solve_contact
 
 OPTIONS = AnalysisOptions(level="draft", model="plane_strain", positions=48)

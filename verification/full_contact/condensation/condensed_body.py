@@ -67,7 +67,7 @@ def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
     matrix = plane_strain_stiffness(body.points, body.triangles, material)
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}
-    inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
+    inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.bore_nodes]))
     inner = dissected(mesh_graph(body.triangles, len(body.points)), inner)
     order = np.concatenate([freedoms(inner), freedoms(nodes)])
     permuted = sp.csc_array(matrix[order][:, order])

@@ -49,8 +49,8 @@ class GearBoundary:
     """Closed loops around one gear in its own frame, tooth 0 on +y."""
 
     toothed: Outline
-    held: Outline
-    """`toothed`, `held`: The teeth with the plain ring between them; the bore, or the outside of a ring
+    seat: Outline
+    """`toothed`, `seat`: The teeth with the plain ring between them; the bore, or the outside of a ring
     gear's rim.
     """
     s: Mapping[int, FloatArray]
@@ -71,7 +71,7 @@ def gear_boundary(
         pieces += made
     if len(teeth) < gear.teeth:
         pieces.append(_plain_ring(gear, pieces, gear.teeth - len(teeth), resolution))
-    return GearBoundary(Outline(tuple(pieces)), _held_circle(gear, resolution), s)
+    return GearBoundary(Outline(tuple(pieces)), _seat_circle(gear, resolution), s)
 
 
 def _size_near(gear: Toothing, strips: Mapping[int, SizedStrip], resolution: Resolution) -> Size:
@@ -179,8 +179,8 @@ def _plain_ring(gear: Toothing, pieces: Sequence[Piece], missing: int, resolutio
     return ring
 
 
-def _held_circle(gear: Toothing, resolution: Resolution) -> Outline:
-    radius = gear.held_radius
+def _seat_circle(gear: Toothing, resolution: Resolution) -> Outline:
+    radius = gear.seat_radius
     size = min(2.0 * resolution.part(BODY, gear.normal_module), HALF * gear.body_depth)
     step = min(size / radius, LARGEST_ARC)
     ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))

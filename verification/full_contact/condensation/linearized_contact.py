@@ -32,8 +32,8 @@ class LinearizedContact:
 
     system: ContactSystem
     forces: tuple[FloatArray, FloatArray]
-    moved: tuple[FloatArray, FloatArray]
-    """`forces`, `moved`: Forces on the strips of both gears by unit pressures, and what displacements follow.
+    displacement: tuple[FloatArray, FloatArray]
+    """`forces`, `displacement`: Forces on the strips of both gears by unit pressures, and displacements.
     ((u_1, h), (u_2, h)) arrays.
     """
     site: IntArray

@@ -34,12 +34,12 @@ def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tupl
     forces = np.zeros((body.stiffness.shape[0], len(solutions)))
     for i, (contact, pressure, _) in enumerate(solutions):
         forces[body.freedoms, i] = contact.forces[number] @ pressure
-    moved = body.solve(forces)
-    held = body.body.held
-    reactions = np.asarray(body.stiffness @ moved).reshape(-1, 2, len(solutions))[held]
-    arms = body.body.points[held] - body.body.center
+    displacement = body.solve(forces)
+    bore_nodes = body.body.bore_nodes
+    reactions = np.asarray(body.stiffness @ displacement).reshape(-1, 2, len(solutions))[bore_nodes]
+    arms = body.body.points[bore_nodes] - body.body.center
     moments = arms[:, 0] @ reactions[:, 1] - arms[:, 1] @ reactions[:, 0]
-    return moments, np.sum(moved * forces, axis=0)
+    return moments, np.sum(displacement * forces, axis=0)
 
 
 def _moment(body: CondensedBody, forces: FloatArray) -> float:
@@ -116,25 +116,32 @@ class PairGeometry:
     def _gathered(self, gaps: Sequence[WeakGap], at: Configuration, turn: FloatArray) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
         facing = [_full_weights(self, site) * MIN_FACING for site in self.sites]
-        kept = np.concatenate([gap.weight > minimum for gap, minimum in zip(gaps, facing, strict=True)])
-        first, second = self._forces(gaps, 0)[:, kept], turned_back(self._forces(gaps, 1)[:, kept], turn)
-        moved = self.bodies[0].compliance @ first, self.bodies[1].compliance @ second
-        compliance = first.T @ moved[0] + second.T @ moved[1]
-        closing = np.concatenate([gap.closing for gap in gaps])[kept]
+        facing_hats = np.concatenate(
+            [gap.weight > minimum for gap, minimum in zip(gaps, facing, strict=True)]
+        )
+        first, second = (
+            self._forces(gaps, 0)[:, facing_hats],
+            turned_back(self._forces(gaps, 1)[:, facing_hats], turn),
+        )
+        displacement = self.bodies[0].compliance @ first, self.bodies[1].compliance @ second
+        compliance = first.T @ displacement[0] + second.T @ displacement[1]
+        closing = np.concatenate([gap.closing for gap in gaps])[facing_hats]
         points, deformed = self.bodies[0].points, at.displacements
         system = ContactSystem(
-            gap=np.concatenate([gap.gap for gap in gaps])[kept]
+            gap=np.concatenate([gap.gap for gap in gaps])[facing_hats]
             + closing * at.lag
             - first.T @ deformed[0]
             - second.T @ deformed[1],
             compliance=0.5 * (compliance + compliance.T),
             closing=closing,
             lever=points[:, 0] @ first[1::2] - points[:, 1] @ first[0::2],
-            weight=np.concatenate([gap.weight for gap in gaps])[kept],
+            weight=np.concatenate([gap.weight for gap in gaps])[facing_hats],
         )
-        site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[kept]
-        ends = [at_end(self.pair, each, self.bodies[each.slave].body) for each in self.sites]
-        return LinearizedContact(system, (first, second), moved, site, site, np.concatenate(ends)[kept])
+        site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[facing_hats]
+        ends = [at_end(self.pair, s, self.bodies[s.slave].body) for s in self.sites]
+        return LinearizedContact(
+            system, (first, second), displacement, site, site, np.concatenate(ends)[facing_hats]
+        )
 
     def _forces(self, gaps: Sequence[WeakGap], number: int) -> FloatArray:
         """Return the nodal forces (2 k, h) of all pairs on one gear."""

@@ -44,7 +44,7 @@ class PlacedBody:
     triangles: IntArray
     """Six-node triangles, corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0. Shape (m, 6).
     """
-    held: IntArray
+    bore_nodes: IntArray
     """Nodes of the bore, or of the outside of a ring gear's rim. Shape (b,)."""
     center: FloatArray
     """m. Shape (2,)."""
@@ -77,7 +77,7 @@ def placed_bodies(
         for number, gear in enumerate(gears)
     ]
     loops = {
-        f"gear {number}": (boundary.toothed, boundary.held)[:: gear.sign]
+        f"gear {number}": (boundary.toothed, boundary.seat)[:: gear.sign]
         for number, (boundary, gear) in enumerate(zip(boundaries, gears, strict=True), start=1)
     }
     meshes = quadratic_meshes(
@@ -133,5 +133,5 @@ def _placed(
     center = np.array([0.0, number * gear.sign * pair.center_distance])
     points = rotated(mesh.points * [gear.sign, 1.0], turn) + center
     triangles = mesh.triangles if gear.sign > 0 else mesh.triangles[:, MIRRORED]
-    held = mesh.boundary[:: gear.sign][1]
-    return PlacedBody(points, triangles, held, center, strips)
+    bore_nodes = mesh.boundary[:: gear.sign][1]
+    return PlacedBody(points, triangles, bore_nodes, center, strips)

@@ -57,8 +57,11 @@ def _settled(geometry: ContactGeometry, undeformed: LinearizedContact, torque: f
     contact, solution = undeformed, solve_active_set(undeformed.system, line_torque)
     iterations, change = solution.iterations, np.inf
     for _ in range(MAX_EVALUATIONS):
-        moved = contact.moved[0] @ solution.pressure, contact.moved[1] @ solution.pressure
-        contact = geometry.linearized(Configuration(solution.lag, moved))
+        displacements = (
+            contact.displacement[0] @ solution.pressure,
+            contact.displacement[1] @ solution.pressure,
+        )
+        contact = geometry.linearized(Configuration(solution.lag, displacements))
         following = solve_active_set(contact.system, line_torque)
         iterations += following.iterations
         change = abs(following.lag / solution.lag - 1.0)

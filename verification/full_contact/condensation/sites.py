@@ -73,7 +73,7 @@ class _Widths:
 
 
 def contact_sites(
-    pair: ParallelAxes, position: float, held: Range, resolution: Resolution
+    pair: ParallelAxes, position: float, load_range: Range, resolution: Resolution
 ) -> tuple[ContactSite, ...]:
     """Return the pairs that may touch, from behind to ahead.
 
@@ -81,7 +81,7 @@ def contact_sites(
     ----------
     position : float
         By the driving gear, base pitches, from -0.5 to 0.5.
-    held : Range
+    load_range : Range
         Loads, and the lag within which teeth off the path of contact come to touch.
     """
     path = pair.path_of_contact
@@ -93,27 +93,27 @@ def contact_sites(
     sites = []
     for index, roll, on_path in zip(ahead.tolist(), rolls.tolist(), inside, strict=True):
         if on_path:
-            widths = _widths(pair, roll, held, sharing)
+            widths = _widths(pair, roll, load_range, sharing)
             sites.append(_on_path(pair, index, roll, widths, resolution))
-        elif _corner_gap(pair, roll) < held.lag:
+        elif _corner_gap(pair, roll) < load_range.lag:
             end = min(max(roll, path.start), path.end)
-            sites.append(_at_corner(pair, index, roll, _widths(pair, end, held, 1), resolution))
+            sites.append(_at_corner(pair, index, roll, _widths(pair, end, load_range, 1), resolution))
     return tuple(sites)
 
 
 def least_gap_left_out(pair: ParallelAxes, position: float, sites: tuple[ContactSite, ...]) -> float:
     """Return the least gap of the rigid gears at a pair that is no site, m; infinite if there is none."""
-    beside = np.array([sites[0].ahead - 1, sites[-1].ahead + 1])
-    rolls = pair.roll_lengths(position, beside)[0]
+    neighbors = np.array([sites[0].ahead - 1, sites[-1].ahead + 1])
+    rolls = pair.roll_lengths(position, neighbors)[0]
     return min(_corner_gap(pair, float(roll)) for roll in rolls)
 
 
-def _widths(pair: ParallelAxes, roll: float, held: Range, sharing: int) -> _Widths:
+def _widths(pair: ParallelAxes, roll: float, load_range: Range, sharing: int) -> _Widths:
     """Return the half-widths at a roll length of gear 1."""
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     radius = 1.0 / float(pair.relative_curvature(roll))
-    minimum, largest = half_width(np.array(held.line_loads) / sharing, radius, modulus).tolist()
-    alone = held.longer * float(half_width(held.line_loads[1], radius, modulus))
+    minimum, largest = half_width(np.array(load_range.line_loads) / sharing, radius, modulus).tolist()
+    alone = load_range.longer * float(half_width(load_range.line_loads[1], radius, modulus))
     return _Widths(minimum, largest, alone, radius)
 
 

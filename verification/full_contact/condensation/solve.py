@@ -57,9 +57,9 @@ def _solved(
     minimum, maximum = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
     loads = minimum / pair.face_width, model.largest_line_load(pair, maximum)
     closer = model.closer(pair)
-    held = Range(loads, 1.5 * loads[1] * softness(pair) + closer)
+    load_range = Range(loads, 1.5 * loads[1] * softness(pair) + closer)
     for _ in range(ATTEMPTS):
-        sites = contact_sites(pair, phase, held, resolution)
+        sites = contact_sites(pair, phase, load_range, resolution)
         meshes = placed_bodies(pair, phase, sites, resolution)
         geometries, unknowns = model.geometries(pair, sites, meshes, resolution.layers)
         solved = tuple(solve_loads(geometry, torques, position) for geometry in geometries)
@@ -69,7 +69,9 @@ def _solved(
         cut_off = any(point.status is Status.OUT_OF_MODEL for point in points)
         if lag < least_gap_left_out(pair, phase, sites) and not cut_off:
             break
-        held = Range(loads, max(held.lag, 1.3 * lag), held.longer * (WIDER if cut_off else 1.0))
+        load_range = Range(
+            loads, max(load_range.lag, 1.3 * lag), load_range.longer * (WIDER if cut_off else 1.0)
+        )
     return SolvedPosition(solved, unknowns)
 
 
@@ -133,8 +135,8 @@ def contact_tables(
             report(count / len(positions))
         clock = StageClock()
         with clock.stage("position"):
-            found = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
-        one = found[0].with_error(found[1]) if len(found) > 1 else found[0]
+            by_mesh = [_solve_position(model, pair, torques, position, mesh) for mesh in meshes]
+        one = by_mesh[0].with_error(by_mesh[1]) if len(by_mesh) > 1 else by_mesh[0]
         solved.append(replace(one, cpu_seconds=clock.seconds["position"]))
     return tables_of(positions, torques, solved)
 

@@ -47,35 +47,35 @@ class FacingFlanks:
         return 0 if self.roll < 0.5 * (path.start + path.end) else 1
 
     @property
-    def whole(self) -> float:
+    def line_length(self) -> float:
         """Length of the line of action between the base circles, m."""
         return float(self.pair.mating_roll_length(0.0))
 
     def facing(self, rolls: FloatArray) -> Facing:
         """Follow the normals of the slave at roll lengths (q,) to the mate."""
         gears = (self.pair.pinion, self.pair.wheel)
-        own, mate = gears[self.slave], gears[1 - self.slave]
-        touching = self.roll if self.slave == 0 else self.whole - self.roll
-        angle = (rolls - touching) / own.base_radius
+        slave_gear, mate = gears[self.slave], gears[1 - self.slave]
+        touching = self.roll if self.slave == 0 else self.line_length - self.roll
+        angle = (rolls - touching) / slave_gear.base_radius
         normal, slope = _turned(angle)
-        at = own.base_radius * slope + rolls[:, None] * normal
-        center = np.array([own.base_radius + mate.base_radius, self.whole])
-        arc = 0.5 * np.maximum(self.whole - rolls, 0.0) ** 2 / mate.base_radius
+        at = slave_gear.base_radius * slope + rolls[:, None] * normal
+        center = np.array([slave_gear.base_radius + mate.base_radius, self.line_length])
+        arc = 0.5 * np.maximum(self.line_length - rolls, 0.0) ** 2 / mate.base_radius
         for _ in range(_STEPS):
             met = np.sqrt(2.0 * mate.base_radius * arc)
-            theirs, outward = _turned((met - (self.whole - touching)) / mate.base_radius)
-            place = center - mate.base_radius * outward - met[:, None] * theirs
-            off = np.einsum("qx,qx->q", place - at, slope)
+            theirs, outward = _turned((met - (self.line_length - touching)) / mate.base_radius)
+            point = center - mate.base_radius * outward - met[:, None] * theirs
+            off = np.einsum("qx,qx->q", point - at, slope)
             arc = np.maximum(arc + off / np.einsum("qx,qx->q", outward, slope), 0.0)
-        gap = np.einsum("qx,qx->q", place - at, normal)
-        gap = gap + removed_at_roll(own, rolls, self.face) + removed_at_roll(mate, met, self.face)
-        return Facing(met, gap, normal, place)
+        gap = np.einsum("qx,qx->q", point - at, normal)
+        gap = gap + removed_at_roll(slave_gear, rolls, self.face) + removed_at_roll(mate, met, self.face)
+        return Facing(met, gap, normal, point)
 
     def arms(self, facing: Facing) -> tuple[FloatArray, FloatArray]:
         """Return arms of the normals about gear 1 and gear 2 over the base radii (q,)."""
         gears = (self.pair.pinion, self.pair.wheel)
-        own, mate = gears[self.slave], gears[1 - self.slave]
-        center = np.array([own.base_radius + mate.base_radius, self.whole])
+        slave_gear, mate = gears[self.slave], gears[1 - self.slave]
+        center = np.array([slave_gear.base_radius + mate.base_radius, self.line_length])
         arm = facing.at - center
         about = np.abs(arm[:, 0] * facing.normal[:, 1] - arm[:, 1] * facing.normal[:, 0]) / mate.base_radius
         one = np.ones(len(about))
@@ -85,10 +85,13 @@ class FacingFlanks:
     def ends(self) -> tuple[float, float]:
         """Roll lengths of the slave from its form circle to its tip, or to what faces the mate's tip, m."""
         gears = (self.pair.pinion, self.pair.wheel)
-        own, mate = gears[self.slave], gears[1 - self.slave]
-        touching = self.roll if self.slave == 0 else self.whole - self.roll
+        slave_gear, mate = gears[self.slave], gears[1 - self.slave]
+        touching = self.roll if self.slave == 0 else self.line_length - self.roll
         reach = 0.5 * self.pair.base_pitch
-        low, high = max(own.form_roll_length, touching - reach), min(own.tip_roll_length, touching + reach)
+        low, high = (
+            max(slave_gear.form_roll_length, touching - reach),
+            min(slave_gear.tip_roll_length, touching + reach),
+        )
         if not low < high:
             return low, high
         rolls = np.linspace(low, high, _SEARCHED)
@@ -110,9 +113,9 @@ class FacingFlanks:
         gap = self.facing(rolls).gap
         minimum = int(np.argmin(gap))
         if 0 < minimum < len(rolls) - 1:
-            before, here, after = gap[minimum - 1 : minimum + 2]
-            step = 0.5 * (before - after) / (before - 2.0 * here + after)
-            return float(rolls[minimum] + step * (rolls[1] - rolls[0])), float(here)
+            before, least, after = gap[minimum - 1 : minimum + 2]
+            step = 0.5 * (before - after) / (before - 2.0 * least + after)
+            return float(rolls[minimum] + step * (rolls[1] - rolls[0])), float(least)
         return float(rolls[minimum]), float(gap[minimum])
 
 

@@ -53,12 +53,14 @@ def part_pairs(
     modulus, nu = material.youngs_modulus, material.poissons_ratio
     shear = modulus / (2.0 * (1.0 + nu))
     bulk = modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    found: dict[tuple[int, int], list[tuple[Part, Part, float]]] = {
+    by_components: dict[tuple[int, int], list[tuple[Part, Part, float]]] = {
         (i, k): [] for i in (X, Y, Z) for k in (X, Y, Z)
     }
     for i, j, k, n in product((X, Y, Z), repeat=4):
         value = bulk * (i == j) * (k == n) + shear * ((i == k) * (j == n) + (i == n) * (j == k))
         if value:
             for one, other in product(gradient[i, j], gradient[k, n]):
-                found[one.component, other.component].append((one, other, value * one.factor * other.factor))
-    return found
+                by_components[one.component, other.component].append(
+                    (one, other, value * one.factor * other.factor)
+                )
+    return by_components

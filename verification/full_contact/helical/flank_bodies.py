@@ -89,7 +89,7 @@ class MeshedSection:
     """Section of a gear with the strips of its loaded teeth; tooth 0 stands on +y."""
 
     section: Section
-    held: IntArray
+    bore_nodes: IntArray
     strips: dict[int, FlankStrip]
 
 
@@ -104,7 +104,7 @@ def meshed_section(
     wanted = {tooth: SizedStrip(low, profile.s_tip, at, sizes) for tooth in loaded}
     teeth = real_teeth(gear.teeth, max(TEETH, len(loaded) + 2))
     boundary = gear_boundary(gear, teeth, wanted, resolution)
-    outlines = {"gear": (boundary.toothed, boundary.held)}
+    outlines = {"gear": (boundary.toothed, boundary.seat)}
     (mesh,) = quadratic_meshes(
         outlines, gear.normal_module, resolution.inner_growth, QualityLimits(), SECONDS
     )
@@ -130,7 +130,7 @@ def section_compliance(meshed: MeshedSection, material: Material) -> dict[int, F
     section = meshed.section
     matrix = section_stiffness(section, material)
     count = len(section.points)
-    inner = np.setdiff1d(np.arange(count), meshed.held)
+    inner = np.setdiff1d(np.arange(count), meshed.bore_nodes)
     order = dissected(mesh_graph(section.triangles, count), inner)
     free = (3 * order[:, None] + np.arange(3)).ravel()
     factor = splu(
@@ -139,16 +139,16 @@ def section_compliance(meshed: MeshedSection, material: Material) -> dict[int, F
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
     )
-    place = np.full(3 * count, -1)
-    place[free] = np.arange(len(free))
-    found = {}
+    number = np.full(3 * count, -1)
+    number[free] = np.arange(len(free))
+    by_tooth = {}
     for tooth, strip in meshed.strips.items():
         loads = np.zeros((len(free), len(strip.nodes)))
-        rows = place[3 * strip.nodes[:, None] + np.arange(3)]
+        rows = number[3 * strip.nodes[:, None] + np.arange(3)]
         loads[rows, np.arange(len(strip.nodes))[:, None]] = _normals(section, strip.nodes)
-        moved = loads.T @ factor.solve(loads)
-        found[tooth] = 0.5 * (moved + moved.T)
-    return found
+        compliance = loads.T @ factor.solve(loads)
+        by_tooth[tooth] = 0.5 * (compliance + compliance.T)
+    return by_tooth
 
 
 @dataclass(frozen=True)
@@ -176,11 +176,14 @@ class FaceBody:
         quadratic, linear = self.meshed.strips[tooth].spread(s, self.spread)
         functions = self.layers.functions(z)
         hats = self.layers.count + 1
-        own = sp.hstack(
+        functions_of_tooth = sp.hstack(
             [_rowwise(quadratic, functions[:, :hats]), _rowwise(linear, functions[:, hats:])], format="csr"
         )
         start, width = self.starts[tooth], len(self.compliance)
-        return sp.csr_array((own.data, own.indices + start, own.indptr), shape=(len(s), width))
+        return sp.csr_array(
+            (functions_of_tooth.data, functions_of_tooth.indices + start, functions_of_tooth.indptr),
+            shape=(len(s), width),
+        )
 
 
 def _rowwise(one: sp.csr_array, other: FloatArray) -> sp.csr_array:
@@ -191,9 +194,9 @@ def _rowwise(one: sp.csr_array, other: FloatArray) -> sp.csr_array:
     times = repeated[rows]
     row = np.repeat(rows, times)
     within = np.arange(times.sum()) - np.repeat(np.cumsum(times) - times, times)
-    place = second.indptr[row] + within
-    columns = np.repeat(one.indices, times) * other.shape[1] + second.indices[place]
-    data = np.repeat(one.data, times) * second.data[place]
+    entry = second.indptr[row] + within
+    columns = np.repeat(one.indices, times) * other.shape[1] + second.indices[entry]
+    data = np.repeat(one.data, times) * second.data[entry]
     return sp.csr_array((data, (row, columns)), shape=(one.shape[0], one.shape[1] * other.shape[1]))
 
 
@@ -204,7 +207,7 @@ def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread:
     count = len(section.points)
     nodes = np.unique(np.concatenate([strip.nodes for strip in meshed.strips.values()]))
     graph = mesh_graph(section.triangles, count)
-    inner = np.setdiff1d(np.arange(count), np.concatenate([nodes, meshed.held]))
+    inner = np.setdiff1d(np.arange(count), np.concatenate([nodes, meshed.bore_nodes]))
     order = np.concatenate([dissected(graph, inner), nodes])
     rank = np.full(count, -1)
     rank[order] = np.arange(len(order))
@@ -215,12 +218,14 @@ def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread:
     complement = schur_complement(
         ColumnMatrix(lower, starts, sp.csr_array(graph[order][:, order])), len(nodes)
     )
-    kept = free[starts[len(inner)] :]
+    retained = free[starts[len(inner)] :]
     loads, first = _normal_loads(
-        meshed, stiffness.node[kept], stiffness.component[kept], stiffness.function[kept], layers
+        meshed, stiffness.node[retained], stiffness.component[retained], stiffness.function[retained], layers
     )
-    moved = loads @ cho_solve(cho_factor(complement, lower=True, overwrite_a=True), loads.T.toarray())
-    return FaceBody(meshed, layers, first, 0.5 * (moved + moved.T), len(free), spread)
+    flank_compliance = loads @ cho_solve(
+        cho_factor(complement, lower=True, overwrite_a=True), loads.T.toarray()
+    )
+    return FaceBody(meshed, layers, first, 0.5 * (flank_compliance + flank_compliance.T), len(free), spread)
 
 
 def _normal_loads(
@@ -233,16 +238,16 @@ def _normal_loads(
     rows, starts, start = [], {}, 0
     for tooth, strip in meshed.strips.items():
         starts[tooth] = start
-        for nodes, own in (
+        for nodes, of_nodes in (
             (strip.nodes, np.arange(layers.count + 1)),
             (strip.nodes[::2], np.arange(layers.count + 1, functions)),
         ):
             normals = _normals(meshed.section, nodes)
-            wanted = (nodes[:, None, None] * 3 + np.arange(3)) * functions + own[None, :, None]
-            place = sorter[np.searchsorted(code, wanted, sorter=sorter)]
-            size = len(nodes) * len(own)
+            wanted = (nodes[:, None, None] * 3 + np.arange(3)) * functions + of_nodes[None, :, None]
+            index = sorter[np.searchsorted(code, wanted, sorter=sorter)]
+            size = len(nodes) * len(of_nodes)
             values = np.broadcast_to(normals[:, None], wanted.shape)
-            entries = (values.ravel(), (np.repeat(np.arange(size), 3), place.ravel()))
+            entries = (values.ravel(), (np.repeat(np.arange(size), 3), index.ravel()))
             rows.append(sp.csr_array(entries, shape=(size, len(node))))
             start += size
     return sp.csr_array(sp.vstack(rows)), starts
@@ -267,11 +272,13 @@ class HelicalGear:
 
     def lacking(self, tooth: int, s: FloatArray, loads: FloatArray) -> FloatArray:
         """Return what loads (q, i) at places s (q,) of a section give way more, (i, i) m per N/m."""
-        own = self.fine.shapes(s)[0].T @ loads
+        fine = self.fine.shapes(s)[0].T @ loads
         coarse = self.body.meshed.strips[tooth].spread(s, self.body.spread)[0].T @ loads
-        near = np.flatnonzero(np.any(own != 0.0, axis=1))
+        near = np.flatnonzero(np.any(fine != 0.0, axis=1))
         local = self.fine_compliance[np.ix_(near, near)]
-        return np.asarray(own[near].T @ local @ own[near] - coarse.T @ self.coarse_compliance[tooth] @ coarse)
+        return np.asarray(
+            fine[near].T @ local @ fine[near] - coarse.T @ self.coarse_compliance[tooth] @ coarse
+        )
 
 
 @dataclass(frozen=True)

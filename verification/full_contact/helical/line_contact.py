@@ -72,15 +72,17 @@ def _loaded_sections(
         flanks = FacingFlanks(pair, roll - lead * face, face)
         if not flanks.closest[1] < FARTHEST:
             continue
-        own = hats(flanks, half, stations.across)
-        facing = flanks.facing(own.rolls)
-        weighted = own.values * own.weights[:, None]
+        hat_values = hats(flanks, half, stations.across)
+        facing = flanks.facing(hat_values.rolls)
+        weighted = hat_values.values * hat_values.weights[:, None]
         arms = flanks.arms(facing)
-        rolls = (own.rolls, facing.mate) if flanks.slave == 0 else (facing.mate, own.rolls)
+        rolls = (hat_values.rolls, facing.mate) if flanks.slave == 0 else (facing.mate, hat_values.rolls)
         gears = (pair.pinion, pair.wheel)
-        first, second = (0.5 * each**2 / gear.base_radius for each, gear in zip(rolls, gears, strict=True))
+        first, second = (
+            0.5 * roll_lengths**2 / gear.base_radius for roll_lengths, gear in zip(rolls, gears, strict=True)
+        )
         integrals = np.stack([facing.gap, np.ones(len(facing.gap)), arms[1], arms[0]]) @ weighted
-        integrals = np.vstack([integrals, own.cut * integrals[1]])
+        integrals = np.vstack([integrals, hat_values.cut * integrals[1]])
         tilt_arm = float(pair.tilt_arm(roll - lead * face, face))
         yield LoadedSection(number, tilt_arm, (first, second), weighted, integrals)
 
@@ -140,33 +142,37 @@ def line_contact(
         Tilt of the axes in the plane of action as growth of the gap over the face, m.
     """
     pairs = list(_pairs(pair, gears, position, across, along, half))
-    integrals = np.concatenate([each.integrals(misalignment / pair.face_width) for each in pairs], axis=1)
+    integrals = np.concatenate(
+        [teeth_pair.integrals(misalignment / pair.face_width) for teeth_pair in pairs], axis=1
+    )
     gap, weight, closing, lever, cut = integrals
-    kept = np.flatnonzero(weight > MIN_WEIGHT * weight.max())
-    place = np.full(len(weight), -1)
-    place[kept] = np.arange(len(kept))
-    compliance = np.zeros((len(kept), len(kept)))
+    wide = np.flatnonzero(weight > MIN_WEIGHT * weight.max())
+    index = np.full(len(weight), -1)
+    index[wide] = np.arange(len(wide))
+    compliance = np.zeros((len(wide), len(wide)))
     for number, gear in enumerate(gears):
-        blocks = [_face_loads(gear, each, number) for each in pairs]
-        loads = sp.csr_array(sp.vstack(blocks, format="csr"))[kept]
+        blocks = [_face_loads(gear, teeth_pair, number) for teeth_pair in pairs]
+        loads = sp.csr_array(sp.vstack(blocks, format="csr"))[wide]
         compliance += loads @ (loads @ gear.body.compliance).T
         start = 0
-        for each in pairs:
-            for hat, more in _lacking(gear, each, number):
-                rows = place[start + hat]
+        for teeth_pair in pairs:
+            for hat, more in _lacking(gear, teeth_pair, number):
+                rows = index[start + hat]
                 used = rows >= 0
                 compliance[np.ix_(rows[used], rows[used])] += more[np.ix_(used, used)]
-            start += each.stations.hats
+            start += teeth_pair.stations.hats
     system = ContactSystem(
-        gap[kept],
+        gap[wide],
         0.5 * (compliance + compliance.T),
-        closing[kept],
-        pair.pinion.base_radius * lever[kept],
-        weight[kept],
+        closing[wide],
+        pair.pinion.base_radius * lever[wide],
+        weight[wide],
     )
-    ahead = np.concatenate([np.full(each.stations.hats, each.teeth[1]) for each in pairs])
-    face = np.concatenate([np.tile(each.stations.face, each.stations.across) for each in pairs])
-    return LineContact(system, ahead[kept], face[kept], cut[kept] > 0.5 * weight[kept])
+    ahead = np.concatenate([np.full(teeth_pair.stations.hats, teeth_pair.teeth[1]) for teeth_pair in pairs])
+    face = np.concatenate(
+        [np.tile(teeth_pair.stations.face, teeth_pair.stations.across) for teeth_pair in pairs]
+    )
+    return LineContact(system, ahead[wide], face[wide], cut[wide] > 0.5 * weight[wide])
 
 
 def _pairs(
@@ -193,25 +199,25 @@ def _pairs(
         yield _Pair((AHEAD[0] * ahead, AHEAD[1] * ahead), stations, sections)
 
 
-def _face_loads(gear: HelicalGear, each: _Pair, number: int) -> sp.csr_array:
+def _face_loads(gear: HelicalGear, teeth_pair: _Pair, number: int) -> sp.csr_array:
     """Return the loads of all hats of a pair on the freedoms of a gear (i j, m)."""
-    z, dz, over = each.stations.quadrature
-    s = np.concatenate([one.s[number] for one in each.sections])
-    face = np.concatenate([np.full(len(one.weighted), z[one.number]) for one in each.sections])
+    z, dz, over = teeth_pair.stations.quadrature
+    s = np.concatenate([one.s[number] for one in teeth_pair.sections])
+    face = np.concatenate([np.full(len(one.weighted), z[one.number]) for one in teeth_pair.sections])
     rows = [
         dz[one.number] * (one.weighted[:, :, None] * over[one.number]).reshape(len(one.weighted), -1)
-        for one in each.sections
+        for one in teeth_pair.sections
     ]
-    shapes = gear.body.shapes(each.teeth[number], s, face)
+    shapes = gear.body.shapes(teeth_pair.teeth[number], s, face)
     return sp.csr_array(sp.csr_array(np.concatenate(rows)).T @ shapes)
 
 
-def _lacking(gear: HelicalGear, each: _Pair, number: int) -> Iterator[tuple[IntArray, FloatArray]]:
+def _lacking(gear: HelicalGear, teeth_pair: _Pair, number: int) -> Iterator[tuple[IntArray, FloatArray]]:
     """Give hats of a pair, and what these give way more in a section than in the body over the face."""
-    _, dz, over = each.stations.quadrature
-    for one in each.sections:
+    _, dz, over = teeth_pair.stations.quadrature
+    for one in teeth_pair.sections:
         between = one.number // 3
         along = over[one.number, between : between + 2]
-        hat = np.arange(each.stations.across) * len(each.stations.face) + between
-        local = gear.lacking(each.teeth[number], one.s[number], one.weighted)
+        hat = np.arange(teeth_pair.stations.across) * len(teeth_pair.stations.face) + between
+        local = gear.lacking(teeth_pair.teeth[number], one.s[number], one.weighted)
         yield np.concatenate([hat, hat + 1]), dz[one.number] * np.kron(np.outer(along, along), local)

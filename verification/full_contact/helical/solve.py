@@ -197,14 +197,14 @@ def solve_full_contact_helical(
     usual, clock = mesh or HelicalMesh(), StageClock()
     with clock.stage("bodies"):
         meshes = [usual, usual.coarser] if estimate_error else [usual]
-        bodies = [_condensed(pair, max(torques), each) for each in meshes]
+        bodies = [_condensed(pair, max(torques), sizes) for sizes in meshes]
     solved = []
     for count, position in enumerate(positions):
         if report is not None:
             report(count / len(positions))
         with clock.stage(f"position {count}"):
-            found = [_solved_position(body, position, torques, misalignments) for body in bodies]
-        one = found[0].with_error(found[1]) if estimate_error else found[0]
+            by_body = [_solved_position(body, position, torques, misalignments) for body in bodies]
+        one = by_body[0].with_error(by_body[1]) if estimate_error else by_body[0]
         seconds = clock.seconds[f"position {count}"] + clock.seconds["bodies"] / len(positions)
         solved.append(replace(one, cpu_seconds=seconds))
     return tables_of(positions, torques, solved)

@@ -102,8 +102,8 @@ def twisted_stiffness(section: Section, layers: Layers, material: Material) -> E
             row.append(layered_products(terms, shapes, (hats, bubbles)))
         rows.append(sp.hstack(row))
     numbering = ((np.arange(count), hats), (corners, bubbles))
-    node = np.concatenate([np.repeat(nodes, len(own)) for nodes, own in numbering])
-    function = np.concatenate([np.tile(own, len(nodes)) for nodes, own in numbering])
+    node = np.concatenate([np.repeat(nodes, len(functions)) for nodes, functions in numbering])
+    function = np.concatenate([np.tile(functions, len(nodes)) for nodes, functions in numbering])
     matrix = sp.csc_array(sp.vstack(rows, format="csc"))
     component = np.repeat([X, Y, Z], len(node))
     return ExtrudedStiffness(matrix, np.tile(node, 3), component, np.tile(function, 3), layers.count)
@@ -126,4 +126,4 @@ def section_stiffness(section: Section, material: Material) -> sp.csc_array:
 
 
 def _names(pairs: dict[tuple[int, int], list[tuple[Part, Part, float]]]) -> set[tuple[str, str]]:
-    return {(one.plane, other.plane) for each in pairs.values() for one, other, _ in each}
+    return {(one.plane, other.plane) for parts in pairs.values() for one, other, _ in parts}

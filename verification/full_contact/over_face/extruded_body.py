@@ -47,7 +47,7 @@ class ExtrudedBody:
     """`even`, `odd`: Displacement of half the face per force, m/N, where the other half is moved alike or
     oppositely. Shape (2 k f, 2 k f) each.
     """
-    held_moment: FloatArray
+    bore_moment: FloatArray
     """Moment about the center of the reactions at the held circle of half the face by even forces, m. Shape
     (2 k f,).
     """
@@ -66,7 +66,7 @@ class ExtrudedBody:
         """Nodes of its strips, undeformed, (k, 2) m."""
         return self.body.points[self.nodes]
 
-    def moved(self, forces: sp.csr_array) -> FloatArray:
+    def displacement(self, forces: sp.csr_array) -> FloatArray:
         """Return the displacements (2 2 k f, h) by forces (h, 2 2 k f).
 
         Of either, first those of the half of positive face position, then of the other.
@@ -93,20 +93,20 @@ def _half(
 ) -> tuple[FloatArray, FloatArray]:
     """Return compliance and held moment of one half problem; the turn of the held circle is kept last."""
     graph = mesh_graph(body.triangles, len(body.points))
-    inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
+    inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.bore_nodes]))
     order = np.concatenate([dissected(graph, inner), nodes])
     free, starts = _columns(stiffness, order, len(body.points), odd=odd)
     lower = _bordered(stiffness.matrix, free, _turned_circle(stiffness, body))
-    beside = sp.csr_array((graph[body.held].sum(axis=0)[order] > 0.0).astype(float)[None])
-    own = sp.hstack([graph[order][:, order], beside.T])
-    circle = sp.hstack([beside, sp.csr_array(np.ones((1, 1)))])
-    joined = sp.csr_array(sp.vstack([own, circle], format="csr"))
+    seat_neighbors = sp.csr_array((graph[body.bore_nodes].sum(axis=0)[order] > 0.0).astype(float)[None])
+    bordered = sp.hstack([graph[order][:, order], seat_neighbors.T])
+    circle = sp.hstack([seat_neighbors, sp.csr_array(np.ones((1, 1)))])
+    joined = sp.csr_array(sp.vstack([bordered, circle], format="csr"))
     matrix = ColumnMatrix(lower, np.append(starts, starts[-1] + 1), joined)
     complement = schur_complement(matrix, len(nodes) + 1)
-    kept = free[starts[len(inner)] :]
-    in_plane = stiffness.component[kept] != Z
-    inverse = cho_solve(cho_factor(complement[:-1, :-1]), np.eye(len(kept)))
-    expansion = _expansion(stiffness, kept[in_plane], body, nodes)
+    retained = free[starts[len(inner)] :]
+    in_plane = stiffness.component[retained] != Z
+    inverse = cho_solve(cho_factor(complement[:-1, :-1]), np.eye(len(retained)))
+    expansion = _expansion(stiffness, retained[in_plane], body, nodes)
     compliance = expansion @ (expansion @ inverse[np.ix_(in_plane, in_plane)]).T
     moment = expansion @ (inverse @ complement[-1, :-1])[in_plane]
     return 0.5 * (compliance + compliance.T), moment
@@ -129,7 +129,7 @@ def _turned_circle(stiffness: ExtrudedStiffness, body: PlacedBody) -> FloatArray
     arms = body.points[stiffness.node] - body.center
     rates = np.select([stiffness.component == X, stiffness.component == Y], [-arms[:, 1], arms[:, 0]])
     hats = stiffness.function <= stiffness.layers
-    return np.where(hats & np.isin(stiffness.node, body.held), rates, 0.0)
+    return np.where(hats & np.isin(stiffness.node, body.bore_nodes), rates, 0.0)
 
 
 def _bordered(matrix: sp.csc_array, free: IntArray, turned: FloatArray) -> sp.csc_array:
@@ -149,24 +149,28 @@ def _bordered(matrix: sp.csc_array, free: IntArray, turned: FloatArray) -> sp.cs
 
 
 def _expansion(
-    stiffness: ExtrudedStiffness, kept: IntArray, body: PlacedBody, nodes: IntArray
+    stiffness: ExtrudedStiffness, retained: IntArray, body: PlacedBody, nodes: IntArray
 ) -> sp.csr_array:
     """Return all functions of the strips' nodes (2 k f,) from the unknowns of the mesh there."""
     functions = 2 * stiffness.layers + 1
-    node, component, function = stiffness.node[kept], stiffness.component[kept], stiffness.function[kept]
+    node, component, function = (
+        stiffness.node[retained],
+        stiffness.component[retained],
+        stiffness.function[retained],
+    )
     bubble = function > stiffness.layers
     to = [node]
-    share = [np.ones(len(kept))]
+    share = [np.ones(len(retained))]
     for strip in body.strips.values():
         corners, middles = strip.nodes[::2], strip.nodes[1::2]
         for ends in (corners[:-1], corners[1:]):
-            beside = np.full(len(body.points), -1)
-            beside[ends] = middles
-            to.append(np.where(bubble, beside[node], -1))
-            share.append(np.full(len(kept), 0.5))
+            middle_of = np.full(len(body.points), -1)
+            middle_of[ends] = middles
+            to.append(np.where(bubble, middle_of[node], -1))
+            share.append(np.full(len(retained), 0.5))
     target = np.concatenate(to)
     rows = (2 * np.searchsorted(nodes, target) + np.tile(component, len(to))) * functions
     rows = rows + np.tile(function, len(to))
-    columns, used = np.tile(np.arange(len(kept)), len(to)), target >= 0
+    columns, used = np.tile(np.arange(len(retained)), len(to)), target >= 0
     entries = np.concatenate(share)[used], (rows[used], columns[used])
-    return sp.csr_array(sp.coo_array(entries, shape=(2 * len(nodes) * functions, len(kept))))
+    return sp.csr_array(sp.coo_array(entries, shape=(2 * len(nodes) * functions, len(retained))))

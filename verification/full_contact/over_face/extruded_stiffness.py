@@ -76,13 +76,13 @@ def layered_products(
                 sp.hstack(
                     [
                         sum(
-                            sp.kron(left.T @ plane @ right, z[np.ix_(own, other)], format="csr")
+                            sp.kron(left.T @ plane @ right, z[np.ix_(layer, other)], format="csr")
                             for plane, z in terms
                         )
                         for right, other in zip(shapes, over, strict=True)
                     ]
                 )
-                for left, own in zip(shapes, over, strict=True)
+                for left, layer in zip(shapes, over, strict=True)
             ],
             format="csr",
         )
@@ -117,8 +117,8 @@ def _terms(
         for b in "xyz":
             if "z" not in (a, b):
                 both = bulk * plane[a + b] + shear * plane[b + a]
-                own = [(shear * plane["1"], steep)] if a == b else []
-                row.append([(both + shear * gradients if a == b else both, mass), *own])
+                shear_term = [(shear * plane["1"], steep)] if a == b else []
+                row.append([(both + shear * gradients if a == b else both, mass), *shear_term])
             elif a == b:
                 row.append([((bulk + 2.0 * shear) * plane["1"], steep), (shear * gradients, mass)])
             elif b == "z":
@@ -138,10 +138,10 @@ def _integrals(nodes: FloatArray) -> dict[str, FloatArray]:
         x, y = np.moveaxis(np.linalg.solve(jacobian, np.broadcast_to(slope, (len(nodes), 2, 6))), 1, 0)
         area = (weight * determinant)[:, None, None]
         integrals["1"] += area * np.outer(value, value)
-        for name, own in (("x", x), ("y", y)):
-            integrals[name] += area * own[:, :, None] * value
+        for name, left in (("x", x), ("y", y)):
+            integrals[name] += area * left[:, :, None] * value
             for other, right in (("x", x), ("y", y)):
-                integrals[name + other] += area * own[:, :, None] * right[:, None, :]
+                integrals[name + other] += area * left[:, :, None] * right[:, None, :]
     return integrals
 
 

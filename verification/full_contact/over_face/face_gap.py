@@ -49,7 +49,7 @@ def face_gap(section: Section, layers: Layers) -> FaceGap:
         products = (functions[:, :, None] * weighted[:, None]).reshape(len(z), -1)
         first = np.array([gap.forces[0] for gap, _ in sections])
         second = np.array([turned_back(gap.forces[1], rotation(turn)) for gap, turn in sections])
-        forces.append([_over_functions(own, products, functions.shape[1]) for own in (first, second)])
+        forces.append([_over_functions(of_gear, products, functions.shape[1]) for of_gear in (first, second)])
     gap, weight, closing = (scalars[0] + scalars[1]).reshape(3, -1)
     on_first, on_second = (np.stack(pair) for pair in zip(*forces, strict=True))
     return FaceGap(gap, weight, closing, (on_first, on_second))

@@ -71,7 +71,7 @@ class FaceGeometry:
             reactions, applied = [], []
             for body, forces in zip(self.bodies, contact.forces, strict=True):
                 on_halves = (forces @ pressure).reshape(2, -1).sum(axis=0)
-                reactions.append(float(body.held_moment @ on_halves))
+                reactions.append(float(body.bore_moment @ on_halves))
                 applied.append(float(body.arms @ on_halves))
             breach = max(abs(reactions[0] / torque + 1.0), abs(reactions[1] / applied[1] + 1.0))
             checks.append((breach, abs(applied[1]) / torque))
@@ -87,19 +87,19 @@ class FaceGeometry:
     def _gathered(self, gaps: Sequence[FaceGap], at: Configuration) -> LinearizedContact:
         """Join the pairs, without hats that hardly face their mate."""
         full = [self._full_weights(site) for site in self.sites]
-        kept = np.concatenate(
+        facing_hats = np.concatenate(
             [gap.weight > MIN_FACING * maximum for gap, maximum in zip(gaps, full, strict=True)]
         )
-        forces = (self._forces(gaps, 0)[:, kept], self._forces(gaps, 1)[:, kept])
-        rows = [sp.csr_array(own.T) for own in forces]  # a hat loads few nodes and functions
-        moved = (self.bodies[0].moved(rows[0]), self.bodies[1].moved(rows[1]))
-        compliance = rows[0] @ moved[0] + rows[1] @ moved[1]
+        forces = (self._forces(gaps, 0)[:, facing_hats], self._forces(gaps, 1)[:, facing_hats])
+        rows = [sp.csr_array(force.T) for force in forces]  # a hat loads few nodes and functions
+        displacement = (self.bodies[0].displacement(rows[0]), self.bodies[1].displacement(rows[1]))
+        compliance = rows[0] @ displacement[0] + rows[1] @ displacement[1]
         gap, closing, weight = (
-            np.concatenate([getattr(gap, name) for gap in gaps])[kept]
+            np.concatenate([getattr(gap, name) for gap in gaps])[facing_hats]
             for name in ("gap", "closing", "weight")
         )
-        for own, deformed in zip(forces, at.displacements, strict=True):
-            gap -= own.T @ deformed
+        for force, deformed in zip(forces, at.displacements, strict=True):
+            gap -= force.T @ deformed
         halves = forces[0].reshape(2, -1, forces[0].shape[1]).sum(axis=0)
         system = ContactSystem(
             gap + closing * at.lag,
@@ -108,7 +108,7 @@ class FaceGeometry:
             self.bodies[0].arms @ halves,
             weight,
         )
-        site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[kept]
+        site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[facing_hats]
         over = 2 * len(self.bodies[0].layers.planes) - 1
         line = np.concatenate(
             [number * over + np.arange(len(gap.gap)) % over for number, gap in enumerate(gaps)]
@@ -116,18 +116,18 @@ class FaceGeometry:
         ends = np.concatenate(
             [np.repeat(at_end(self.pair, site, self.bodies[site.slave].body), over) for site in self.sites]
         )
-        return LinearizedContact(system, forces, moved, site, line[kept], ends[kept])
+        return LinearizedContact(system, forces, displacement, site, line[facing_hats], ends[facing_hats])
 
     def _forces(self, gaps: Sequence[FaceGap], number: int) -> FloatArray:
         """Return the forces (2 2 k f, h) of all pairs on one gear."""
         body = self.bodies[number]
         blocks = []
         for site, gap in zip(self.sites, gaps, strict=True):
-            own = gap.forces[number]
+            force = gap.forces[number]
             columns = body.columns[site.ahead]
-            block = np.zeros((2, len(body.nodes), len(body.even) // len(body.nodes), own.shape[-1]))
-            block[:, columns] = own.reshape(2, len(columns), -1, own.shape[-1])
-            blocks.append(block.reshape(-1, own.shape[-1]))
+            block = np.zeros((2, len(body.nodes), len(body.even) // len(body.nodes), force.shape[-1]))
+            block[:, columns] = force.reshape(2, len(columns), -1, force.shape[-1])
+            blocks.append(block.reshape(-1, force.shape[-1]))
         return np.concatenate(blocks, axis=1)
 
     def _full_weights(self, site: ContactSite) -> FloatArray:
@@ -164,9 +164,9 @@ class _Sections:
         opened = geometry.misalignment * z / geometry.pair.face_width
         angle = rate * (self.at.lag - opened)
         turn, center = rotation(angle), geometry.bodies[1].body.center
-        rigid, moved = zip(*(self._strip(number, site.ahead, z) for number in range(2)), strict=True)
+        rigid, displacement = zip(*(self._strip(number, site.ahead, z) for number in range(2)), strict=True)
         rigid = rigid[0], (rigid[1] - center) @ turn.T + center
-        deformed = rigid[0] + moved[0], rigid[1] + moved[1] @ turn.T
+        deformed = rigid[0] + displacement[0], rigid[1] + displacement[1] @ turn.T
 
         def lag(points: FloatArray) -> FloatArray:
             return np.asarray(rate * (points - center)[:, ::-1] * [-1.0, 1.0])

@@ -41,16 +41,16 @@ class ColumnMatrix:
         return np.concatenate([np.arange(self.starts[n], self.starts[n + 1]) for n in nodes.tolist()])
 
 
-def schur_complement(matrix: ColumnMatrix, kept: int) -> FloatArray:
-    """Eliminate all nodes but the last `kept`; raises `SolveError`: the matrix is not positive definite."""
+def schur_complement(matrix: ColumnMatrix, border: int) -> FloatArray:
+    """Eliminate all nodes but the last `border`; raises `SolveError`: the matrix is not positive definite."""
     left: dict[int, list[tuple[IntArray, FloatArray]]] = defaultdict(list)
     row = np.zeros(matrix.starts[-1], dtype=np.int64)
     count = len(matrix.starts) - 1
-    fronts = _fronts(matrix.graph, count - kept)
+    fronts = _fronts(matrix.graph, count - border)
     owner = np.full(count, len(fronts))
     for number, front in enumerate(fronts):
         owner[front.nodes] = number
-    fronts.append(_Front(np.arange(count - kept, count), np.empty(0, dtype=np.int64)))
+    fronts.append(_Front(np.arange(count - border, count), np.empty(0, dtype=np.int64)))
     for number, front in enumerate(fronts):
         dense, rows, pivots = _assembled(matrix, front, left.pop(number, []), row)
         if number == len(fronts) - 1:
@@ -65,17 +65,17 @@ def _assembled(
     matrix: ColumnMatrix, front: _Front, children: list[tuple[IntArray, FloatArray]], row: IntArray
 ) -> tuple[FloatArray, IntArray, int]:
     """Return the lower triangle of a front, its unknowns, and how many of them are eliminated."""
-    own = matrix.unknowns(front.nodes)
-    rows = np.concatenate([own, matrix.unknowns(front.beyond)]) if len(front.beyond) else own
+    unknowns = matrix.unknowns(front.nodes)
+    rows = np.concatenate([unknowns, matrix.unknowns(front.beyond)]) if len(front.beyond) else unknowns
     row[rows] = np.arange(len(rows))
     dense = np.zeros((len(rows), len(rows)), order="F")
-    columns = matrix.lower[:, own]
-    column = np.repeat(np.arange(len(own)), np.diff(columns.indptr))
+    columns = matrix.lower[:, unknowns]
+    column = np.repeat(np.arange(len(unknowns)), np.diff(columns.indptr))
     dense[row[columns.indices], column] = columns.data
     for theirs, block in children:
         at = row[theirs]
         dense.T[np.ix_(at, at)] += block.T  # both run along columns
-    return dense, rows, len(own)
+    return dense, rows, len(unknowns)
 
 
 def _eliminated(dense: FloatArray, pivots: int) -> FloatArray:

@@ -51,11 +51,13 @@ class _Walk:
             name: part for name, part in entries if isinstance(part, h5py.Dataset) and _is_vector(part)
         }
         for name, part in vectors.items():
-            whole = "/".join((*path, name))
-            if name.lower() in (*TIMES, *RATES) or part.size < 2 or not wanted(whole, self.names):
+            path_name = "/".join((*path, name))
+            if name.lower() in (*TIMES, *RATES) or part.size < 2 or not wanted(path_name, self.names):
                 continue
-            self.budget.take(_checked_size(whole, part))
-            yield RawChannel(whole, _numbers(part), _abscissa(whole, part, vectors, group), _unit(name, part))
+            self.budget.take(_checked_size(path_name, part))
+            yield RawChannel(
+                path_name, _numbers(part), _abscissa(path_name, part, vectors, group), _unit(name, part)
+            )
         for name, part in entries:
             if isinstance(part, h5py.Group) and name != "#refs#":
                 if depth >= _DEPTH:
@@ -99,8 +101,8 @@ def _numbers(part: Any) -> np.ndarray:
 
 
 def _unit(name: str, part: Any) -> str:
-    stated = next((_text(part, key) for key in _UNIT_ATTRIBUTES if _text(part, key)), "")
-    return stated or unit_of_name(name)
+    unit = next((_text(part, key) for key in _UNIT_ATTRIBUTES if _text(part, key)), "")
+    return unit or unit_of_name(name)
 
 
 def _text(part: Any, key: str) -> str:
@@ -118,9 +120,12 @@ def _abscissa(name: str, part: Any, vectors: dict[str, Any], group: Any) -> Any:
     if time is not None and time.size == part.size:
         _checked_size("time", time)
         return _numbers(time)
-    stated = (_rate(owner, key) for owner in (part, group, group.file) for key in RATES)
-    beside = (float(lower[key][()].flat[0]) for key in RATES if key in lower and lower[key].size == 1)
-    rate = next((value for value in (*stated, *beside) if value and np.isfinite(value) and value > 0.0), None)
+    in_attributes = (_rate(owner, key) for owner in (part, group, group.file) for key in RATES)
+    in_vectors = (float(lower[key][()].flat[0]) for key in RATES if key in lower and lower[key].size == 1)
+    rate = next(
+        (value for value in (*in_attributes, *in_vectors) if value and np.isfinite(value) and value > 0.0),
+        None,
+    )
     if rate is None:
         raise UnusableFile("a file with a time for each sample, or a sample rate above 0", _REMEDY, name)
     return 0.0, 1.0 / rate

@@ -73,7 +73,9 @@ class AblateFigures(Figures):
         relative_mean_change: list[float] | None = None
         relative_peak_to_peak_change: list[float] | None = None
 
-    of: Annotated[Literal["case", "scene"], Source(lambda own: "scene" if hasattr(own, "mesh") else "case")]
+    of: Annotated[
+        Literal["case", "scene"], Source(lambda study: "scene" if hasattr(study, "mesh") else "case")
+    ]
     nominal: Toggled
     effects: list[EffectFigures]
     left_out: dict[str, str]

@@ -38,7 +38,7 @@ from lineofaction.gearbox.studies.computation import Computation, Means, record_
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.excitations import (
     complaint_at_loads,
-    with_facts_of_scene,
+    with_scene_metadata,
 )
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.modes.run import modes_cost
@@ -157,9 +157,9 @@ class _ComplaintStudy(
         means.report("modes", 1.0)
         response = _response(system, complaint, speed)
         forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
-        facts = modes.facts | {"parting": _parting(response)}
-        answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), facts)
-        return with_facts_of_scene(answer, subject)
+        metadata = modes.facts | {"parting": _parting(response)}
+        answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), metadata)
+        return with_scene_metadata(answer, subject)
 
     def figures(self, result: AnsweredComplaint) -> Json:
         complaint = result.complaint
@@ -172,9 +172,9 @@ class _ComplaintStudy(
             tolerance_percent=100.0 * complaint.tolerance,
             torque=complaint.torques,
             parting_percent=100.0 * result.facts.get("parting", 0.0),
-            passing=[(force, _figures_of(each, complaint)) for each, force in within],
+            passing=[(force, _figures_of(line, complaint)) for line, force in within],
             nearest=[
-                (OrderForce("", np.nan), _figures_of(each, complaint)) for each in complaint.passing[:5]
+                (OrderForce("", np.nan), _figures_of(line, complaint)) for line in complaint.passing[:5]
             ],
             modes=[(mode, {"distance_percent": 100.0 * mode.distance}) for mode in result.modes],
         )
@@ -184,19 +184,19 @@ def _of_pair(case: Case, means: Means) -> AnsweredComplaint:
     began, complaint = cpu_seconds(), complaint_of_case(case)
     means.report("modes", 1.0)
     forces = tuple(OrderForce("", np.nan) for _ in complaint.within)
-    facts = PAIR_ALONE | {"seconds": {"complaint": cpu_seconds() - began}}
-    return AnsweredComplaint(complaint, forces, (), facts)
+    metadata = PAIR_ALONE | {"seconds": {"complaint": cpu_seconds() - began}}
+    return AnsweredComplaint(complaint, forces, (), metadata)
 
 
-def _figures_of(each: Passing, complaint: Complaint) -> Json:
-    of = each.excitation
+def _figures_of(line: Passing, complaint: Complaint) -> Json:
+    of = line.excitation
     named = {"kind": of.kind, "name": of.name, "part": of.part}
     return named | {
-        "harmonic": each.harmonic,
-        "order": each.order,
-        "frequency": complaint.hertz(each.order),
-        "distance_percent": 100.0 * each.distance,
-        "excitation": complaint.level(each),
+        "harmonic": line.harmonic,
+        "order": line.order,
+        "frequency": complaint.hertz(line.order),
+        "distance_percent": 100.0 * line.distance,
+        "excitation": complaint.level(line),
     }
 
 
@@ -232,7 +232,7 @@ def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, .
 
 def _orders(complaint: Complaint) -> list[float]:
     """Return the orders that pass, as results count them."""
-    return [each.order * complaint.per_pitch for each in complaint.within]
+    return [line.order * complaint.per_pitch for line in complaint.within]
 
 
 def _highest_order(complaint: Complaint) -> int:

@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.loads import ACTING, Vector
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, refuse
-from lineofaction.gearbox.schemas.rules import own_or_factor, stated
+from lineofaction.gearbox.schemas.rules import all_of, values_or_factor
 
 MAX_CASES = 64
 MAX_FORCES = 256
@@ -23,7 +23,7 @@ RatingLife = Literal["limited", "unlimited", "none: no capacity"]
 class CaseForceInput(BoundaryModel):
     """A force of the scene under a load case: its own force and moment, or a factor on the scene's."""
 
-    model_config = ConfigDict(json_schema_extra=stated(own_or_factor(*ACTING)))
+    model_config = ConfigDict(json_schema_extra=all_of(values_or_factor(*ACTING)))
 
     name: Name = Field(description="Name of the force in the scene", examples=["belt"])
     force_n: Vector | None = Field(

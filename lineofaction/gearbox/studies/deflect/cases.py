@@ -13,10 +13,10 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput
 
 
-def check_cases(scene: SceneInput, stated: Sequence[LoadCaseInput]) -> tuple[LoadCase, ...]:
+def check_cases(scene: SceneInput, inputs: Sequence[LoadCaseInput]) -> tuple[LoadCase, ...]:
     """Return load cases; raises `BadInput` where they cannot be, or need what the scene lacks."""
     with named(""):
-        cases = load_cases(stated)
+        cases = load_cases(inputs)
         check_forces(cases, [force.name for force in scene.forces])
     for index, case in enumerate(cases):
         if case.torque is not None and not scene.loads:
@@ -29,10 +29,10 @@ def check_cases(scene: SceneInput, stated: Sequence[LoadCaseInput]) -> tuple[Loa
     return cases
 
 
-def load_cases(stated: Sequence[LoadCaseInput]) -> tuple[LoadCase, ...]:
+def load_cases(inputs: Sequence[LoadCaseInput]) -> tuple[LoadCase, ...]:
     """Return load cases in SI."""
     cases = []
-    for index, case in enumerate(stated):
+    for index, case in enumerate(inputs):
         with inside(f"load_cases[{index}]"):
             forces = []
             for number, force in enumerate(case.forces):

@@ -39,28 +39,28 @@ def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
         for loads in zip(*(case.bearings for case in cases), strict=True)
     ]
     of_all = ROUNDING_OF_ALL * max(largest, default=0.0)
-    minimum = [max(ROUNDING * own, of_all) for own in largest]
+    minimum = [max(ROUNDING * force, of_all) for force in largest]
     loads = [load for case in cases for load in case.bearings]
     displacements = (part[:3] for load in loads for part in (load.elastic, load.clearance, load.seat))
-    moved = max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
+    largest_displacement = max((float(np.max(np.abs(part))) for part in displacements), default=0.0)
     return [
         [
-            _without_rounding(load, each, ROUNDING_OF_ALL * moved)
-            for load, each in zip(case.bearings, minimum, strict=True)
+            _without_rounding(load, limit, ROUNDING_OF_ALL * largest_displacement)
+            for load, limit in zip(case.bearings, minimum, strict=True)
         ]
         for case in cases
     ]
 
 
-def _without_rounding(load: BearingLoad, minimum: float, moved: float) -> BearingLoad:
-    """Return a load whose forces below `minimum`, N, and displacements below `moved`, m and rad, are zero."""
+def _without_rounding(load: BearingLoad, minimum: float, floor: float) -> BearingLoad:
+    """Return a load whose forces below `minimum`, N, and displacements below `floor`, m and rad, are zero."""
     return replace(
         load,
         force=_at_least(load.force, minimum),
         largest_radial=load.largest_radial if load.largest_radial >= minimum else 0.0,
-        elastic=_at_least(load.elastic, moved),
-        clearance=_at_least(load.clearance, moved),
-        seat=_at_least(load.seat, moved),
+        elastic=_at_least(load.elastic, floor),
+        clearance=_at_least(load.clearance, floor),
+        seat=_at_least(load.seat, floor),
     )
 
 
@@ -100,7 +100,7 @@ def _life(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
 
 def figures_by_case(result: GearboxDeflection) -> Json:
     """Return the figures by load case, by mesh, by bearing; lines of shafts and patterns are in the file."""
-    flanks = {(own.case, own.mesh): own for own in result.flanks}
+    flanks = {(part.case, part.mesh): part for part in result.flanks}
     cases = result.deflection.cases
     by_case = _loads_by_case(cases)
     weights = _shares(result)
@@ -118,8 +118,8 @@ def mesh_names(result: GearboxDeflection) -> list[str]:
 
 def _shares(result: GearboxDeflection) -> list[float]:
     """Return the shares of the load cases, which sum to 1."""
-    own = [case.share for case in result.deflection.cases]
-    return [share / sum(own) for share in own]
+    shares = [case.share for case in result.deflection.cases]
+    return [share / sum(shares) for share in shares]
 
 
 def _case(
@@ -135,15 +135,15 @@ def _case(
 def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     """Return the means of a mesh over the load cases by their shares, and its worst case."""
     weights, cases = _shares(result), result.deflection.cases
-    own = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
-    worst = int(np.argmax([abs(mesh.misalignment) for mesh in own]))
+    alignments = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
+    worst = int(np.argmax([abs(mesh.misalignment) for mesh in alignments]))
     flanks = [part for part in result.flanks if part.mesh == name]
     ripple = [part.peak_to_peak / UM for part in flanks]
     factors = [part.face_load_factor for part in flanks if math.isfinite(part.face_load_factor)]
     return {
         "name": name,
-        "mean_misalignment_um": float(np.dot(weights, [mesh.misalignment for mesh in own])) / UM,
-        "largest_misalignment_um": own[worst].misalignment / UM,
+        "mean_misalignment_um": float(np.dot(weights, [mesh.misalignment for mesh in alignments])) / UM,
+        "largest_misalignment_um": alignments[worst].misalignment / UM,
         "largest_in": cases[worst].name,
         "mean_peak_to_peak_um": float(np.dot(weights, ripple)) if len(ripple) == len(weights) else None,
         "largest_k_h_beta": max(factors, default=None),
@@ -176,8 +176,8 @@ def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, fl
     torque = {flanks.case: flanks.torque for flanks in result.flanks if flanks.mesh == mesh}
     points = []
     for case in result.deflection.cases:
-        own = next(part for part in case.meshes if part.name == mesh)
-        points.append((case.direction == COAST, torque[case.name], case.share, own.misalignment))
+        alignment = next(part for part in case.meshes if part.name == mesh)
+        points.append((case.direction == COAST, torque[case.name], case.share, alignment.misalignment))
     driving = [point[1:] for point in points if not point[0]]
     return driving or [point[1:] for point in points]
 

@@ -104,7 +104,11 @@ class DividedTables:
     def complete(self, knots: Mapping[str, Sequence[float]]) -> None:
         """Compute those at misalignments by mesh, m, that are not there."""
         first = {id(contact): name for name, contact in reversed(list(self.contacts.items()))}
-        wanted = ((first[id(self.contacts[name])], knot) for name, own in knots.items() for knot in own)
+        wanted = (
+            (first[id(self.contacts[name])], knot)
+            for name, misalignments in knots.items()
+            for knot in misalignments
+        )
         new = [at for at in dict.fromkeys(wanted) if at[1] not in self.contacts[at[0]].tables]
         began = spent(self.workers)
         tables = divided(self.workers, _table_at, self.contacts, new, self.seconds * len(new))
@@ -121,8 +125,8 @@ def _table_at(contacts: Mapping[str, MeshContact], at: tuple[str, float]) -> Ste
 
 def _distinct(torques: Sequence[float]) -> list[float]:
     """Return torques in order, those that are alike once."""
-    torques_apart: list[float] = []
+    distinct: list[float] = []
     for torque in sorted(torques):
-        if not torques_apart or torque > torques_apart[-1] * (1.0 + ALIKE):
-            torques_apart.append(torque)
-    return torques_apart
+        if not distinct or torque > distinct[-1] * (1.0 + ALIKE):
+            distinct.append(torque)
+    return distinct

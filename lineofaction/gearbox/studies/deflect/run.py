@@ -54,8 +54,8 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
             with boundary_errors():
-                own = predicted = predicted_designs(CASES.of(case).checked, cache)
-                if not own.across_face and case.accuracy.model not in PLANE:
+                design = predicted = predicted_designs(CASES.of(case).checked, cache)
+                if not design.across_face and case.accuracy.model not in PLANE:
                     predicted = predicted_designs(across_face(CASES.of(case)).checked, cache)
                     gears = Work("gears", predicted.bodies)  # otherwise those of its table
                     cost += StudyCost((gears,), predicted.bytes)
@@ -113,8 +113,8 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
 
 def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
     lines = case.shafts
-    found = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
-    name = f"{case.name}, {engineering(case.torque, 4)} N m{found}"
+    state = "" if case.status == "converged" else f", {case.status.replace('_', ' ')}"
+    name = f"{case.name}, {engineering(case.torque, 4)} N m{state}"
 
     def made() -> UnitMotion:
         return UnitMotion(shafts, lines.shaft, lines.position, lines.motion.astype(complex), oscillates=False)
@@ -124,8 +124,8 @@ def _offered(shafts: tuple[str, ...], case: CaseDeflection) -> OfferedMotion:
 
 def scene_of(inputs: SceneInput) -> Json:
     """Return a scene as it is kept with its deflection: without the cases of its meshes."""
-    kept: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
-    return kept
+    table: Json = inputs.model_dump(mode="json", exclude={"meshes": {"__all__": {"case", "case_file"}}})
+    return table
 
 
 def _with_case(tabled: TabledScene) -> Iterator[tuple[str, MeshInput]]:
@@ -150,16 +150,16 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
                 torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
     for mesh_input in {known.name: known for known in inputs.values()}.values():
-        database, own = tabled.databases[mesh_input.name], torques[mesh_input.name]
+        database, mesh_torques = tabled.databases[mesh_input.name], torques[mesh_input.name]
         assert isinstance(mesh_input.case, Case)
-        made[mesh_input.name] = MeshContact.of(mesh_input.case, database, own, means.analysis)
+        made[mesh_input.name] = MeshContact.of(mesh_input.case, database, mesh_torques, means.analysis)
     return {name: made[known.name] for name, known in inputs.items()}
 
 
 def _usual_seconds(tabled: TabledScene) -> float:
     """Return the CPU seconds of a table at one misalignment: about those of the contact of a mesh's own."""
     stages = [table.metadata.receipt.get("stages", {}) for table in tabled.databases.values()]
-    return max((own["contact"]["cpu_seconds"] for own in stages if "contact" in own), default=0.0)
+    return max((stage["contact"]["cpu_seconds"] for stage in stages if "contact" in stage), default=0.0)
 
 
 def _flanks(
@@ -170,8 +170,8 @@ def _flanks(
         (case.name, mesh) for case in agreed.deflection.cases for mesh in case.meshes if mesh.name in contacts
     ]
     flanks = divided(means.workers, _on_flanks, contacts, items, seconds * len(items))
-    for done, own in enumerate(flanks, 1):
-        yield own
+    for done, mesh_flanks in enumerate(flanks, 1):
+        yield mesh_flanks
         means.report("flanks", done / len(items))
 
 

@@ -57,7 +57,8 @@ class FrontierFigures(Figures):
         peak_to_peak_error: float | None = None
         family: str | None = None
         errors: Annotated[
-            dict[str, float] | None, Source(lambda own: own.errors if hasattr(own, "family") else None)
+            dict[str, float] | None,
+            Source(lambda fidelity: fidelity.errors if hasattr(fidelity, "family") else None),
         ] = None
 
     rungs: Annotated[list[FidelityFigures], Source("results")]

@@ -47,8 +47,8 @@ class _FrontierStudy(
         _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
 
     def normalized(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> Json:
-        beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
-        return {"rungs": _requested(inputs, of_scene=not isinstance(subject, CheckedCase)), **beside}
+        full_contact = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
+        return {"rungs": _requested(inputs, of_scene=not isinstance(subject, CheckedCase)), **full_contact}
 
     def predicted(
         self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
@@ -59,7 +59,7 @@ class _FrontierStudy(
             return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
         with boundary_errors():
             seconds = predicted_frontier(subject.request(_table, inputs), names, cache)
-        return StudyCost(tuple(Work(name, own) for name, own in seconds.items()))
+        return StudyCost(tuple(Work(name, cost) for name, cost in seconds.items()))
 
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means

@@ -8,12 +8,12 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Coordinate, Row, refuse
-from lineofaction.gearbox.schemas.rules import at_most_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of
 from lineofaction.gearbox.schemas.studied import RunHash
 
 Position = Annotated[Row[Coordinate], Field(min_length=3, max_length=3)]
 _PLACES = ("microphone_mm", "point")
-ONE_PLACE = "given, or point, one of both"
+ONE_RECEIVER = "given, or point, one of both"
 REMEDY = "A microphone hears the sound pressure, a point its velocity."
 _TONE = ("frequency", "tone_to_noise")
 
@@ -21,7 +21,7 @@ _TONE = ("frequency", "tone_to_noise")
 class Inputs(BoundaryModel):
     """A run that is heard through the housings of a scene, and where."""
 
-    model_config = ConfigDict(json_schema_extra=stated(at_most_one_of(*_PLACES)))
+    model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of(*_PLACES)))
 
     run: RunHash = Field(
         description="Run whose forces on bearings move the housings of the scene", examples=["0" * 64]
@@ -40,11 +40,11 @@ class Inputs(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _one_place(self) -> Self:
+    def _one_receiver(self) -> Self:
         """Refuse both places, and a direction of a sound pressure."""
         names = [name for name in _PLACES if getattr(self, name) is not None]
         if len(names) > 1:
-            refuse("microphone_mm", names, ONE_PLACE, REMEDY)
+            refuse("microphone_mm", names, ONE_RECEIVER, REMEDY)
         if self.direction is not None and self.point is None:
             refuse("direction", self.direction, "left out with microphone_mm", "A pressure has none.")
         return self

@@ -23,7 +23,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
 from lineofaction.gearbox.studies.housings import no_surface, other_housings, require_surface
-from lineofaction.gearbox.studies.listen import ONE_PLACE, REMEDY, Inputs, ListenFigures
+from lineofaction.gearbox.studies.listen import ONE_RECEIVER, REMEDY, Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
 
 PRINCIPAL = "principal"
@@ -75,8 +75,15 @@ class SceneHousings:
 
         Raises `BadInput`: no housing or several have such a point, or there is no such direction.
         """
-        owners = [name for name, body in self.housings.items() for each in body.points if each.name == point]
-        _require_point(point, [each.name for body in self.housings.values() for each in body.points])
+        owners = [
+            name
+            for name, body in self.housings.items()
+            for body_point in body.points
+            if body_point.name == point
+        ]
+        _require_point(
+            point, [body_point.name for body in self.housings.values() for body_point in body.points]
+        )
         if direction and direction not in DIRECTIONS:
             raise BadInput.of("direction", direction, f"one of {', '.join(DIRECTIONS)}")
         axis = None if direction in ("", PRINCIPAL) else np.eye(3)[DIRECTIONS.index(direction)]
@@ -112,7 +119,7 @@ class Receiver:
         if self.point or self.microphone_mm:
             return self
         if scene.complaint is None or scene.complaint.microphone_mm is None:
-            bound = f"{ONE_PLACE}; the scene has no complaint with a microphone"
+            bound = f"{ONE_RECEIVER}; the scene has no complaint with a microphone"
             raise BadInput.of("microphone_mm", None, bound, REMEDY)
         return replace(self, microphone_mm=tuple(scene.complaint.microphone_mm))
 
@@ -136,8 +143,8 @@ class HeardRun:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What the recording leaves out."""
-        own = NO_LOUDNESS if self.figures is None else FREE_FIELD
-        return (own, *(warning["message"] for warning in self.warnings))
+        remark_on_sound = NO_LOUDNESS if self.figures is None else FREE_FIELD
+        return (remark_on_sound, *(warning["message"] for warning in self.warnings))
 
     @property
     def remark(self) -> str:
@@ -154,7 +161,7 @@ class HeardRun:
         return [{"check": "other_housing", "message": message} for message in messages]
 
 
-def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
+def received_run(name: str, run: RunResult, housings: SceneHousings, receiver: Receiver) -> HeardRun:
     """Return a run as a receiver hears it.
 
     Raises `BadInput` as `SceneHousings.pressure` and `velocity`.
@@ -166,11 +173,11 @@ def heard_run(name: str, run: RunResult, housings: SceneHousings, receiver: Rece
     else:
         recording = housings.pressure(run, receiver.microphone_mm)
         figures = sound_figures(recording, steady=is_steady(driving_speed(run)))
-    own = [scene_housing(body, part) for part, body in housings.housings.items()]
-    return HeardRun(name, recording, figures, other_housings(own, run), time - time[0], speed)
+    scene_housings = [scene_housing(body, part) for part, body in housings.housings.items()]
+    return HeardRun(name, recording, figures, other_housings(scene_housings, run), time - time[0], speed)
 
 
-def recording_facts(recording: Recording) -> Json:
+def recording_metadata(recording: Recording) -> Json:
     """Return what a recording holds, in its unit."""
     return {
         "quantity": recording.quantity,
@@ -200,15 +207,15 @@ class _ListenStudy(Computation[SceneInput, HousedScene, Inputs, ListenFigures, H
     def compute(self, subject: HousedScene, inputs: Inputs, means: Means) -> HeardRun:
         assert means.run is not None  # the inputs name it
         receiver = _receiver(inputs).in_scene(subject.inputs)
-        heard = heard_run(inputs.run, means.run, SceneHousings.of(subject, means), receiver)
+        received = received_run(inputs.run, means.run, SceneHousings.of(subject, means), receiver)
         means.report("sound", 1.0)
-        return heard
+        return received
 
-    def _derived(self, heard: HeardRun) -> Json:
-        return {"full_scale": heard.recording.peak, **recording_facts(heard.recording)}
+    def _derived(self, received: HeardRun) -> Json:
+        return {"full_scale": received.recording.peak, **recording_metadata(received.recording)}
 
-    def warnings(self, heard: HeardRun) -> list[Json]:
-        return heard.warnings
+    def warnings(self, received: HeardRun) -> list[Json]:
+        return received.warnings
 
 
 RUN = _ListenStudy()

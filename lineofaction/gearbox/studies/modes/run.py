@@ -19,7 +19,7 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
-from lineofaction.gearbox.studies.excitations import with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import with_scene_metadata
 from lineofaction.gearbox.studies.modes import Inputs, ModesFigures
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion, chosen_rows
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
@@ -39,8 +39,8 @@ MAX_GROUPS = 12
 def modes_cost(system: System, speeds: int) -> StudyCost:
     """Return what the modes of a system at rest and at so many speeds take."""
     freedoms = system.freedoms.column.size
-    at_rest, each = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
-    return StudyCost((Work("modes at rest", at_rest), Work("modes at speed", each, speeds)))
+    at_rest, per_speed = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
+    return StudyCost((Work("modes at rest", at_rest), Work("modes at speed", per_speed, speeds)))
 
 
 class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
@@ -69,7 +69,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
                 highest_frequency=inputs.highest_frequency_hz,
             )
         modes = replace(modes, surface_motion=surface_motion(subject, modes.freedom))
-        return with_facts_of_scene(modes, subject)
+        return with_scene_metadata(modes, subject)
 
     def _derived(self, modes: ModalAnalysis) -> Json:
         energies = modes.natural_strain_energy, modes.natural_kinetic_energy
@@ -111,12 +111,12 @@ def _offered(modes: ModalAnalysis, group: str, row: Any, shape: Any) -> OfferedM
     def made() -> UnitMotion:
         motion = np.asarray(modes.axis_motion @ shape, dtype=complex)
         axes = modes.shaft, modes.axis_shaft, modes.axis_position
-        return UnitMotion(*axes, motion, oscillates=True, surface=moved_surface(modes, shape))
+        return UnitMotion(*axes, motion, oscillates=True, surface=surface_shape(modes, shape))
 
     return OfferedMotion(group, name, made)
 
 
-def moved_surface(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
+def surface_shape(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
     """Return the surfaces of all housings in a mode by its freedoms, (n,); None: none of them moves."""
     from dynamics.vibration import SurfaceShape  # noqa: PLC0415 (start-up time)
 
@@ -150,9 +150,9 @@ def _crossing(modes: ModalAnalysis, index: int) -> Json:
     mode, speed = int(modes.critical_mode[index]), float(modes.critical_speed[index])
     known = np.isfinite(modes.frequency[:, mode])
     row = int(np.argmin(np.where(known, np.abs(modes.speed - speed), np.inf)))
-    own = ("speed", "frequency", "order", "damping_ratio", "residual")
+    names = ("speed", "frequency", "order", "damping_ratio", "residual")
     return {
-        **{name: getattr(modes, f"critical_{name}")[index] for name in own},
+        **{name: getattr(modes, f"critical_{name}")[index] for name in names},
         "mesh": modes.mesh[int(modes.critical_mesh[index])],
         "mode": mode + 1,
         "kind": modes.kind(modes.strain_energy[row, mode], modes.kinetic_energy[row, mode]),

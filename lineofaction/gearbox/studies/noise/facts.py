@@ -24,7 +24,7 @@ RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_le
 """What a sound takes over from its response or run."""
 
 
-def sound_facts(sound: SceneSound, response: Json, scene: Json) -> Json:
+def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
     """Return the facts of a sound: what it takes over from its response and its scene, regions, models."""
     return {
         **sound.power.facts,
@@ -37,7 +37,7 @@ def sound_facts(sound: SceneSound, response: Json, scene: Json) -> Json:
     }
 
 
-def uncertainty_facts(known: SoundUncertainty) -> Json:
+def uncertainty_metadata(known: SoundUncertainty) -> Json:
     """Return the bands and the sensitivities of a sound; None and nothing where they were not requested."""
     band = known.band and figures_of(
         SoundBandFigures,
@@ -52,7 +52,7 @@ def uncertainty_facts(known: SoundUncertainty) -> Json:
     }
 
 
-def pressure_facts(pressure: MicrophonePressure) -> Json:
+def pressure_metadata(pressure: MicrophonePressure) -> Json:
     """Return the sound pressure at a microphone."""
     return figures_of(PressureFigures, pressure)
 
@@ -82,7 +82,7 @@ def _models(levels: ModelLevels | None) -> Json:
     """Return the models of a housing; nothing of a silent one."""
     if levels is None:
         return {}
-    facts: Json = {
+    metadata: Json = {
         "order": levels.order,
         "speed": levels.speed,
         "level": dict(levels.level),
@@ -93,10 +93,10 @@ def _models(levels: ModelLevels | None) -> Json:
         "predicted": {name: cost._asdict() for name, cost in levels.predicted.items()},
     }
     if levels.replaced is not None:
-        facts["replaced"] = np.asarray(levels.replaced).tolist()
+        metadata["replaced"] = np.asarray(levels.replaced).tolist()
     if levels.lines is not None:
-        facts["lines"] = [asdict(line) for line in levels.lines]
-    return facts | {"error": levels.error}
+        metadata["lines"] = [asdict(line) for line in levels.lines]
+    return metadata | {"error": levels.error}
 
 
 def _lists(bands: Mapping[str, tuple[float, float]]) -> dict[str, Any]:

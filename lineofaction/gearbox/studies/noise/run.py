@@ -34,7 +34,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
-from lineofaction.gearbox.studies.excitations import facts_of_scene, order_names
+from lineofaction.gearbox.studies.excitations import order_names, scene_metadata
 from lineofaction.gearbox.studies.figures import rows
 from lineofaction.gearbox.studies.housings import (
     bearing_forces,
@@ -43,7 +43,7 @@ from lineofaction.gearbox.studies.housings import (
     require_surface,
 )
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures
-from lineofaction.gearbox.studies.noise.facts import pressure_facts, sound_facts, uncertainty_facts
+from lineofaction.gearbox.studies.noise.facts import pressure_metadata, sound_metadata, uncertainty_metadata
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
@@ -109,25 +109,25 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             surfaces = _surfaces(subject)
             sound = scene_sound(response, surfaces, _radiation(inputs, means), means.run)
         seconds = {**response.facts["seconds"], "sound": spent(means.workers) - began}
-        facts = sound_facts(sound, response.facts, facts_of_scene(subject)) | {"seconds": seconds}
+        metadata = sound_metadata(sound, response.facts, scene_metadata(subject)) | {"seconds": seconds}
         known = uncertainty(subject, sound, inputs, means)
-        facts |= uncertainty_facts(known)
+        metadata |= uncertainty_metadata(known)
         if known.seconds is not None:
             seconds["uncertainty"] = known.seconds
-        if (place := _microphone(subject.inputs, inputs)) is not None:
+        if (microphone := _microphone(subject.inputs, inputs)) is not None:
             bands = None if known.band is None else known.band.largest
             with boundary_errors():
-                pressure = microphone_pressure(response, sound.housings, np.array(place) * MM, bands)
-            facts["pressure"] = pressure_facts(pressure)
-        return replace(sound.power, facts=facts)
+                pressure = microphone_pressure(response, sound.housings, np.array(microphone) * MM, bands)
+            metadata["pressure"] = pressure_metadata(pressure)
+        return replace(sound.power, facts=metadata)
 
     def _derived(self, sound: RadiatedSound) -> Json:
-        facts = sound.facts
+        metadata = sound.facts
         center, bands = sound.orders.third_octaves()
-        radiation, models, regions = (facts[name] for name in ("radiation", "models", "regions"))
+        radiation, models, regions = (metadata[name] for name in ("radiation", "models", "regions"))
         points = zip(loudest(sound), regions, strict=True)
         return {
-            "order_name": order_names(sound.order, facts),
+            "order_name": order_names(sound.order, metadata),
             "third_octave_hz": center,
             "third_octave_db": sound_power_level(bands),
             "radiation_efficiency": sound.efficiency.T,

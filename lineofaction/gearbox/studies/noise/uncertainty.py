@@ -47,7 +47,7 @@ class KnownDamping(NamedTuple):
 
 GUESSED = KnownDamping("guessed", (0.4, 2.0))
 """About ratios of 0.005: cast iron with bolted joints has 0.002 to 0.01."""
-STATED = KnownDamping("stated", (0.7, 1.4))
+SPECIFIED = KnownDamping("stated", (0.7, 1.4))
 """One figure for all modes, which differ."""
 MEASURED = KnownDamping("measured by mode", (0.85, 1.2))
 """What one assembly differs from the next."""
@@ -64,7 +64,7 @@ def _known_damping(housing: HousingInput) -> KnownDamping:
         return MEASURED
     usual = HousingInput.model_fields["damping_ratio"].default
     if housing.loss_factor is not None or housing.damping_ratio != usual:
-        return STATED
+        return SPECIFIED
     return GUESSED
 
 

@@ -37,13 +37,13 @@ def _ends(figure: Figure) -> tuple[Any, Any]:
     if figure.what.kind is Kind.LENGTH:
         number = Annotated[float, Field(gt=0.0, le=figure.limits.le)]
     pair: Any = Annotated[tuple[number, ...], Strict(False), Field(min_length=2, max_length=2)]
-    text = figure.with_unit(f"Bounds of the {figure.words}")
-    example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.own(2.0 * figure.what.example)]]
+    text = figure.with_unit(f"Bounds of the {figure.label}")
+    example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.boundary_value(2.0 * figure.what.example)]]
     return Optional[pair], Field(default=None, description=text, examples=example)  # noqa: UP045
 
 
 def _deviation(figure: Figure) -> tuple[Any, Any]:
-    text = figure.with_unit(f"Standard deviation of the {figure.words}")
+    text = figure.with_unit(f"Standard deviation of the {figure.label}")
     return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
 
 

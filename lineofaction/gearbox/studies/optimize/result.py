@@ -128,7 +128,7 @@ class HeardOptimization:
             Outcome.IMPROVED: f"Quieter by {gain.value:.1f} dB: {levels}",
             Outcome.WITHIN_ERROR: f"A tie: the optimum cannot be told from the start, {levels}",
             Outcome.NOT_IMPROVED: f"No quieter flanks were found: {levels}",
-            Outcome.LIMITS_KEPT: f"The limits are kept, which the start exceeds: {levels}",
+            Outcome.LIMITS_MET: f"The limits are kept, which the start exceeds: {levels}",
             Outcome.LIMITS_EXCEEDED: f"The best design exceeds the limits by {over}: {levels}",
         }
         return sentences[self.outcome]

@@ -66,7 +66,7 @@ class HeardAt:
         transfer, form = self.case.transfer, self.case.form
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
-        nominal, *shifted = tabled.moved(np.vstack([np.zeros(steps.size), np.diag(steps)]))
+        nominal, *shifted = tabled.force_tables(np.vstack([np.zeros(steps.size), np.diag(steps)]))
         flanks = self.case.others.with_table(nominal)
         excitation = flanks.excitation
         inputs = transfer.inputs(excitation)

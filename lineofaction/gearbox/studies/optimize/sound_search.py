@@ -101,11 +101,11 @@ def sound_optimum(
     with clock.stage("transfer functions"):
         setup = sound_problem(subject, mesh, question, request, misalignment, means)
     with clock.stage("search"):
-        start, sample = dict(zip(setup.problem.names, request.own, strict=True)), setup.sample
+        start, sample = dict(zip(setup.problem.names, request.start_design, strict=True)), setup.sample
         problem = _scaled(setup.problem if question.quantile is None or sample is None else sample, start)
         expected, cancel = _expected_seconds(problem, start, request.search), means.cancel or never
         announce(means.report, "search", expected)
-        runs = search_all(problem, request.search, request.own, run, cancel)
+        runs = search_all(problem, request.search, request.start_design, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     designs = start, problem.values(runs[best].place)
     with clock.stage("confirmation"):

@@ -13,7 +13,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.cost import StudyCost
-from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import order_names, with_scene_metadata
 from lineofaction.gearbox.studies.figures import Row, rows
 from lineofaction.gearbox.studies.housings import predicted_response, response_of
 from lineofaction.gearbox.studies.response import Inputs, ResponseFigures
@@ -27,7 +27,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> ForcedResponse:
         steady = subject.steady
-        return with_facts_of_scene(response_of(steady, inputs, means), steady)
+        return with_scene_metadata(response_of(steady, inputs, means), steady)
 
     def _derived(self, response: ForcedResponse) -> Json:
         force, power = response.bearing_force, response.power
@@ -42,8 +42,12 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
             "peaks": peaks(response),
             "parting": response.speed[~response.in_contact],
             "power": {
-                "input": {name: own.T for name, own in zip(power.source, power.input, strict=True)},
-                "losses": [{"part": name, "kind": kind, "loss": own.T} for name, kind, own in sinks],
+                "input": {
+                    name: part_power.T for name, part_power in zip(power.source, power.input, strict=True)
+                },
+                "losses": [
+                    {"part": name, "kind": kind, "loss": part_power.T} for name, kind, part_power in sinks
+                ],
                 "residual": power.residual,
             },
         }

@@ -62,12 +62,15 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
         with boundary_errors():
             checked = case.at_point
             plan = checked.planned(cache)
-            whole = checked.predicted(plan, cache)
+            prediction = checked.predicted(plan, cache)
             stresses = Work("stresses", stress_seconds(case.pair, plan, cache))
-            rougher = whole.parts["error estimate"]
-        gears = Work("gears", whole.stages["compliance"] + rougher["bodies"])
-        contact = Work("contact", whole.parts["contact"]["table"]), Work("its errors", rougher["solutions"])
-        return StudyCost((gears, *contact, stresses), whole.memory_bytes)
+            rougher = prediction.parts["error estimate"]
+        gears = Work("gears", prediction.stages["compliance"] + rougher["bodies"])
+        contact = (
+            Work("contact", prediction.parts["contact"]["table"]),
+            Work("its errors", rougher["solutions"]),
+        )
+        return StudyCost((gears, *contact, stresses), prediction.memory_bytes)
 
     def compute(self, case: CheckedCase, _inputs: FlankPoint, means: Means) -> Roots:
         """Return the peaks over a mesh cycle, the passage of a tooth of each gear, receipt and warnings."""

@@ -100,9 +100,12 @@ class ScatterFigures(Figures):
 
         fraction: float
         value_um: list[float]
-        low_um: Annotated[list[float] | None, Source(lambda own: own.low if own.low.any() else None)]
+        low_um: Annotated[
+            list[float] | None, Source(lambda quantile: quantile.low if quantile.low.any() else None)
+        ]
         high_um: Annotated[
-            list[float] | None, Source(lambda own: own.high if all(map(math.isfinite, own.high)) else None)
+            list[float] | None,
+            Source(lambda quantile: quantile.high if all(map(math.isfinite, quantile.high)) else None),
         ]
 
     class AboveFigures(Part):

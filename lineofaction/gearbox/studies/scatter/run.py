@@ -142,11 +142,11 @@ def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: b
         distribution=inputs.distribution,
         finishing=inputs.finishing,
     )
-    stated = dict(map(_stated, inputs.drawing))
-    return replace(of_class, modification={**of_class.modification, **stated})
+    of_drawing = dict(map(_drawing_tolerance, inputs.drawing))
+    return replace(of_class, modification={**of_class.modification, **of_drawing})
 
 
-def _stated(text: str) -> tuple[str, float]:
+def _drawing_tolerance(text: str) -> tuple[str, float]:
     """Return the figure and the tolerance in m that ``GEAR.FIGURE=VALUE`` says."""
     name, _, value = (part.strip() for part in text.partition("="))
     if name not in _TOLERATED:
@@ -178,8 +178,8 @@ def order_limit(text: str) -> OrderLimit:
         raise BadInput.of("limit", text, "an amplitude in um, nm or dB re 1 um", _LIMITS)
     if amplitude <= 0.0:
         raise BadInput.of("limit", text, "an amplitude above 0", _LIMITS)
-    beside = int(turns or 1) * (-1 if sign == "-" else 1) if gear else 0
-    return OrderLimit(int(mesh or 0), amplitude, gear or "", beside)
+    sideband = int(turns or 1) * (-1 if sign == "-" else 1) if gear else 0
+    return OrderLimit(int(mesh or 0), amplitude, gear or "", sideband)
 
 
 RUN = _ScatterStudy()

@@ -103,8 +103,10 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
             predicted = predicted_designs(replace(checked, request=skewed), cache)
         axes = checked.request.misalignment, checked.request.center_distance_change
         values = 2 * sum(np.union1d(np.zeros(1), axis).size for axis in axes)
-        each = predicted.design + predicted.errors
-        return StudyCost((Work("gears", predicted.bodies), Work("values", each, values)), predicted.bytes)
+        per_value = predicted.design + predicted.errors
+        return StudyCost(
+            (Work("gears", predicted.bodies), Work("values", per_value, values)), predicted.bytes
+        )
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> Studies:
         """Study a case at its highest load; its own misalignments and center distances are left aside."""
@@ -172,9 +174,9 @@ def _at_changes(checked: CheckedCase, inputs: Inputs, percent: tuple[float, ...]
 def _curves(study: PairStudy) -> Iterator[tuple[Any, ...]]:
     """Yield both curves without and with corner contact, the changes of the distance in parts of it."""
     for curves in study.curves:
-        moved = curves.center_distance_change
-        percent = {"center_distance_change_percent": 100.0 * moved.deviation / study.center_distance}
-        yield curves, {"center_distance": (moved, percent)}
+        distance_curve = curves.center_distance_change
+        percent = {"center_distance_change_percent": 100.0 * distance_curve.deviation / study.center_distance}
+        yield curves, {"center_distance": (distance_curve, percent)}
 
 
 RUN = _SensitivityStudy()

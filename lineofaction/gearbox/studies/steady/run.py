@@ -20,7 +20,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
 from lineofaction.gearbox.studies.cost import LONG, StudyCost, Work
-from lineofaction.gearbox.studies.excitations import with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import with_scene_metadata
 from lineofaction.gearbox.studies.figures import Row, rows
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from lineofaction.gearbox.studies.steady import Inputs, SteadyFigures
@@ -64,7 +64,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
                 progress=means.report,
                 workers=means.workers,
             )
-        return with_facts_of_scene(states, subject)
+        return with_scene_metadata(states, subject)
 
     def _derived(self, states: SteadyStates) -> Json:
         points: dict[str, list[Any]] = {
@@ -87,10 +87,10 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
         if not missing.any():
             return ""
         speeds = sorted({f"{speed / RPM:.6g}" for speed in states.speed[missing]})
-        shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
+        listed = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
         return (
             f"{int(missing.sum())} of {int((states.curve != BRANCH).sum())} motions were not found, at "
-            f"{shown} rpm. They may repeat after more periods (--repeat 2), or never."
+            f"{listed} rpm. They may repeat after more periods (--repeat 2), or never."
         )
 
 
@@ -102,10 +102,10 @@ def status_name(status: int) -> str:
 def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
     """Return a motion; of one that was not found only how the search ended."""
     point = Row(states, index)
-    own: Json = {"status": status_name(int(point.status)), "meshes": None, "bearings": None}
+    figures: Json = {"status": status_name(int(point.status)), "meshes": None, "bearings": None}
     if point.status == OrbitStatus.CONVERGED:
         largest = point.multiplier[0]
-        own |= {
+        figures |= {
             "stability": KINDS[int(point.instability)],
             "largest_multiplier": [largest.real, largest.imag],
             "meshes": rows(point, states.mesh),
@@ -114,7 +114,7 @@ def _motion(states: SteadyStates, index: int) -> tuple[Any, ...]:
                 for name, force in zip(states.bearing, point.rms_bearing_force, strict=True)
             },
         }
-    return point, own
+    return point, figures
 
 
 def _study_cost(cost: SteadyCost) -> StudyCost:

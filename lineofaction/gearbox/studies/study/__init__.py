@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.figures import Figures, Json, Part
 from lineofaction.gearbox.schemas.model import BoundaryModel, Name, Row, refuse
-from lineofaction.gearbox.schemas.rules import exactly_one_of, stated
+from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 Value = Annotated[float, Field(ge=-1e20, le=1e20)]
 Values = Row[Value]
@@ -54,7 +54,7 @@ class FactorInput(BoundaryModel):
         low: Value = Field(description="Lowest value", examples=[0.05])
         high: Value = Field(description="Highest value", examples=[0.15])
 
-    model_config = ConfigDict(json_schema_extra=stated(exactly_one_of(*_KINDS)))
+    model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of(*_KINDS)))
 
     path: Path = Field(
         description="Field of the scene as a path KIND.NAME.FIELD; * is every part, [0] an entry of a list",

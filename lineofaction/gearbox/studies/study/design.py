@@ -20,18 +20,18 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import FactorInput, Inputs
 from lineofaction.gearbox.studies.study.scenes import (
-    Place,
+    Location,
 )
 from lineofaction.gearbox.units import UM
 
 
-def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> Design:
+def design_of(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Location, ...]]) -> Design:
     """Return the design; raises `BadInput`, `DynamicsError`."""
     factors = {f.path: _factor(k, f, scene, places[f.path]) for k, f in enumerate(inputs.factors)}
     return Design(factors, inputs.samples, inputs.seed)
 
 
-def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Factor:
+def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Location, ...]) -> Factor:
     if factor.levels is not None:
         return Levels(tuple(factor.levels))
     if factor.values is not None:
@@ -46,13 +46,13 @@ def _factor(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Pl
     return _by_class(index, factor, scene, places)
 
 
-def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Place, ...]) -> Normal:
+def _by_class(index: int, factor: FactorInput, scene: SceneInput, places: tuple[Location, ...]) -> Normal:
     """Return the distribution within a class of ISO 1328 about the designed value, um."""
     limits = set()
-    for place in places:
-        case = scene.meshes[int(place[1])].case
+    for location in places:
+        case = scene.meshes[int(location[1])].case
         assert case is not None and factor.iso1328_class is not None
-        gear, name = str(place[4]), str(place[5])
+        gear, name = str(location[4]), str(location[5])
         widths = iso1328_tolerances(gear_pair(case), factor.iso1328_class).modification
         designed = float(getattr(getattr(case.pair, gear), name))
         limits.add((designed, widths[f"{gear}.{name.removesuffix('_um')}"]))

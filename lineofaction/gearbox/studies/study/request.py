@@ -18,7 +18,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import MAX_POINTS, FactorInput, Inputs
 from lineofaction.gearbox.studies.study.scenes import (
-    Place,
+    Location,
     check_flank,
     mesh_of_case,
     places_of,
@@ -30,9 +30,9 @@ from lineofaction.gearbox.studies.study.scenes import (
 def responses_of(inputs: Inputs) -> tuple[Response, ...]:
     """Return what is taken from every run; raises `BadInput`."""
     responses = []
-    for index, own in enumerate(inputs.responses):
+    for index, entry in enumerate(inputs.responses):
         with named(f"responses[{index}]"):
-            responses.append(Response(own.quantity, own.part or "", own.order or 0, own.mesh or ""))
+            responses.append(Response(entry.quantity, entry.part or "", entry.order or 0, entry.mesh or ""))
     return tuple(responses)
 
 
@@ -54,14 +54,14 @@ def names_with_planets(scene: SceneInput) -> tuple[list[str], list[str]]:
     kinds: tuple[Sequence[Any], ...] = scene.bushings, scene.rolling_bearings, scene.planet_bearings
     bearings: list[str] = [part.name for part in chain.from_iterable(kinds)]
     for planets in scene.planets:
-        own = planet_parts(scene, planets.planet)
+        copied = planet_parts(scene, planets.planet)
         for index in range(1, planets.number):
-            meshes += [numbered(name, index) for name in own[0]]
-            bearings += [numbered(name, index) for name in own[1]]
+            meshes += [numbered(name, index) for name in copied[0]]
+            bearings += [numbered(name, index) for name in copied[1]]
     return meshes, bearings
 
 
-def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place, ...]]:
+def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Location, ...]]:
     """Return where every factor stands in the scene.
 
     Raises `BadInput`: a path that names no number, a value that its field does not accept, or too many
@@ -71,21 +71,21 @@ def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Place
     for index, factor in enumerate(inputs.factors):
         field = f"factors[{index}].path"
         places[factor.path] = places_of(scene, field, factor.path)
-        for place in places[factor.path]:
-            _check_case(scene, field, factor, place)
+        for location in places[factor.path]:
+            _check_case(scene, field, factor, location)
     _check_values(scene, inputs, places)
     return places
 
 
-def _check_case(scene: SceneInput, field: str, factor: FactorInput, place: Place) -> None:
+def _check_case(scene: SceneInput, field: str, factor: FactorInput, location: Location) -> None:
     """Refuse what of a case cannot be varied: only flanks can, at one alignment; a class is of slopes."""
-    index = mesh_of_case(place)
+    index = mesh_of_case(location)
     if index is None:
         if factor.iso1328_class is not None:
             bound = "of a profile or helix slope of a case"
             raise BadInput.of(field.replace("path", "iso1328_class"), factor.iso1328_class, bound)
         return
-    check_flank(field, factor.path, place)
+    check_flank(field, factor.path, location)
     mesh = scene.meshes[index]
     if mesh.case is None and mesh.case_file is None:
         raise BadInput.of(field, factor.path, f"of a mesh with a case: {mesh.name} takes a database")
@@ -93,21 +93,21 @@ def _check_case(scene: SceneInput, field: str, factor: FactorInput, place: Place
     if case and max(map(len, (table_axes(case).misalignments, case.errors.center_distance_change_mm))) > 1:
         bound = "of a case at one misalignment and one center distance"
         raise BadInput.of(field, factor.path, bound, "Vary the mesh's misalignment_um of another study.")
-    if factor.iso1328_class is not None and place[-1] not in ("profile_slope_um", "helix_slope_um"):
+    if factor.iso1328_class is not None and location[-1] not in ("profile_slope_um", "helix_slope_um"):
         bound = "of profile_slope_um or helix_slope_um, which the standard has tolerances of"
         raise BadInput.of(field.replace("path", "iso1328_class"), factor.iso1328_class, bound)
 
 
-def _check_values(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Place, ...]]) -> None:
+def _check_values(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Location, ...]]) -> None:
     """Try the ends of the values, one factor at a time; those of cases are tried with their tables."""
     base = scene.model_dump(mode="json")
     for factor in inputs.factors:
-        if any(mesh_of_case(place) is not None for place in places[factor.path]):
+        if any(mesh_of_case(location) is not None for location in places[factor.path]):
             continue
         for value in _ends(factor):
             table = copy.deepcopy(base)
-            for place in places[factor.path]:
-                with_value(table, place, value)
+            for location in places[factor.path]:
+                with_value(table, location, value)
             scene_of_json(table)
     count = inputs.samples * math.prod(len(f.levels) for f in inputs.factors if f.levels)
     if count > MAX_POINTS:

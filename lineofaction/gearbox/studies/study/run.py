@@ -29,7 +29,7 @@ from lineofaction.gearbox.studies.study import Inputs, StudyFigures
 from lineofaction.gearbox.studies.study.design import design_of
 from lineofaction.gearbox.studies.study.request import check_parts, factor_places, responses_of
 from lineofaction.gearbox.studies.study.scenes import (
-    Place,
+    Location,
     VariedScene,
     mesh_of_case,
 )
@@ -64,8 +64,8 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         cost, probed = _flank_tables(scene, design, places, cache), list[float]()
         for values in points[np.unique(np.linspace(0, count - 1, PROBED).astype(int))]:
             try:
-                own = varied.inputs(dict(zip(design.names, map(float, values), strict=True)))
-                runs = run_cost(own, count, inputs.receipt)
+                varied_scene = varied.inputs(dict(zip(design.names, map(float, values), strict=True)))
+                runs = run_cost(varied_scene, count, inputs.receipt)
             except BadInput:  # a point without a scene is left out
                 continue
             if runs is None:
@@ -109,7 +109,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             "cpu_seconds": {"mean": float(np.mean(result.seconds[:, 0])), "integration_mean": integration},
         }
 
-    def kept(self, result: Study, means: Means) -> Mapping[str, Path]:
+    def stored_runs(self, result: Study, means: Means) -> Mapping[str, Path]:
         if means.folder is None:
             return {}
         files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
@@ -120,21 +120,24 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
 
 
 def _flank_tables(
-    scene: SceneInput, design: Design, places: Mapping[str, tuple[Place, ...]], cache: Path | None
+    scene: SceneInput, design: Design, places: Mapping[str, tuple[Location, ...]], cache: Path | None
 ) -> StudyCost:
     """Return what the tables of all different flanks of the points take."""
-    meshes = {name: {mesh_of_case(place) for place in at} - {None} for name, at in places.items()}
+    meshes = {name: {mesh_of_case(location) for location in at} - {None} for name, at in places.items()}
     columns = [k for k, name in enumerate(design.names) if meshes[name]]
     if not columns:
         return StudyCost(())
     different = len(np.unique(design.points[:, columns], axis=0))
     cost = StudyCost(())
-    for index in sorted({index for own in meshes.values() for index in own if index is not None}):
+    for index in sorted({index for indices in meshes.values() for index in indices if index is not None}):
         case = scene.meshes[index].case
         if case is not None:
             with boundary_errors():
-                own = predicted_designs(CASES.of(case).checked, cache)
-            cost += StudyCost((Work("gears", own.bodies), Work("contacts", own.design, different)), own.bytes)
+                predicted = predicted_designs(CASES.of(case).checked, cache)
+            cost += StudyCost(
+                (Work("gears", predicted.bodies), Work("contacts", predicted.design, different)),
+                predicted.bytes,
+            )
     return cost
 
 

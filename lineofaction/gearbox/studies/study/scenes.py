@@ -32,7 +32,7 @@ from lineofaction.gearbox.schemas.faults import faults_of, model_in
 from lineofaction.gearbox.schemas.scene import SceneInput
 from model_studies import LeftOut
 
-Place = tuple[str | int, ...]
+Location = tuple[str | int, ...]
 """Keys and indices down to a number of the scene as JSON."""
 
 _EVERY = "*"
@@ -41,7 +41,7 @@ FLANKS = tuple(figure.field for kind in (FlankModification, StatedStarts) for fi
 """Fields of a case that leave the bodies of its gears as they are."""
 
 
-def places_of(scene: SceneInput, field: str, path: str) -> tuple[Place, ...]:
+def places_of(scene: SceneInput, field: str, path: str) -> tuple[Location, ...]:
     """Return the places that a path names.
 
     Raises `BadInput`: there is no such field or part, or it is no number; the nearest names are suggested.
@@ -96,25 +96,29 @@ def _unknown(field: str, path: str, name: str, known: Sequence[str] | Mapping[st
     return BadInput.of(field, path, f'a path of the scene file: there is no "{name}"', remedy)
 
 
-def mesh_of_case(place: Place) -> int | None:
+def mesh_of_case(location: Location) -> int | None:
     """Return the index of the mesh whose case a place is in; None if it is outside of cases."""
-    return place[1] if place[0] == "meshes" and place[2] == "case" and isinstance(place[1], int) else None
+    return (
+        location[1]
+        if location[0] == "meshes" and location[2] == "case" and isinstance(location[1], int)
+        else None
+    )
 
 
-def check_flank(field: str, path: str, place: Place) -> None:
+def check_flank(field: str, path: str, location: Location) -> None:
     """Refuse a field of a case that is no figure of its flanks."""
-    in_pair = place[3:4] == ("pair",) and place[4:5] in (("pinion",), ("wheel",))
-    if not in_pair or len(place) != 6 or place[5] not in FLANKS:
+    in_pair = location[3:4] == ("pair",) and location[4:5] in (("pinion",), ("wheel",))
+    if not in_pair or len(location) != 6 or location[5] not in FLANKS:
         bound = "a figure of the flanks in pair.pinion or pair.wheel: other bodies need a table of their own"
         raise BadInput.of(field, path, bound, f"One of {', '.join(FLANKS)}.")
 
 
-def with_value(table: Json, place: Place, value: float) -> None:
+def with_value(table: Json, location: Location, value: float) -> None:
     """Put a value into the scene as JSON, in place; a list takes it in all its entries.
 
     Raises `BadInput`: a list has no such entry.
     """
-    *way, last = place
+    *way, last = location
     at: Any = table
     for key in way:
         if isinstance(key, str) and at.get(key) is None:
@@ -122,7 +126,7 @@ def with_value(table: Json, place: Place, value: float) -> None:
         at = at[key]
     if isinstance(last, int):
         if last >= len(at):
-            path = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
+            path = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in location)
             raise BadInput.of(path.lstrip("."), last, f"an entry below {len(at)}")
         at[last] = value
     elif isinstance(at.get(last), list):
@@ -139,7 +143,7 @@ class VariedScene:
     """The scene as JSON, its cases written out."""
     databases: Mapping[str, SteDatabase]
     """By name of the mesh."""
-    places: Mapping[str, tuple[Place, ...]]
+    places: Mapping[str, tuple[Location, ...]]
     """Of every factor, where it stands in the scene."""
     home: str
     """Folder of the caches."""
@@ -150,7 +154,9 @@ class VariedScene:
             inputs = self.inputs(values)
             solids = inputs.housings, inputs.shafts, inputs.bushings, inputs.rolling_bearings
             databases = self._databases_of(inputs, self.expensive(values))
-            housings = self._kept(("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home)))
+            housings = self._reused(
+                ("reduced housings",), solids, lambda: reduced_in(inputs, Path(self.home))
+            )
             return with_quantity(dynamic_scene(inputs, databases, housings), inputs, housings)
         except (ServiceError, FeContactError) as error:
             raise LeftOut(str(error)) from error
@@ -164,27 +170,29 @@ class VariedScene:
 
         Parts of the file without other values are the same objects in all of them.
         """
-        own = [(place, value) for name, value in values.items() for place in self.places[name]]
+        changes = [(location, value) for name, value in values.items() for location in self.places[name]]
         try:
-            return SceneInput.model_validate(vars(self._base) | self._varied(own))
+            return SceneInput.model_validate(vars(self._base) | self._varied(changes))
         except (ValidationError, BadInput):  # its words are those of the whole scene
             table = self._table()
-            for place, value in own:
-                with_value(table, place, value)
+            for location, value in changes:
+                with_value(table, location, value)
             return scene_of_json(table)
 
-    def _varied(self, own: Sequence[tuple[Place, float]]) -> dict[str, BaseModel | tuple[BaseModel, ...]]:
+    def _varied(
+        self, changes: Sequence[tuple[Location, float]]
+    ) -> dict[str, BaseModel | tuple[BaseModel, ...]]:
         """Return the tables and lists of tables that have other values."""
-        by_part: dict[Place, list[tuple[Place, float]]] = {}
-        for place, value in own:
-            depth = 2 if isinstance(place[1], int) else 1
-            by_part.setdefault(place[:depth], []).append((place[depth:], value))
+        by_part: dict[Location, list[tuple[Location, float]]] = {}
+        for location, value in changes:
+            depth = 2 if isinstance(location[1], int) else 1
+            by_part.setdefault(location[:depth], []).append((location[depth:], value))
         changed: dict[str, Any] = {}
         for at, inside in by_part.items():
             kind, numbers = str(at[0]), [int(number) for number in at[1:]]
             section = changed.get(kind, getattr(self._base, kind))
             part = section[numbers[0]] if numbers else section
-            made = self._kept(at, repr(inside), partial(_with_values, part, inside))
+            made = self._reused(at, repr(inside), partial(_with_values, part, inside))
             for number in numbers:
                 made = (*section[:number], made, *section[number + 1 :])
             changed[kind] = made
@@ -195,11 +203,11 @@ class VariedScene:
         return scene_of_json(self._table())
 
     @cached_property
-    def _last(self) -> dict[Place, tuple[Any, Any]]:
+    def _last(self) -> dict[Location, tuple[Any, Any]]:
         """The parts, the tables and the housings made last, with what decides them."""
         return {}
 
-    def _kept(self, name: Place, key: object, make: Callable[[], Any]) -> Any:
+    def _reused(self, name: Location, key: object, make: Callable[[], Any]) -> Any:
         known = self._last.get(name)
         if known is None or known[0] != key:
             known = self._last[name] = key, make()
@@ -216,7 +224,7 @@ class VariedScene:
     def _condensed(self) -> dict[str, CondensedPair]:
         """Gears with their compliance, of the meshes whose flanks change."""
         inputs = self._base
-        changed = {mesh_of_case(place) for name in self._of_flanks for place in self.places[name]}
+        changed = {mesh_of_case(location) for name in self._of_flanks for location in self.places[name]}
         return {mesh.name: self._compliance_of(mesh) for k, mesh in enumerate(inputs.meshes) if k in changed}
 
     def _compliance_of(self, mesh: Any) -> CondensedPair:
@@ -231,7 +239,7 @@ class VariedScene:
         if not values:
             return self.databases
         key, others = tuple(values.items()), lambda: {**self.databases, **self._other_flanks(inputs)}
-        tables: Mapping[str, SteDatabase] = self._kept(("tables",), key, others)
+        tables: Mapping[str, SteDatabase] = self._reused(("tables",), key, others)
         return tables
 
     def _other_flanks(self, inputs: SceneInput) -> dict[str, SteDatabase]:
@@ -248,11 +256,11 @@ class VariedScene:
         return tables
 
 
-def _with_values(part: BaseModel, values: Sequence[tuple[Place, float]]) -> BaseModel:
+def _with_values(part: BaseModel, values: Sequence[tuple[Location, float]]) -> BaseModel:
     """Return a part with other values; raises `ValidationError`, `BadInput`."""
     table = part.model_dump(mode="json")
-    for place, value in values:
-        with_value(table, place, value)
+    for location, value in values:
+        with_value(table, location, value)
     return type(part).model_validate_json(json.dumps(table))
 
 

@@ -10,7 +10,9 @@ from lineofaction.gearbox.schemas.figures import Figures, Json, Part, Source
 from lineofaction.gearbox.schemas.model import BoundaryModel, Row
 
 Axis = Annotated[str, Field(min_length=1, max_length=90)]
-Shown = Literal["peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"]
+Quantity = Literal[
+    "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
+]
 """Of `fe_contact.microgeometry.sweep.SWEPT`, which takes longer to load than a service to start."""
 
 
@@ -27,7 +29,7 @@ class Inputs(BoundaryModel):
         "of both",
         examples=[["torque", "pinion.profile_crowning=0:10:2"]],
     )
-    show: Row[Shown] = Field(
+    show: Row[Quantity] = Field(
         default=(
             "peak_to_peak",
             "harmonic_1",

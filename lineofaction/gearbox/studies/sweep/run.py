@@ -32,7 +32,7 @@ from lineofaction.gearbox.units import UM, factor, unit_name
 
 STEPS = 9
 """Values of an axis whose range is not given."""
-_EACH = 3  # fewer torques of a case are no range
+_MIN_TORQUES = 3  # fewer torques of a case are no range
 _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center distance
 _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
@@ -45,7 +45,7 @@ class _Swept:
     """Of a `SweepAxis`."""
     path: str
     """As in the case file; ``*`` stands for both gears."""
-    words: str
+    description: str
     what: Figure | None = None
     """The declaration of a figure of the flanks."""
 
@@ -62,7 +62,7 @@ class _Swept:
     @property
     def label(self) -> str:
         """The words with the unit, as on an axis."""
-        return f"{self.words}, {self.unit}"
+        return f"{self.description}, {self.unit}"
 
     @property
     def spellings(self) -> set[str]:
@@ -83,9 +83,9 @@ SWEEPABLE = {
     swept.name: swept
     for swept in (
         *CONDITIONS,
-        *(_Swept(f.name, f"pair.*.{f.field}", f"{f.words} of both gears", f) for f in _FIGURES),
+        *(_Swept(f.name, f"pair.*.{f.field}", f"{f.label} of both gears", f) for f in _FIGURES),
         *(
-            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.words} of the {gear}", f)
+            _Swept(f"{gear}.{f.name}", f"pair.{gear}.{f.field}", f"{f.label} of the {gear}", f)
             for gear in GEARS
             for f in _FIGURES
         ),
@@ -125,8 +125,8 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
     pair, case = checked.pair, checked.case
     if swept.what is not None:  # about the case's own values, or about a usual one where it has none
         variables = SweepAxis(swept.name, ()).variables
-        own = max(abs(figure(pair, name)) for name in variables) or float(swept.what.what.example)
-        size, kind = swept.what.own(own), swept.what.what.kind
+        reference_value = max(abs(figure(pair, name)) for name in variables) or float(swept.what.what.example)
+        size, kind = swept.what.boundary_value(reference_value), swept.what.what.kind
         if kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
         return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
@@ -134,7 +134,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         loads = case.load.torque_n_m or [
             float(pair.torque(force)) for force in case.load.normal_force_n or ()
         ]
-        return list(loads) if len(loads) >= _EACH else _evenly(0.2 * loads[-1], loads[-1])
+        return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(0.2 * loads[-1], loads[-1])
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
         maximum = _DISTANCE * pair.center_distance / swept.factor
@@ -149,12 +149,12 @@ def _evenly(first: float, last: float) -> list[float]:
 
 
 @dataclass(frozen=True)
-class _Shown:
+class _Quantity:
     """A quantity at the boundary."""
 
-    words: str
+    description: str
     unit: str
-    """`words`, `unit`: As drawn."""
+    """`description`, `unit`: As drawn."""
     one: float
     """The SI value of one unit."""
     field: str
@@ -163,17 +163,17 @@ class _Shown:
     @property
     def label(self) -> str:
         """The words with the unit, as on an axis."""
-        return f"{self.words}, {self.unit}" if self.unit else self.words
+        return f"{self.description}, {self.unit}" if self.unit else self.description
 
 
 QUANTITIES = {
-    "peak_to_peak": _Shown("peak-to-peak STE", "µm", UM, "peak_to_peak{}_um"),
+    "peak_to_peak": _Quantity("peak-to-peak STE", "µm", UM, "peak_to_peak{}_um"),
     **{
-        f"harmonic_{n}": _Shown(f"mesh harmonic {n} of STE", "µm", UM, f"harmonic_{n}{{}}_um")
+        f"harmonic_{n}": _Quantity(f"mesh harmonic {n} of STE", "µm", UM, f"harmonic_{n}{{}}_um")
         for n in (1, 2, 3)
     },
-    "max_pressure": _Shown("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
-    "face_load_factor": _Shown("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
+    "max_pressure": _Quantity("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
+    "face_load_factor": _Quantity("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
 }
 """By name in `fe_contact.microgeometry.sweep.SWEPT`."""
 
@@ -259,9 +259,9 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             },
             "points": [_at(result, k) | _figures(swept, k) for k, why in enumerate(swept.reason) if not why],
             "least": {
-                QUANTITIES[own.name].field.format(""): _at(result, own.minimum)
-                | {"points_within_error": int(own.like_least.sum())}
-                for own in swept.quantities
+                QUANTITIES[quantity.name].field.format(""): _at(result, quantity.minimum)
+                | {"points_within_error": int(quantity.like_least.sum())}
+                for quantity in swept.quantities
                 if swept.usable
             },
             "failed": [_at(result, k) | {"reason": why} for k, why in enumerate(swept.reason) if why],

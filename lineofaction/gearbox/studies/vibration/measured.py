@@ -23,7 +23,7 @@ from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.studies.computation import Means
-from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import order_names, with_scene_metadata
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
@@ -135,10 +135,10 @@ def measured_result(
     _require_band(covered, mobility, "run" if means.run is not None else "speed_rpm")
     with boundary_errors():
         vibration = measured_vibration(response, mobility)
-        at = _place(vibration, mobility, inputs)
+        at = _point_indices(vibration, mobility, inputs)
         shares = bearing_shares(response, mobility)[(..., *at)]
-    facts = response.facts
-    seconds = {**facts["seconds"], "vibration": cpu_seconds() - began}
+    metadata = response.facts
+    seconds = {**metadata["seconds"], "vibration": cpu_seconds() - began}
     result = MeasuredHousingVibration(
         housing.name,
         housing.frf_file.name,
@@ -149,9 +149,9 @@ def measured_result(
         *at,
         mobility.bearings,
         shares,
-        {**facts, "seconds": seconds},
+        {**metadata, "seconds": seconds},
     )
-    return with_facts_of_scene(result, subject)
+    return with_scene_metadata(result, subject)
 
 
 def _require_band(covered: BoolArray, mobility: MeasuredMobility, field: str, value: object = None) -> None:
@@ -163,7 +163,9 @@ def _require_band(covered: BoolArray, mobility: MeasuredMobility, field: str, va
     raise BadInput.of(field, value, bound, "Choose other speeds or more orders.")
 
 
-def _place(vibration: MeasuredVibration, mobility: MeasuredMobility, inputs: Inputs) -> tuple[int, int]:
+def _point_indices(
+    vibration: MeasuredVibration, mobility: MeasuredMobility, inputs: Inputs
+) -> tuple[int, int]:
     """Return the indices of the speed and order to look at: the nearest, or where a point moves fastest."""
     near = np.ones(vibration.frequency.shape, dtype=bool)
     if inputs.at_rpm is not None:

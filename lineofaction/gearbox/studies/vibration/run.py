@@ -33,7 +33,7 @@ from lineofaction.gearbox.schemas.housings import HousingInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost
-from lineofaction.gearbox.studies.excitations import order_names, with_facts_of_scene
+from lineofaction.gearbox.studies.excitations import order_names, with_scene_metadata
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces, predicted_forces
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
@@ -128,12 +128,12 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
                 order=inputs.at_order,
             )
             if inputs.mode is not None and inputs.mode > len(housing.frequency):
-                kept = f"from 1 to {len(housing.frequency)}, the modes kept"
-                raise BadInput.of("mode", inputs.mode, kept, "Keep more modes of the housing.")
+                bound = f"from 1 to {len(housing.frequency)}, the modes kept"
+                raise BadInput.of("mode", inputs.mode, bound, "Keep more modes of the housing.")
             mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
         seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
         analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
-        analysis = with_facts_of_scene(analysis, tabled)
+        analysis = with_scene_metadata(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
     def motions(self, result: Result) -> list[OfferedMotion]:
@@ -190,9 +190,9 @@ def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]
     if name is not None and name not in tabled.housings:
         known = ", ".join(part.name for part in tabled.inputs.housings if _vibrates(part))
         raise BadInput.of("housing", name, f"one of {known or 'none'}", _REMEDY)
-    for own, housing in tabled.housings.items():
-        if own == name or (name is None and (housing.surface is not None or housing.points)):
-            return own, housing
+    for housing_name, housing in tabled.housings.items():
+        if housing_name == name or (name is None and (housing.surface is not None or housing.points)):
+            return housing_name, housing
     raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _REMEDY)
 
 

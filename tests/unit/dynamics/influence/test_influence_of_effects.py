@@ -103,7 +103,7 @@ def test_a_housing_is_estimated_as_ablation_shows_it(rpm: float) -> None:
     assert relative[0] > 2.0  # the order that the housing's inertia holds down
     size = np.max(entry.with_effect.orders)
     np.testing.assert_allclose(entry.estimate.orders, entry.order_change, rtol=0.05, atol=2e-3 * size)
-    assert entry.estimate.words.startswith(f"{entry.level.words}, ")
+    assert entry.estimate.text.startswith(f"{entry.level.text}, ")
     assert entry.level_change.order == entry.level.order == 1.0
     assert entry.level.decibels == pytest.approx(entry.level_change.decibels, abs=0.3)
     json.dumps(entry.estimate.to_json(), allow_nan=False)
@@ -174,7 +174,7 @@ def test_an_effect_without_which_nothing_holds_has_no_estimate() -> None:
     found = estimate_influences(replace(scene, bushings=bushings, rolling_contacts=contacts))
     assert "lateral" not in found
     assert "clearance" in found["tilt"].beyond
-    assert found["tilt"].words.endswith(found["tilt"].beyond)
+    assert found["tilt"].text.endswith(found["tilt"].beyond)
     linear = estimate_influences(helical())
     assert not any(size.beyond for size in linear.values())
     assert all(size.level.order <= 10.0 for size in linear.values())

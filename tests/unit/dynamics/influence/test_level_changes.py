@@ -55,7 +55,7 @@ def test_what_changes_nothing_is_0_db() -> None:
     for lines in (LINES, {}, {1.0: 0.0}):
         change = level_change(lines, lines, "force", "dB")
         assert (change.decibels, change.relative) == (0.0, 0.0)
-        assert change.words == "0 dB of force"
+        assert change.text == "0 dB of force"
     nothing = helical(effects={"friction": "on"})
     assert "friction" not in estimate_influences(nothing)
 
@@ -66,12 +66,12 @@ def test_levels_follow_amplitudes() -> None:
     change = level_change(LINES, {1.0: 4.0, 2.0: 36.0, 3.0: 1e-3}, "force", "dB(A)")
     assert (change.order, change.relative) == (2.0, 1.0)
     assert change.decibels == pytest.approx(20.0 * math.log10(2.0))
-    assert change.words == "+6 dB(A) of force at order 2"
+    assert change.text == "+6 dB(A) of force at order 2"
     back = level_change({1.0: 4.0, 2.0: 36.0}, LINES, "force")
     assert back.decibels == pytest.approx(-change.decibels)
     gone = level_change(LINES, {}, "force")
     assert gone.decibels == -MAX and gone.relative == 1.0
-    assert gone.words == "more than -60 dB of force at order 2"
+    assert gone.text == "more than -60 dB of force at order 2"
 
 
 @pytest.mark.law
@@ -146,7 +146,7 @@ def test_the_quantity_of_a_scene_decides_its_effects() -> None:
         assert sizes[name].largest == max(
             sizes[name].relative_mean, sizes[name].relative_peak_to_peak, sizes[name].relative_bearing_force
         )
-        assert influence.level.quantity in influence.words
+        assert influence.level.quantity in influence.text
     loose = replace(heard, tolerance=min(0.5, 11.0 * own["axial"].level.relative))
     assert decide_effects(loose).scene.effects.get("axial") == "off"
     tight = replace(heard, tolerance=9.0 * own["axial"].level.relative)

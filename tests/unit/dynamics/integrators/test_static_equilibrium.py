@@ -275,19 +275,21 @@ def test_series_are_the_same_whether_amplitudes_are_filtered_or_not(tmp_path):
 
 def test_samples_without_amplitudes_have_what_these_carry_and_all_of_them_where_asked():
     scene = replace(housed_pair(), meshes=gear_pair_scene(square_wave_table()).meshes, duration=0.01)
-    whole, runs = np.array([30, 80]), []
+    modal_samples, runs = np.array([30, 80]), []
     for outputs in (POINTS, replace(POINTS, displacements=False)):
         system = assemble(replace(scene, outputs=outputs))
         start = static_equilibrium(system)
-        runs.append(integrate(system, start, system.scene.integration, whole=whole))
+        runs.append(integrate(system, start, system.scene.integration, modal_samples=modal_samples))
     (full, lean), modal = (run.states for run in runs), system.arrays.sparse.modal
     assert lean.q.shape[1] == modal.first < full.q.shape[1] == system.arrays.mass.shape[0]
     np.testing.assert_array_equal(lean.q, full.q[:, : modal.first])
-    amplitudes = np.stack([full.q[whole, modal.first :], full.v[whole, modal.first :]], axis=1)
+    amplitudes = np.stack(
+        [full.q[modal_samples, modal.first :], full.v[modal_samples, modal.first :]], axis=1
+    )
     for run in runs:
-        np.testing.assert_array_equal(run.whole, amplitudes)
+        np.testing.assert_array_equal(run.modal_states, amplitudes)
     for states in (full, lean):
-        seen = observe(system.arrays, runs[0].time, states.q, states.v, states.moved, states.carried)
+        seen = observe(system.arrays, runs[0].time, states.q, states.v, states.quanta, states.carried)
         np.testing.assert_array_equal(seen.force[0], full.filtered[:, 0])
 
 

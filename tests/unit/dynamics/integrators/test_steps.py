@@ -259,9 +259,9 @@ def test_channels_are_points_behind_the_filter(made, stored, points):
 
 def test_local_coordinates_follow_from_the_filtered_state(made, stored, points):
     """Transmission errors are not filtered by themselves: they are linear in displacements that are."""
-    seen = observe(made.arrays, points.time, points.q, points.v, points.states.moved)
+    seen = observe(made.arrays, points.time, points.q, points.v, points.states.quanta)
     expected, first = behind_the_filter(made.sampling, seen.coordinate.T)
-    there = observe(made.arrays, stored.time, stored.q, stored.v, stored.states.moved)
+    there = observe(made.arrays, stored.time, stored.q, stored.v, stored.states.quanta)
     ours = filtered(made, stored.states, there).coordinate.T[first : first + expected.shape[0]]
     assert np.ptp(expected[:, 0]) > 1e-7
     assert np.max(np.abs(ours - expected)) < 1e-12 * np.max(np.abs(expected))

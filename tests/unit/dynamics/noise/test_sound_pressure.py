@@ -42,8 +42,8 @@ from dynamics.noise.housing_recordings import sound_paths
 from dynamics.noise.sensitivities import Sensitivity, _ranked
 from dynamics.noise.sound_band import (
     USUAL_RANGES,
-    _missed_between,
-    _missed_by_steps,
+    _peak_error,
+    _speed_step_error,
     largest_level,
     mean_power,
 )
@@ -332,9 +332,9 @@ def test_a_mean_over_speeds_is_that_of_a_steady_run_up_whatever_the_steps():
         for speed in (np.linspace(0.9, 1.1, 401), FINER, *(np.linspace(0.9, 1.1, n) for n in (21, 41))):
             power = 1.0 / ((speed - 1.0) ** 2 + damping**2)
             missed = abs(10.0 * math.log10(mean_power(speed, power) / exact))
-            assert missed <= max(_missed_by_steps(speed, power), 1e-3)
+            assert missed <= max(_speed_step_error(speed, power), 1e-3)
     assert mean_power(speed[:1], power[:1]) == power[0]
-    assert _missed_by_steps(speed[:1], power[:1]) == 0.0
+    assert _speed_step_error(speed[:1], power[:1]) == 0.0
 
 
 @pytest.mark.law
@@ -360,9 +360,9 @@ def test_a_peak_between_speeds_is_seen_by_its_flanks():
     for center, damping in ((1.002, 0.004), (0.9975, 0.01), (1.0, 0.003)):
         power = 1.0 / ((speed - center) ** 2 + damping**2)
         missed = 10.0 * np.log10(damping**-2 / power.max())
-        assert _missed_between(speed, power) == pytest.approx(missed, abs=1e-6)
-    assert _missed_between(speed, speed) == 0.0
-    assert _missed_between(speed[:1], speed[:1]) == 0.0
+        assert _peak_error(speed, power) == pytest.approx(missed, abs=1e-6)
+    assert _peak_error(speed, speed) == 0.0
+    assert _peak_error(speed[:1], speed[:1]) == 0.0
 
 
 def test_an_alternative_counts_by_its_difference(model):

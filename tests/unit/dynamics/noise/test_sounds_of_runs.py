@@ -26,8 +26,8 @@ from dynamics.loads import TimeLaw
 from dynamics.noise import (
     RadiatedSound,
     SoundOverTime,
+    cached_radiation,
     housing_radiation,
-    kept_radiation,
     loudest,
     models_at,
     pressure_recording,
@@ -454,7 +454,7 @@ def test_silence_has_no_loudest_point() -> None:
 @pytest.mark.law
 def test_a_mode_in_resonance_carries_the_sound() -> None:
     body, driven, _, _ = oscillating(5.0, 5.0 * (2.0 * np.pi * 300.0) ** 2)
-    plane = kept_radiation(body, EquivalentRadiatedPower(), driven.frequency)
+    plane = cached_radiation(body, EquivalentRadiatedPower(), driven.frequency)
     (point, *_) = loudest(radiated_sound(driven, body, None, plane))
     assert point.frequency == 300.0 and point.natural_frequency == pytest.approx(300.0)
     assert (point.bearing, point.mode_share) == ("seat", pytest.approx(1.0))
@@ -483,9 +483,9 @@ def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypa
     module = import_module("dynamics.noise.housing_radiation")
     monkeypatch.setattr(module, "MIN_COST", 0.0)
     body = rigid_housing(1.0, 1e6, 0.02, sphere(6, 0.1))
-    first = kept_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
+    first = cached_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
     monkeypatch.setattr(module, "housing_radiation", None)
-    again = kept_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
+    again = cached_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
     np.testing.assert_array_equal(again.matrix, first.matrix)
     assert (again.area, again.impedance, again.facts) == (first.area, first.impedance, first.facts)
     others = (
@@ -496,4 +496,4 @@ def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypa
     )
     for other in others:
         with pytest.raises(TypeError):  # computed anew
-            kept_radiation(*other, cache=tmp_path)
+            cached_radiation(*other, cache=tmp_path)

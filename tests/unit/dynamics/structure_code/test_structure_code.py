@@ -187,7 +187,7 @@ def test_a_folder_that_cannot_be_written_costs_the_file_alone(tmp_path):
 
 
 def test_code_lasts_as_long_as_somebody_holds_it(tmp_path, monkeypatch):
-    monkeypatch.setattr("dynamics.structure_code.machine_code.KEPT_IN_MEMORY", 1)
+    monkeypatch.setattr("dynamics.structure_code.machine_code.MAX_IN_MEMORY", 1)
     store = CodeStore(tmp_path)
     held = [
         (store.add(f"key {k}", written), count)
@@ -198,7 +198,7 @@ def test_code_lasts_as_long_as_somebody_holds_it(tmp_path, monkeypatch):
 
 
 def test_files_and_code_in_memory_stay_few(store, monkeypatch, tmp_path):
-    monkeypatch.setattr("dynamics.structure_code.machine_code.KEPT_IN_FILES", 3)
+    monkeypatch.setattr("dynamics.structure_code.machine_code.MAX_IN_FILES", 3)
     for k in range(6):
         store.note(f"{k:040d}")
     assert len(list(tmp_path.iterdir())) == 3

@@ -102,7 +102,7 @@ def test_derivatives_are_exact_for_small_deviations():
     nominal = nominal_tangent(gaps, state)
     pitches = np.arange(0, 323, 30)
     moved = contact.exact(pitches) - nominal.value
-    found = nominal.value + nominal.moved(gaps, pitches).sum(axis=0)
+    found = nominal.value + nominal.motion(gaps, pitches).sum(axis=0)
     missed = np.abs(found - nominal.value - moved)
     assert np.abs(moved).max() > 5e-9
     assert np.quantile(missed, 0.9) < 1e-3 * np.abs(moved).max()
@@ -117,10 +117,10 @@ def test_tangents_lie_above(exact):
     tangents = pitch_tangents(gaps, contact.solved(pitches), pitches)
     assert np.stack([each.value for each in tangents]) == pytest.approx(exact[pitches], abs=SOLVER)
     for tangent in (nominal, *tangents):
-        above = tangent.value + tangent.moved(gaps, np.arange(contact.pitches)).sum(axis=0) - exact
+        above = tangent.value + tangent.motion(gaps, np.arange(contact.pitches)).sum(axis=0) - exact
         assert np.quantile(above, 0.01) > -0.02e-6
         assert above.max() > 0.5e-6
-    own = tangents[1].moved(gaps, pitches[1:])
+    own = tangents[1].motion(gaps, pitches[1:])
     change, every = own.sum(axis=0), np.ones(own.shape[1:], dtype=bool)
     assert tangents[1].value + change[0] == pytest.approx(exact[150], abs=SOLVER)
     assert np.abs(tangents[1].distance(own, change, every)).max() < 1e-15

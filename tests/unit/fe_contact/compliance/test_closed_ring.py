@@ -60,10 +60,10 @@ def test_blocks_are_as_exact_as_stated(
 ) -> None:
     gear = GEARS[name]
     tooth, loads, free = condensed(gear)
-    solved = solved_harmonics(monkeypatch, tooth.held.cut_size)
+    solved = solved_harmonics(monkeypatch, tooth.condensed.cut_size)
 
     def ring() -> RingSolution:
-        return close_ring(tooth.held, gear.teeth, usual_reach(gear), loads, free)
+        return close_ring(tooth.condensed, gear.teeth, usual_reach(gear), loads, free)
 
     found = ring()
     assert len(solved) <= 8  # of any number of teeth
@@ -71,7 +71,7 @@ def test_blocks_are_as_exact_as_stated(
     exact = ring()
     assert exact.error < 1e-12
     flank = slice(0, len(tooth.sector.flank))
-    largest = np.abs(tooth.held.flank[flank, flank]).max()
+    largest = np.abs(tooth.condensed.flank[flank, flank]).max()
     error = np.abs(found.blocks - exact.blocks)[:, flank, flank].max() / largest
     assert 1e-3 * found.error < error < found.error <= 1e-6
 

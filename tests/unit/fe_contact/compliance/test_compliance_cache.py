@@ -144,7 +144,7 @@ def test_a_failure_where_nothing_can_be_locked_is_that_of_the_computation(tmp_pa
     file = tmp_path / "no directory"
     file.write_text("a file", "utf-8")
     with pytest.raises(ZeroDivisionError) as failed:
-        cache.kept_or_computed(file, "key", FlankCompliance, failing)
+        cache.cached_or_computed(file, "key", FlankCompliance, failing)
     assert failed.value.__context__ is None
 
 

@@ -48,7 +48,7 @@ def test_flanks_move_as_compliance_times_force(gear: Toothing) -> None:
     flank = flank_compliance_3d(gear, recipe, reach=4)
     size = flank.blocks.shape[1]
     loads = [{0: -random_load(size, 1), 1: -random_load(size, 2)}, {-2: random_load(size, 3)}]
-    for load, found in zip(loads, deformed_solids(gear, recipe, loads, beside=2), strict=True):
+    for load, found in zip(loads, deformed_solids(gear, recipe, loads, unloaded=2), strict=True):
         assert len(found.flank_displacement) == len(load) + 4
         for tooth, moved in found.flank_displacement.items():
             expected = sum(flank.block(tooth, other) @ forces for other, forces in load.items())
@@ -134,8 +134,8 @@ def test_solids_are_whole_and_right_side_out(gear: Toothing) -> None:
     recipe = coarse(gear)
     size = flank_compliance_3d(gear, recipe, reach=0).blocks.shape[1]
     load = {1: -random_load(size, 5)}
-    (one,) = deformed_solids(gear, recipe, [load], beside=0)
-    (three,) = deformed_solids(gear, recipe, [load], beside=1)
+    (one,) = deformed_solids(gear, recipe, [load], unloaded=0)
+    (three,) = deformed_solids(gear, recipe, [load], unloaded=1)
     elements = sector_of(gear)
     cut = elements.sector.nodes[:, elements.sector.grid.left]
     assert len(one.points) == elements.points
@@ -166,7 +166,7 @@ def tip_at(found: DeformedGear, gear: Toothing, z: float) -> float:
 def test_a_whole_ring_closes() -> None:
     recipe = coarse(SPUR)
     size = flank_compliance_3d(SPUR, recipe, reach=0).blocks.shape[1]
-    (found,) = deformed_solids(SPUR, recipe, [{0: -random_load(size, 5)}], beside=20)
+    (found,) = deformed_solids(SPUR, recipe, [{0: -random_load(size, 5)}], unloaded=20)
     elements = sector_of(SPUR)
     cut = elements.sector.nodes[:, elements.sector.grid.left]
     assert len(found.points) == SPUR.teeth * (elements.points - np.count_nonzero(cut >= 0))

@@ -115,7 +115,7 @@ def test_torsion_inside_the_web_is_that_of_a_tube_over_the_face() -> None:
     section = quad_sector(gear, recipe)
     solved, loads = condensed_gear(gear, section, recipe, 1, ClampedBore(), StageClock())
     cuts = np.tile(solved.ring.left.sum(axis=0), (2, 1))[:, :1]
-    flank = solved.held.flank @ loads[:, :1] + solved.held.transmitted.T @ cuts
+    flank = solved.condensed.flank @ loads[:, :1] + solved.condensed.transmitted.T @ cuts
     field = solved.condensation.expand(np.concatenate([flank, cuts]))[:, 0]
     low, high = (section.grid.body_rows + row for row in section.grid.web_rows)
     turned, radii = [], []

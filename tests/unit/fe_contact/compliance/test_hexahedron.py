@@ -119,7 +119,7 @@ class FreeBore:
     name = "free"
     seat = BoreSeat()
 
-    def held(self, grid: object, z: np.ndarray) -> np.ndarray:
+    def constrained(self, grid: object, z: np.ndarray) -> np.ndarray:
         return np.zeros((len(z), grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
 
 

@@ -122,7 +122,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 
 @GEARS
 def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
-    """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`MIN_TOLD`)."""
+    """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`MIN_SIGNIFICANT`)."""
     recipe = two_on_land(gear)
     found = over_face(gear, recipe, reach=4)
     direct = whole_gear_stress(gear, recipe)

@@ -64,7 +64,7 @@ def test_condensation_is_the_schur_complement(leaf: int) -> None:
     exact = matrix[np.ix_(KEPT, KEPT)] - matrix[np.ix_(KEPT, others)] @ np.linalg.solve(
         matrix[np.ix_(others, others)], matrix[np.ix_(others, KEPT)]
     )
-    assert np.array_equal(found.kept, KEPT)
+    assert np.array_equal(found.retained, KEPT)
     assert np.tril(condensed) == pytest.approx(np.tril(exact), abs=1e-12)
     values = RANDOM.normal(size=(len(KEPT), 2))
     field = found.expand(values)
@@ -189,7 +189,7 @@ def disc(modules: float, helix: float = 0.3, teeth: int = 40) -> Gear:
 
 
 def slenderness(gear: Gear) -> float:
-    return (gear.root_radius - gear.held_radius) / gear.face_width
+    return (gear.root_radius - gear.seat_radius) / gear.face_width
 
 
 def test_a_chain_of_springs_keeps_what_it_must() -> None:

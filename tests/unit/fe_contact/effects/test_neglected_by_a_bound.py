@@ -106,7 +106,7 @@ def test_what_is_neglected_changes_less_than_its_bound_and_the_tolerance(seed: i
         assert influence is not None
         assert np.all(np.abs(influence.mean) <= extent.reach + 1e-12)
         assert np.all(np.abs(influence.peak_to_peak) <= extent.span + 1e-12)
-        bounds.append(largest_part(extent, influence.whole.mean, influence.whole.peak_to_peak, allowed))
+        bounds.append(largest_part(extent, influence.full.mean, influence.full.peak_to_peak, allowed))
     assert sum(bounds) <= 0.501 * allowed.relative
 
 

@@ -43,7 +43,7 @@ def solved(cache):
 
     def solve(pair, pitches, position=POSITIONS, effects=None, torques=(LIGHT, HEAVY)):
         checked = check_request(
-            pair, *table_request(torques=torques, level="draft", effects=effects or {}), whole_table=False
+            pair, *table_request(torques=torques, level="draft", effects=effects or {}), check_size=False
         )
         plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
         contact = pair_contact(pair, plan, cache)

@@ -286,7 +286,7 @@ def solved(tmp_path_factory):
 
     def solve(pair, position=position, pitches=23):
         request = table_request(torques=(1e-3, 100.0), level="draft", effects={"corner_contact": "off"})
-        checked = check_request(pair, *request, whole_table=False)
+        checked = check_request(pair, *request, check_size=False)
         plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
         contact = pair_contact(pair, plan, cache)
         (place,) = operating_points(checked.request.scene, checked.request.choices, contact).places

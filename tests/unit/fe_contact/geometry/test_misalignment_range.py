@@ -40,7 +40,7 @@ def test_class_seven_of_a_spur_pair_is_that_of_the_formulas_by_hand() -> None:
     assert 1e6 * made.likely == pytest.approx(19.94, abs=0.01)
     assert 1e6 * made.worst == pytest.approx(38.61, abs=0.01)
     assert [1e6 * value for value in made.axis] == pytest.approx([-20.0, -10.0, 0.0, 10.0, 20.0])
-    assert "to 20 µm" in made.words and "19.9 µm by squares, 38.6 µm at worst" in made.words
+    assert "to 20 µm" in made.text and "19.9 µm by squares, 38.6 µm at worst" in made.text
 
 
 def test_the_axis_ends_at_a_figure_of_the_standard() -> None:

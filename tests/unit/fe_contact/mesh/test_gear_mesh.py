@@ -46,7 +46,7 @@ def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     plain = (gear.teeth - len(mesh.teeth)) * np.pi / gear.teeth * gear.root_radius**2
     toothed = len(mesh.teeth) * tooth_area(tooth_profile(gear)) + plain
-    exact = gear.sign * (toothed - np.pi * gear.held_radius**2)
+    exact = gear.sign * (toothed - np.pi * gear.seat_radius**2)
     # Quadratic edges of up to 12 degrees on the plain rim and the bore miss their segment by a few 1e-6.
     assert element_area(mesh.points, mesh.triangles).sum() == pytest.approx(exact, rel=4e-6)
 
@@ -115,9 +115,9 @@ def boundary_middles(triangles: np.ndarray, free: np.ndarray) -> np.ndarray:
 def test_bore_teeth_and_sizes_are_as_they_should(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     radius = np.linalg.norm(mesh.points, axis=1)
-    on_bore = np.flatnonzero(gear.sign * (radius - gear.held_radius) < 1e-9)
+    on_bore = np.flatnonzero(gear.sign * (radius - gear.seat_radius) < 1e-9)
     assert np.array_equal(np.sort(mesh.bore_nodes), on_bore)
-    assert radius[on_bore] == pytest.approx(gear.held_radius, rel=1e-12)
+    assert radius[on_bore] == pytest.approx(gear.seat_radius, rel=1e-12)
     sector = mesh.sector
     for nodes, tooth in zip(mesh.sector_nodes, mesh.teeth, strict=True):
         expected = rotated(sector.points, tooth * 2.0 * np.pi / gear.teeth)

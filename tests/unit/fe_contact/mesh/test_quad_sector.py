@@ -73,7 +73,7 @@ def test_nodes_are_on_the_exact_outline(name: str) -> None:
     assert s[0] == pytest.approx(split) if name != "undercut" else profile.s_root < s[0] < split
     assert ODD[name].sign * section.normals[0, 1] >= 0.4 - 1e-9
     assert np.min(np.abs(s[::2] - profile.s_form)) < 1e-15
-    assert np.linalg.norm(points[grid.bore], axis=1) == pytest.approx(ODD[name].held_radius, rel=1e-14)
+    assert np.linalg.norm(points[grid.bore], axis=1) == pytest.approx(ODD[name].seat_radius, rel=1e-14)
     tip = points[grid.number[-1][grid.number[-1] >= 0]]
     assert np.linalg.norm(tip, axis=1) == pytest.approx(ODD[name].tip_radius, rel=1e-14)
     coast = grid.number[2 * grid.body_rows :, 2 * (grid.land + grid.across)]
@@ -97,7 +97,7 @@ def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
     s = np.linspace(profile.s_space, profile.s_tip, 20001)
     x, y = profile.flank(s).T
     exact = float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))  # both flanks, from the root up
-    exact += profile.tip_angle * subject.tip_radius**2 - half * subject.held_radius**2
+    exact += profile.tip_angle * subject.tip_radius**2 - half * subject.seat_radius**2
     quads = section.grid.quads
     ring = quads[:, [0, 4, 1, 5, 2, 6, 3, 7]]
     a, m, b = (section.points[ring[:, (np.arange(4) * 2 + i) % 8]] for i in range(3))

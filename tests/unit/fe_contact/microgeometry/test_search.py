@@ -335,7 +335,7 @@ def test_positions_of_every_analysis_join_until_the_limits_are_kept(
     problem = DesignProblem(
         cast(Any, Places(np.array([0.0, 0.5]))), (VARIABLE,), Limits(), 1.0, objective=WeightedMean()
     )
-    asked: Any = SimpleNamespace(own=(0.0,), search=Search())
+    asked: Any = SimpleNamespace(start_design=(0.0,), search=Search())
     checked = SimpleNamespace(predicted=lambda *_: SimpleNamespace(cpu_seconds=0.0))
     study: Any = SimpleNamespace(decision=SimpleNamespace(checked=checked, plan=None))
     found = choice.choose(problem, (CONVERGED,), asked, study, StageClock(), Run(), lambda: False)

@@ -196,7 +196,7 @@ def test_the_larger_of_the_part_and_the_floor_is_allowed():
 
     def allowed(tolerance):
         return check_request(
-            quiet_pair(), *table_request(torques=[20.0], tolerance=AllowedError.given(tolerance))
+            quiet_pair(), *table_request(torques=[20.0], tolerance=AllowedError.from_value(tolerance))
         ).request.options.allowed
 
     assert allowed(0.02) == AllowedError(0.02, 20 * NM)

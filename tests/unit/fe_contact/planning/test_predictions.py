@@ -21,7 +21,7 @@ from fe_contact import (
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.run_plan import plan_run
-from fe_contact.compliance.cache import kept_size
+from fe_contact.compliance.cache import cached_size
 from fe_contact.errors import InputError
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model
@@ -228,13 +228,13 @@ def test_memory_grows_with_meshes_positions_and_slices():
 
 
 def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
-    assert kept_size(None, "key") == kept_size(tmp_path, "key") == 0
+    assert cached_size(None, "key") == cached_size(tmp_path, "key") == 0
     (tmp_path / "compliance-key.npz").write_bytes(bytes(17))
-    assert kept_size(tmp_path, "key") == 17
+    assert cached_size(tmp_path, "key") == 17
     # Nothing is factorised then: every gear and mesh counts with the bytes that are read.
     gears = pair(helix=0.3)
     fresh = predicted_memory(gears, tmp_path)
-    monkeypatch.setattr(cost_model, "solid_kept", lambda *_: 3_000_000)
+    monkeypatch.setattr(cost_model, "solid_cached", lambda *_: 3_000_000)
     kept = predicted_memory(gears, tmp_path)
     plan = decide(
         check_request(gears, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))

@@ -12,12 +12,12 @@ import pytest
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, SOURCES
 from fe_contact.ste.curve_quantities import (
-    BESIDE_MESH,
     FIRST_HARMONIC,
     MEAN,
+    OFF_MESH,
     PEAK_TO_PEAK,
     QUANTITIES,
-    missed_peaks,
+    peak_excess,
     quantity_changes,
 )
 from fe_contact.ste.database import SteDatabase
@@ -218,13 +218,13 @@ def test_the_peak_of_a_tent_between_two_knots_is_found(apex: float) -> None:
     tent = np.abs((X - apex + 0.5) % 1.0 - 0.5)[:, None]
     missed = 0.5 - np.ptp(tent)
     assert missed > 1e-3
-    assert missed_peaks(X, tent, 1)[0] == pytest.approx(missed, rel=1e-9)
-    assert missed_peaks(X, -tent, 1)[0] == pytest.approx(missed, rel=1e-9)
+    assert peak_excess(X, tent, 1)[0] == pytest.approx(missed, rel=1e-9)
+    assert peak_excess(X, -tent, 1)[0] == pytest.approx(missed, rel=1e-9)
 
 
 def test_a_step_between_flat_parts_misses_nothing() -> None:
     step = np.where((X > 0.2) & (X < 0.7), 1.0, 0.0)[:, None]
-    assert missed_peaks(X, step, 1)[0] == 0.0
+    assert peak_excess(X, step, 1)[0] == 0.0
 
 
 def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
@@ -233,7 +233,7 @@ def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
     change = quantity_changes(position, np.tile(TWO_WAVES, (3, 1)), other, 3)[:, 0]
     assert change[FIRST_HARMONIC] == pytest.approx(1e-8, rel=1e-3)
     assert change[FIRST_HARMONIC + 1 :].max() < 1e-10
-    assert change[BESIDE_MESH] < 1e-18
+    assert change[OFF_MESH] < 1e-18
 
 
 def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders() -> None:
@@ -241,7 +241,7 @@ def test_what_differs_from_pitch_to_pitch_is_beside_the_mesh_orders() -> None:
     curve = np.tile(TWO_WAVES, (3, 1))
     other = curve + 1e-8 * np.cos(2.0 * np.pi / 3.0 * position)[:, None]
     change = quantity_changes(position, curve, other, 3)[:, 0]
-    assert change[BESIDE_MESH] == pytest.approx(1e-8, rel=1e-3)
+    assert change[OFF_MESH] == pytest.approx(1e-8, rel=1e-3)
     assert change[FIRST_HARMONIC:].max() < 1e-10
 
 

@@ -15,7 +15,7 @@ import xarray
 from fe_contact.errors import DatabaseError
 from fe_contact.ste import SCHEMA_VERSION, SteDatabase
 from fe_contact.ste.curve_errors import SOURCES
-from fe_contact.ste.curve_quantities import BESIDE_MESH, QUANTITIES
+from fe_contact.ste.curve_quantities import OFF_MESH, QUANTITIES
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status
 
@@ -139,8 +139,8 @@ def test_older_files_do_not_know_the_errors_of_orders_beside_the_mesh(make, tmp_
     replace(database, curve_error=errors, metadata=older).to_netcdf(tmp_path / "older.nc")
     read = SteDatabase.from_netcdf(tmp_path / "older.nc").curve_error
     assert read.shape[1] == QUANTITIES
-    assert np.isnan(read[:, BESIDE_MESH]).all()
-    assert np.all(np.delete(read, BESIDE_MESH, axis=1) == 1.0)
+    assert np.isnan(read[:, OFF_MESH]).all()
+    assert np.all(np.delete(read, OFF_MESH, axis=1) == 1.0)
 
 
 def test_every_flipped_bit_is_noticed_or_harmless(make, tmp_path):

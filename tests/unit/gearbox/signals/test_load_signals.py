@@ -13,7 +13,7 @@ from recordings import MDF, Signal, h5py, pyuff
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import SceneInput, read_model
 from lineofaction.gearbox.schemas.files import READERS, SENT, written_out
-from lineofaction.gearbox.schemas.named_files import beside
+from lineofaction.gearbox.schemas.named_files import in_folder
 
 EXAMPLES = Path(__file__).parents[4] / "examples"
 TIME = 3.0 + np.arange(2001) / 1000.0
@@ -72,7 +72,7 @@ def test_a_recording_is_what_a_hand_would_write(form: str, tmp_path: Path) -> No
     name = FORMS[form](tmp_path / f"drive.{form}").name
     signal = {"file": name, "start_s": 3.5, "end_s": 4.5}
     scene = written_out(
-        _scene({"signal": signal}, {"signal": signal | {"scale": -1.0}}), beside(tmp_path), READERS
+        _scene({"signal": signal}, {"signal": signal | {"scale": -1.0}}), in_folder(tmp_path), READERS
     )
     drive, load = scene["drives"][0], scene["loads"][0]
     assert set(drive) == {"name", "shaft", "time_s", "speed_rpm"}
@@ -89,7 +89,7 @@ def test_means_keep_the_turns_and_take_the_noise(tmp_path: Path) -> None:
     columns = np.stack([TIME, noisy / RPM], axis=1)
     np.savetxt(tmp_path / "n.csv", columns, delimiter=",", header="time_s,speed_rpm", comments="")
     signal = {"file": "n.csv", "average_s": 0.05}
-    drive = written_out(_scene({"signal": signal}), beside(tmp_path), READERS)["drives"][0]
+    drive = written_out(_scene({"signal": signal}), in_folder(tmp_path), READERS)["drives"][0]
     time, speed = np.array(drive["time_s"]), np.array(drive["speed_rpm"]) * RPM
     np.testing.assert_allclose(time, 0.025 + 0.05 * np.arange(40), atol=1e-9)
     assert np.sum(speed) * 0.05 == pytest.approx(np.trapezoid(noisy, TIME), rel=1e-9)
@@ -120,7 +120,7 @@ def test_what_a_scene_may_not_name_is_refused(
 ) -> None:
     _csv(tmp_path / "a.csv")
     with pytest.raises(BadInput, match=rf"(?s){field}.*({bound})"):
-        written_out(_scene(drive), beside(tmp_path), READERS)
+        written_out(_scene(drive), in_folder(tmp_path), READERS)
 
 
 def test_more_samples_than_a_course_holds_are_refused(tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_more_samples_than_a_course_holds_are_refused(tmp_path: Path) -> None:
         content["speed_rpm"] = np.full(100_001, 900.0)
         content.attrs["sample_rate_hz"] = 51_200.0
     with pytest.raises(BadInput, match=r"at most 100000 samples\. Give average_s"):
-        written_out(_scene({"signal": {"file": "a.h5"}}), beside(tmp_path), READERS)
+        written_out(_scene({"signal": {"file": "a.h5"}}), in_folder(tmp_path), READERS)
 
 
 def test_a_scene_file_is_driven_by_a_recording(tmp_path: Path) -> None:
@@ -152,4 +152,4 @@ def test_a_scene_file_is_driven_by_a_recording(tmp_path: Path) -> None:
 def test_a_service_opens_no_recordings(tmp_path: Path) -> None:
     _csv(tmp_path / "a.csv")
     with pytest.raises(BadInput, match=r"drives\[0\]\.signal.*a service opens no recordings"):
-        written_out(_scene({"signal": {"file": "a.csv"}}), beside(tmp_path), SENT)
+        written_out(_scene({"signal": {"file": "a.csv"}}), in_folder(tmp_path), SENT)

@@ -100,7 +100,7 @@ def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> N
     deck = input_deck(placed, LOADING)
     ties = re.findall(r"\*EQUATION\n2\n(\d+),(\d),1\.,(\d+),1,(\S+)", deck)
     gear, (first, second) = placed.gears[0], numbered_bodies(placed.gears)
-    assert len(ties) == 2 * len(gear.held)
+    assert len(ties) == 2 * len(gear.bore_nodes)
     assert {int(tie[2]) for tie in ties} == {second.last_node + 1}
     lag = 1e-5  # of the turning node: every node moves by lag / r_b1 times its arm, at right angles to it
     for node, axis, _, factor in ties:

@@ -83,7 +83,7 @@ def test_the_condensed_compliance_is_that_of_the_whole_body() -> None:
     moved = body.solve(forces)
     condensed = body.compliance @ forces[body.freedoms]
     np.testing.assert_allclose(moved[body.freedoms], condensed, rtol=0.0, atol=1e-12 * np.abs(moved).max())
-    held = (2 * body.body.held[:, None] + np.arange(2)).ravel()
+    held = (2 * body.body.bore_nodes[:, None] + np.arange(2)).ravel()
     assert np.all(moved[held] == 0.0)
     out = body.stiffness @ moved - forces
     out[held] = 0.0

@@ -11,7 +11,7 @@ import pytest
 from analysis_requests import table_request
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis.database import kept_tolerance
+from fe_contact.analysis.database import refined_table
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
 from fe_contact.analysis.estimates import held_out_loads
 from fe_contact.analysis.request.model_choice import Decision, decide
@@ -43,7 +43,7 @@ def from_draft(monkeypatch) -> None:
         first = decide(checked, cache)
         return first.refined("draft", first.mesh.slices, first.plan.nodes, "the coarsest")
 
-    monkeypatch.setattr(kept_tolerance, "decide", drafted)
+    monkeypatch.setattr(refined_table, "decide", drafted)
 
 
 def receipt(table: SteDatabase) -> dict:
@@ -102,7 +102,7 @@ def test_what_is_used_falls_from_pass_to_pass_and_met_is_what_the_table_states(
     table = analyze(SPUR, tolerance=allowed, **PLANE, cache=tmp_path)
     used = [one["used"] for one in receipt(table)["passes"]]
     assert used == sorted(used, reverse=True)
-    assert len(set(used)) == len(used) <= kept_tolerance.MAX_PASSES
+    assert len(set(used)) == len(used) <= refined_table.MAX_PASSES
     stated = [
         getattr(table, name)(torque=torque)
         for torque in PLANE["torques"]
@@ -177,7 +177,7 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
         predicted.append(receipt(done.table)["prediction"]["cpu_seconds"])
         return done
 
-    monkeypatch.setattr(kept_tolerance, "compute_pass", counted)
+    monkeypatch.setattr(refined_table, "compute_pass", counted)
     refine_positions(monkeypatch)
     table = analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
     assert len(computed) > 1
@@ -192,9 +192,9 @@ def refine_positions(monkeypatch) -> None:
     def closer(decision, _shares):
         plan = decision.plan
         finer = decision.refined("draft", 1, dataclasses.replace(plan.nodes, tolerance=1e-4), "closer")
-        return kept_tolerance.Refinement(finer, "position", ("positions",), 0.5)
+        return refined_table.Refinement(finer, "position", ("positions",), 0.5)
 
-    monkeypatch.setattr(kept_tolerance, "next_pass", closer)
+    monkeypatch.setattr(refined_table, "next_pass", closer)
 
 
 @pytest.mark.parametrize(
@@ -230,7 +230,7 @@ def fail_from(monkeypatch, number: int, error: BaseException) -> None:
             raise error
         return compute_pass(*arguments, **more)
 
-    monkeypatch.setattr(kept_tolerance, "compute_pass", failing)
+    monkeypatch.setattr(refined_table, "compute_pass", failing)
 
 
 def test_the_first_pass_may_fail_as_ever(monkeypatch):

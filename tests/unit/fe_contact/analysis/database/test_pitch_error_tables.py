@@ -9,7 +9,7 @@ from analysis_requests import point_request, table_request
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import position_nodes
 from fe_contact.analysis.estimates.position_errors import measured_nodes
-from fe_contact.analysis.pairs import kept_contact
+from fe_contact.analysis.pairs import solved_contact
 from fe_contact.analysis.position_nodes import adaptive_nodes, assessed_pitches
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import solve_table
@@ -109,10 +109,10 @@ def test_pitches_solved_in_parts_are_the_whole_table(monkeypatch, edges):
         sizes[-1].append(problem.candidates.gap.size)
         return solve_sets(problem, sets)
 
-    monkeypatch.setattr(kept_contact, "solve_sets", counted)
+    monkeypatch.setattr(solved_contact, "solve_sets", counted)
     for maximum in (2**18, 100, 1):
         sizes.append([])
-        monkeypatch.setattr(kept_contact, "POINTS_AT_ONCE", maximum)
+        monkeypatch.setattr(solved_contact, "POINTS_AT_ONCE", maximum)
         tables.append(analyze(GearPair(first, gear(23)), **options))
     assert len(sizes[0]) == 1 and max(sizes[1]) <= 100 and len(sizes[2]) == 17
     whole, *parted = tables
@@ -142,7 +142,7 @@ def test_periods_that_cannot_be_tabulated_are_refused_by_name(teeth, options, me
     with pytest.raises(InputError, match=message) as refusal:
         check_request(pair, *table_request(torques=TORQUES, **options))
     assert refusal.value.field == "pitches"
-    assert check_request(pair, TableAxes(torques=TORQUES), whole_table=False).cycle is None
+    assert check_request(pair, TableAxes(torques=TORQUES), check_size=False).cycle is None
 
 
 def test_a_misalignment_axis_shortens_the_longest_period():
@@ -182,7 +182,7 @@ def test_pitches_beside_count_where_interpolants_reach(kinks):
 
     def near(position):
         values = whole(position)
-        values[::2, ~rule.reached_beside(position)] = np.nan
+        values[::2, ~rule.reached_by_neighbor(position)] = np.nan
         return values
 
     rule = NodeRule(16, 0.002, 768)

@@ -152,7 +152,7 @@ def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_e
     made = refined(ran(narrow, "standard", **tolerance), finite_width=1.2, discretisation=0.3)
     assert made.source == "finite_width"
     assert made.decision.checked.model.across_face
-    assert "-> three dimensions" in made.words
+    assert "-> three dimensions" in made.text
     tight = {"tolerance": AllowedError(0.001, 0.0)}
     for plain in (
         ran(steel, "standard", **tight),
@@ -176,5 +176,5 @@ def test_every_source_has_its_way_or_its_reason(helical):
     for name in set(AT_NODES) - {METHOD}:
         for share in (1.05, 2.0, 1e3):
             made = next_pass(helical, shares(**{name: share}))
-            assert (made.words if isinstance(made, Refinement) else made) != ""
+            assert (made.text if isinstance(made, Refinement) else made) != ""
             assert told(made) == told(next_pass(helical, shares(**{name: share})))

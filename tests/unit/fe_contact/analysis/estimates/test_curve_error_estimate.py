@@ -17,7 +17,7 @@ from fe_contact.analysis.request.request_check import check_request
 from fe_contact.options import LEVELS, Run
 from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
 from fe_contact.ste.curve_errors import OF_LOAD_ARM, SOURCES, all_sources
-from fe_contact.ste.curve_quantities import BESIDE_MESH, FIRST_HARMONIC, quantity_changes
+from fe_contact.ste.curve_quantities import FIRST_HARMONIC, OFF_MESH, quantity_changes
 from fe_contact.ste.fields import DIMENSIONS
 
 FORCE = 3000.0
@@ -118,7 +118,7 @@ def test_load_arms_of_two_tables_differ_by_no_more_than_both_state():
     for positions in (16, 64):
         rough = analyze(helical(), level="draft", positions=positions, **how)
         arms = rough.load_arm[:, :, 0, 0], fine.load_arm[:, :, 0, 0]
-        some = [*range(BESIDE_MESH), *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
+        some = [*range(OFF_MESH), *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
         apart = quantity_changes(rough.position, *arms, 1, fine.position)[some]
         stated = sum(all_sources(each.load_arm_error[..., 0, 0])[some] for each in (rough, fine))
         assert np.all(apart <= stated)
@@ -156,7 +156,7 @@ def test_orders_of_a_shaft_are_as_sure_as_what_pitches_differ_by():
     assert seen.error[0] < 1e-3 * seen.amplitude[0]
     assert seen.error[0] < 0.2 * seen.error[19]
     by_mesh = rough.curve_error[SOURCES.index("discretisation"), :, 0, 0, 0]
-    assert by_mesh[BESIDE_MESH] < 0.1 * by_mesh[FIRST_HARMONIC]
+    assert by_mesh[OFF_MESH] < 0.1 * by_mesh[FIRST_HARMONIC]
 
 
 def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share():

@@ -141,7 +141,7 @@ def test_sound_results_take_little_of_the_room_of_balances(
     pair: Callable[[], GearPair], model: str, misalignment: float
 ) -> None:
     laws = check_flank_laws(*solved(pair(), model, misalignment))
-    assert not [law.words for law in laws if law.broken]
+    assert not [law.text for law in laws if law.broken]
     balances = [law.ratio for law in laws if "balance" in law.law or "carry the load" in law.law]
     assert len(balances) == 3
     assert max(balances) < 0.2

@@ -175,4 +175,4 @@ def test_nothing_is_assembled_for_a_second_question(pair: CondensedPair) -> None
 def _contacts(pair: CondensedPair) -> list[PairContact]:
     """Return the contacts of the corrected plane on all its discretizations."""
     every = pair.contacts
-    return [each for each in (every.own, every.plane, every.coarse) if each is not None]
+    return [each for each in (every.fine, every.plane, every.coarse) if each is not None]

@@ -131,7 +131,7 @@ def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) 
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
         quick = pair.table(with_flank(PAIR, RELIEF), TORQUES, center_distance_change=change)
-    assert list(pair._apart) == [3e-5, 2e-5]  # those requested last
+    assert list(pair._by_distance) == [3e-5, 2e-5]  # those requested last
     whole = table_of(with_flank(PAIR, RELIEF), cache, center_distance_changes=[2e-5])
     assert np.array_equal(quick.center_distance_change, whole.center_distance_change)
     assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
@@ -147,7 +147,7 @@ def test_a_center_distance_at_which_more_teeth_touch_is_refused(
     monkeypatch.setattr(module, "condensed_teeth", lambda _: 7)
     with pytest.raises(InputError, match=r"center_distance_changes\[0\].*at most \d teeth .* 7 can"):
         pair.table(PAIR, TORQUES, center_distance_change=1e-5)
-    assert not pair._apart
+    assert not pair._by_distance
 
 
 def test_what_bodies_or_plane_cannot_hold_is_refused(cache: Path) -> None:

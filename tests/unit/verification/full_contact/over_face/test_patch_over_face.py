@@ -63,7 +63,7 @@ def pressed(slave: int, layers: int = 3, skew: float = 0.0) -> tuple[FaceGap, Co
         block_rows = np.zeros((2, count, 2 * functions, len(gap.gap)))
         block_rows[:, body.columns[0]] = forces.reshape(2, count, 2 * functions, -1)
         rows = sp.csr_array(block_rows.reshape(-1, len(gap.gap)).T)
-        compliance += rows @ body.moved(rows)
+        compliance += rows @ body.displacement(rows)
     return gap, ContactSystem(gap.gap, compliance, gap.closing, gap.closing, gap.weight)
 
 
@@ -95,7 +95,7 @@ def test_condensed_compliances_are_those_of_the_whole_halves() -> None:
     """Reciprocity, positive energy, u f = p C p, and the reactions at the held side."""
     body, stiffness = steel(), extruded_stiffness(block(0).points, block(0).triangles, LAYERS, STEEL)
     rng = np.random.default_rng(3)
-    held = np.isin(stiffness.node, body.body.held)
+    held = np.isin(stiffness.node, body.body.bore_nodes)
     for odd, compliance in enumerate((body.even, body.odd)):
         at_middle = (stiffness.function == 0) & ((stiffness.component != Z) == bool(odd))
         free = np.flatnonzero(~(held | at_middle))
@@ -117,7 +117,7 @@ def test_condensed_compliances_are_those_of_the_whole_halves() -> None:
             hats = stiffness.function[held] <= LAYERS.count
             turned = np.select([stiffness.component[held] == k for k in (0, 1)], [-arms[:, 1], arms[:, 0]])
             moment = float(reaction[hats] @ turned[hats])
-            assert body.held_moment @ own.ravel() == pytest.approx(moment, rel=1e-9)
+            assert body.bore_moment @ own.ravel() == pytest.approx(moment, rel=1e-9)
             assert moment == pytest.approx(-float(body.arms @ own.ravel()), rel=1e-9)
 
 

@@ -8,17 +8,17 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
-Kept = TypeVar("Kept")
+Cached = TypeVar("Cached")
 
 
-def kept_in(
+def cached_in(
     file: Path | None,
-    read: Callable[[Path], Kept],
-    make: Callable[[], Kept],
-    write: Callable[[Kept, Path], object],
+    read: Callable[[Path], Cached],
+    make: Callable[[], Cached],
+    write: Callable[[Cached, Path], object],
     unreadable: type[Exception],
-    keeps: Callable[[Kept], bool] = lambda _made: True,
-) -> Kept:
+    keeps: Callable[[Cached], bool] = lambda _made: True,
+) -> Cached:
     """Return what a file keeps; made and written where it is absent or damaged.
 
     A folder that cannot be written is no reason to lose a result.
@@ -39,10 +39,10 @@ def kept_in(
     if file is None:
         return make()
     with suppress(unreadable):
-        kept = read(file)
+        result = read(file)
         with suppress(OSError):  # of another owner
             os.utime(file)  # its last use, by which caches are kept small
-        return kept
+        return result
     made = make()
     if keeps(made):
         with suppress(OSError):

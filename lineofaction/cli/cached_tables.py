@@ -25,13 +25,13 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
-from model_studies.kept_file import kept_in
+from model_studies.cached_file import cached_in
 from model_studies.workers import InProcess, Workers
 from service.version import program_tag
 
 
 @dataclass(frozen=True)
-class KeptTables:
+class CachedTables:
     """The tables of cases: those of runs before, and those that are computed now."""
 
     compute: Callable[[Case], SteDatabase]
@@ -51,7 +51,7 @@ class KeptTables:
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
-        return kept_in(
+        return cached_in(
             self.file(case),
             SteDatabase.from_netcdf,
             lambda: self.compute(case),
@@ -84,8 +84,8 @@ def tabled_scene(
             from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
             from lineofaction.client.scene_calls import ServiceTables  # noqa: PLC0415 (start-up time)
 
-            beside = stack.enter_context(ThreadPoolExecutor(1))
-            ahead = cache(partial(beside.submit, compile_ahead))
+            compiler = stack.enter_context(ThreadPoolExecutor(1))
+            ahead = cache(partial(compiler.submit, compile_ahead))
 
             def watch(state: JobState) -> None:
                 if state.stage:
@@ -95,11 +95,11 @@ def tabled_scene(
 
             client = stack.enter_context(LineOfActionClient(service, progress=watch))
             source, run = ServiceTables(client), client.driver.run
-        here = KeptTables(lambda case: _analyzed(cases.of(case), report, workers))
-        tables = MeshTables(folder, source or ComputedTables(here.table))
+        cached = CachedTables(lambda case: _analyzed(cases.of(case), report, workers))
+        tables = MeshTables(folder, source or ComputedTables(cached.table))
 
         def table_of(index: int, mesh: MeshInput) -> SteDatabase:
             return run(tables.of(index, mesh))
 
-        kept = here.find if source is None else lambda _: None
-        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, kept)
+        find_cached = cached.find if source is None else lambda _: None
+        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, find_cached)

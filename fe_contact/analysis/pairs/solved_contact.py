@@ -42,7 +42,7 @@ def problems_in_parts(
 
 
 @dataclass(frozen=True)
-class KeptContact:
+class SolvedContact:
     """What is kept of the contact of an operating point at P positions in each of T base pitches."""
 
     problem: ContactProblem
@@ -57,7 +57,7 @@ class KeptContact:
     """
 
     @classmethod
-    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> KeptContact:
+    def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> SolvedContact:
         """Return all that there is of a solution, edges left aside; see `contact_fields`."""
         fields = contact_fields(pair, problem, solution)
         return cls(problem, solution, fields, np.zeros(solution.load.size))
@@ -71,7 +71,7 @@ def solved_in_parts(
     *,
     edges: bool,
     report: Report = unreported,
-) -> tuple[KeptContact, ...]:
+) -> tuple[SolvedContact, ...]:
     """Solve positions (P,) in the base pitches (T,) at sets of normal forces in N, each by itself.
 
     Of the first set all arrays of a table are stored, of others those of support loads.
@@ -85,18 +85,18 @@ def solved_in_parts(
     report : callable
         Called with the fraction of the base pitches that are solved.
     """
-    parts: list[list[KeptContact]] = []
+    parts: list[list[SolvedContact]] = []
     solved, count = 0, position.size * (1 if pitches is None else pitches.size)
     for problem in problems_in_parts(point, position, pitches):
         solutions = solve_sets(problem, sets)
         depth = edge_depth(point, problem, solutions[0]) if edges else np.zeros(sets[0].size)
         first = parts[0][0].problem if parts else _first_pitch(problem)
-        kept = 0 if parts else first.candidates.position.size
+        stored_rows = 0 if parts else first.candidates.position.size
         part = []
         for number, solution in enumerate(solutions):
             stored = (support_fields if number else contact_fields)(point.contact.pair, problem, solution)
-            forces = replace(solution, force=solution.force[:kept].copy())
-            part.append(KeptContact(first, forces, stored, depth))
+            forces = replace(solution, force=solution.force[:stored_rows].copy())
+            part.append(SolvedContact(first, forces, stored, depth))
         parts.append(part)
         solved += problem.candidates.position.size
         report(min(solved / count, 1.0))
@@ -105,16 +105,19 @@ def solved_in_parts(
 
 def _first_pitch(problem: ContactProblem) -> ContactProblem:
     """Return a problem of several base pitches in the first of them."""
-    whole, rows = problem.candidates, np.arange(len(problem.compliance))
-    if whole.position.size == rows.size:
+    candidates, rows = problem.candidates, np.arange(len(problem.compliance))
+    if candidates.position.size == rows.size:
         return problem
     first = replace(
-        whole, position=whole.position[rows], touch=whole.touch.rows(rows), width=whole.width[rows]
+        candidates,
+        position=candidates.position[rows],
+        touch=candidates.touch.rows(rows),
+        width=candidates.width[rows],
     )
     return problem.touching(first)
 
 
-def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
+def _one_after_another(parts: Sequence[SolvedContact]) -> SolvedContact:
     """Put parts of the base pitches of one set of loads together."""
     first, solutions = parts[0], [part.solution for part in parts]
     if len(parts) == 1:
@@ -122,8 +125,8 @@ def _one_after_another(parts: Sequence[KeptContact]) -> KeptContact:
     names = [field.name for field in fields(ContactSolution) if field.name != "load"]
     solution = replace(
         first.solution,
-        **{name: np.concatenate([getattr(each, name) for each in solutions]) for name in names},
+        **{name: np.concatenate([getattr(solution, name) for solution in solutions]) for name in names},
     )
     stored = {name: np.concatenate([part.stored[name] for part in parts]) for name in first.stored}
     depth: FloatArray = np.max([part.edge_depth for part in parts], axis=0)
-    return KeptContact(first.problem, solution, stored, depth)
+    return SolvedContact(first.problem, solution, stored, depth)

@@ -54,7 +54,7 @@ class _Passes:
         return Pass(done.decision, done.table.metadata.receipt, done.table, made)
 
 
-def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
+def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
     """Compute the table of a request with a tolerance, in at most `MAX_PASSES` passes.
 
     Raises `MeshError`, `SolveError`, `WorkersLost` of the first pass; a later one that fails keeps the table
@@ -96,13 +96,13 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
         if isinstance(made, str) or reason:
             return of_all_passes(passes, table, reason)
         if shared.on_draft is not None:
-            shared.on_draft(table, made.words)
+            shared.on_draft(table, made.text)
         last = shared.refined(made, clock)
         passes.append(last)
         if last.table is None:
             return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
         if last.used >= best.used:
-            reason = f"pass {len(passes)} ({made.words}) did not lower the measured errors"
+            reason = f"pass {len(passes)} ({made.text}) did not lower the measured errors"
             return of_all_passes(passes, table, reason)
         best, table = last, last.table
 
@@ -136,10 +136,10 @@ def _beyond_between(table: SteDatabase) -> str:
     intervals = table.metadata.receipt["tolerance"]["between_nodes"]
     if not intervals:
         return "the table cannot be interpolated between its nodes"
-    return "; ".join(map(_interval_words, intervals))
+    return "; ".join(map(_interval_text, intervals))
 
 
-def _interval_words(entry: Json) -> str:
+def _interval_text(entry: Json) -> str:
     axis, (low, high) = entry["axis"].replace("_", " "), entry["between"]
     share = engineering(entry["used"], 2)
     return (
@@ -160,6 +160,6 @@ def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     if needed <= left:
         return ""
     return (
-        f"{made.words} is predicted to take {engineering(needed, 2)} "
+        f"{made.text} is predicted to take {engineering(needed, 2)} "
         f"CPU s; {engineering(max(left, 0.0), 2)} of {budget:.3g} are left"
     )

@@ -13,7 +13,7 @@ from spur_case import spur_case
 
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
-from lineofaction.cli import kept_tables
+from lineofaction.cli import cached_tables
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.schemas import Case, read_model
@@ -40,7 +40,7 @@ def tabled(**mesh: object) -> TabledScene:
     scene, folder = scene_of(EXAMPLE)
     meshes = tuple(each.model_copy(update=mesh) for each in scene.meshes)
     scene = scene.model_copy(update={"meshes": meshes})
-    return kept_tables.tabled_scene(scene, folder, None, lambda *_: None)
+    return cached_tables.tabled_scene(scene, folder, None, lambda *_: None)
 
 
 def files() -> list[Path]:
@@ -58,9 +58,9 @@ def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDat
 
 def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypatch) -> None:
     tabled()
-    monkeypatch.setattr(kept_tables, "program_tag", lambda: "edited")
+    monkeypatch.setattr(cached_tables, "program_tag", lambda: "edited")
     tabled()
-    monkeypatch.setattr(kept_tables, "software_versions", lambda: {"gmsh": "another"})
+    monkeypatch.setattr(cached_tables, "software_versions", lambda: {"gmsh": "another"})
     tabled()
     assert len(computed) == len(files()) == 3
 
