@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
