@@ -127,8 +127,8 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     @property
     def level_change(self) -> LevelChange:
         """Change of the level that is measured, of the part of the run that is compared."""
-        own = self.level
-        return level_change(self.with_effect.lines, self.without_effect.lines, own.quantity, own.unit)
+        level = self.level
+        return level_change(self.with_effect.lines, self.without_effect.lines, level.quantity, level.unit)
 
     @property
     def order_change(self) -> FloatArray:

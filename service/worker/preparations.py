@@ -31,10 +31,12 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     for index, housing in enumerate(scene.housings):
         if housing.modes_file is not None:
             _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")
-    check_scene(scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database})
+    check_scene(
+        scene, {mesh.name: _pair_data(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database}
+    )
 
 
-def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+def _pair_data(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
