@@ -18,7 +18,7 @@ from benchmarks.pair_cases import PairCase
 from fe_contact import SteDatabase, analyze
 from fe_contact.analysis.studies.frontier import warm_up
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
-from fe_contact.ste.facts import content_hash
+from fe_contact.ste.metadata import content_hash
 from fe_contact.types import FloatArray, Json
 
 FILE = Path(__file__).parents[1] / "out" / "bench" / "runs.jsonl"

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 import model_studies
 from bounds.brief import brief
-from dynamics.assembly.assemble import assemble
+from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import chosen
 from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
@@ -22,7 +23,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.simulation import simulate
-from dynamics.types import FloatArray, Json
+from dynamics.types import FloatArray
 from host import cpu_seconds
 from model_studies import Figures, LeftOut, Progress, in_unit, run_variants, silent
 from model_studies.workers import InProcess, Workers
@@ -126,8 +127,8 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     @property
     def level_change(self) -> LevelChange:
         """Change of the level that is measured, of the part of the run that is compared."""
-        own = self.level
-        return level_change(self.with_effect.lines, self.without_effect.lines, own.quantity, own.unit)
+        level = self.level
+        return level_change(self.with_effect.lines, self.without_effect.lines, level.quantity, level.unit)
 
     @property
     def order_change(self) -> FloatArray:
@@ -194,23 +195,23 @@ def ablate(
     nominal = _run_figures(result, seconds, quantity)
     ledger = {name: influence.level for name, influence in estimate_influences(scene).items()}
     estimates = estimate_influences(scene, SETTLED)
-    sizes = {
-        name: (ledger.get(name, LevelChange(quantity.name, quantity.unit)), estimates.get(name))
-        for name in names
-    }
-    parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
-
-    toggle = partial(_toggled, scene, parts, nominal, sizes)
+    system = assemble(scene)
+    states = {name: _EffectState.of(system, name) for name in names}
     effects, left_out = run_variants(
         "ablation",
-        {name: name for name in names},
-        toggle,
+        states,
+        partial(_toggled, scene, nominal),
         (InputError, SolveError),
         progress,
         workers,
-        seconds * sum(any(part["possible"] for part in rows) for rows in parts.values()),
+        seconds * sum(state.possible for state in states.values()),
     )
-    return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
+    silence = LevelChange(quantity.name, quantity.unit)
+    entries = (
+        replace(entry, estimate=estimates.get(name), level=ledger.get(name, silence))
+        for name, entry in effects.items()
+    )
+    return Ablation(nominal, tuple(entries), left_out, result.mesh, result.bearing)
 
 
 def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[list[float], float]:
@@ -221,39 +222,45 @@ def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[l
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     scene.require_meshes()
     system = assemble(scene)
-    able = {name: [part for part in system.ledger.of(name) if part.possible] for name in names}
-    scenes = [
-        replace(scene, effects={**scene.effects, name: "on"})
-        for name, parts in able.items()
-        if parts and not any(part.on for part in parts)
-    ]
+    states = [state for state in (_EffectState.of(system, name) for name in names) if state.possible]
+    scenes = [state.toggled(scene) for state in states if not state.on]
     freedoms = max(system.freedoms.column.size, 1)
     more = [assemble(other).freedoms.column.size / freedoms for other in scenes]
-    less = sum(any(part.on for part in parts) for parts in able.values())
+    less = sum(state.on for state in states)
     parts = len(scene.meshes) + len(system.supports.name)
     figures = _FIGURE * parts * scene.duration * system.sampling.rate
     return [(1.0 + WARM_UP) * times for times in (1.0, *less * [1.0], *more)], figures
 
 
-def _toggled(
-    scene: Scene,
-    parts: Mapping[str, Sequence[Json]],
-    nominal: RunFigures,
-    sizes: Mapping[str, tuple[LevelChange, Influence | None]],
-    name: str,
-) -> EffectAblation:
-    """Run with one effect toggled; what is on anywhere goes off everywhere."""
-    able = [part for part in parts[name] if part["possible"]]
-    if not able:
-        raise LeftOut(parts[name][0]["reason"] if parts[name] else "no part of the scene has it")
-    on = any(part["on"] for part in able)
-    choice = "off" if on else "on"
-    changed = replace(scene, effects={**scene.effects, name: choice})
-    other = _run_figures(*_timed(changed), scene.quantity or BearingForces())
-    first = next((part for part in able if part["on"] == on), able[0])
-    size, estimate = sizes[name]
-    states = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], *states, estimate, size)
+class _EffectState(NamedTuple):
+    """One effect over all parts of a scene: on if any part has it on."""
+
+    name: str
+    on: bool
+    reason: str
+    possible: bool
+
+    @classmethod
+    def of(cls, system: System, name: str) -> _EffectState:
+        """Return what the ledger of a scene decided; the reason is that of the first such part."""
+        parts = system.ledger.of(name)
+        able = [part for part in parts if part.possible]
+        on = any(part.on for part in able)
+        reasons = [part.reason for part in able if part.on == on] or [part.reason for part in parts]
+        return cls(name, on, next(iter(reasons), "no part of the scene has it"), possible=bool(able))
+
+    def toggled(self, scene: Scene) -> Scene:
+        """Return the scene with the effect toggled: what is on anywhere goes off everywhere."""
+        return replace(scene, effects={**scene.effects, self.name: "off" if self.on else "on"})
+
+
+def _toggled(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
+    """Run with one effect toggled."""
+    if not state.possible:
+        raise LeftOut(state.reason)
+    other = _run_figures(*_timed(state.toggled(scene)), scene.quantity or BearingForces())
+    runs = (nominal, other) if state.on else (other, nominal)
+    return EffectAblation(state.name, state.on, state.reason, *runs, None)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

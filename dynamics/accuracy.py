@@ -152,8 +152,8 @@ class TimeIntegration:
             return "the scene has a fixed step"
         if self.additions is None:
             return None
-        here, there = _decision(scene), _decision(self.as_run(scene))
-        return "the scene has no more effects than these" if here == there else None
+        decision, there = _decision(scene), _decision(self.as_run(scene))
+        return "the scene has no more effects than these" if decision == there else None
 
     def as_run(self, scene: Scene) -> Scene:
         """Return the scene as this fidelity runs it."""
@@ -161,8 +161,8 @@ class TimeIntegration:
         if self.tolerance is not None:
             integration = replace(integration, tolerance=self.tolerance)
         if self.additions is not None:
-            kept = [effect for effect in EFFECTS if effect.adds and {*effect.adds} <= {*self.additions}]
-            effects |= {effect.name: "off" for effect in EFFECTS if effect not in kept}
+            added = [effect for effect in EFFECTS if effect.adds and {*effect.adds} <= {*self.additions}]
+            effects |= {effect.name: "off" for effect in EFFECTS if effect not in added}
         outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)
 
@@ -425,10 +425,10 @@ def _warm_up(scene: Scene, blocks: BlockGrid, fidelities: Sequence[_Fidelity]) -
 
 def _errors(vibration: _Vibration, reference: _Vibration) -> Errors:
     pairs = zip(vars(vibration).values(), vars(reference).values(), strict=True)
-    return {name: _apart(*pair) for name, pair in zip(FIGURES, pairs, strict=True)}
+    return {name: _relative_difference(*pair) for name, pair in zip(FIGURES, pairs, strict=True)}
 
 
-def _apart(values: FloatArray, reference: FloatArray) -> float:
+def _relative_difference(values: FloatArray, reference: FloatArray) -> float:
     """Root of the sum of squared differences over that of the reference; NaN where there is nothing."""
     size = float(np.linalg.norm(reference))
     if values.shape != reference.shape or size == 0.0:

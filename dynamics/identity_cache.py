@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import lru_cache, wraps
 from typing import Any, TypeVar, cast
 
-KEPT = 8
+MAX_CACHED = 8
 """Results per function, the last ones. They keep what they are made from alive: an identity stays its own."""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -24,7 +24,7 @@ def _key(part: Any) -> Any:
     """Return what tells a part from others: of tuples their parts, of names their letters, else identity."""
     kind = type(part)
     if kind is tuple:
-        return tuple([_key(each) if type(each) in _BY_VALUE else id(each) for each in part])
+        return tuple([_key(item) if type(item) in _BY_VALUE else id(item) for item in part])
     return part if kind is str else id(part)
 
 
@@ -57,13 +57,13 @@ def cached_by(parts: Parts) -> Callable[[Function], Function]:
     """Return `identity_cached` for data that is the same if the `parts` of it are that `make` reads."""
 
     def cached(make: Function) -> Function:
-        @lru_cache(maxsize=KEPT)
-        def kept(identity: _Identity, *args: Any) -> Any:
+        @lru_cache(maxsize=MAX_CACHED)
+        def cached_value(identity: _Identity, *args: Any) -> Any:
             return make(identity.data, *args)
 
         @wraps(make)
         def of(data: Any, *args: Any) -> Any:
-            return kept(_Identity(data, parts(data)), *args)
+            return cached_value(_Identity(data, parts(data)), *args)
 
         return cast(Function, of)
 

@@ -222,13 +222,13 @@ def _meshes(scene: Scene) -> Iterator[Finding]:
         if mesh.friction is not None:
             yield from assessed("friction", f"{path}.friction", mesh.friction, "1")
         face = scene.gear(mesh.driver).face_width
-        skew, words = (
+        skew, text = (
             mesh.misalignment,
             (f"a misalignment of {engineering(1e3 * abs(mesh.misalignment) / face, 2)} mrad"),
         )
         for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
             for finding in assessed(
-                check, f"{path}.misalignment", skew, "m", scale=scale, reason=words, skip_zero=True
+                check, f"{path}.misalignment", skew, "m", scale=scale, reason=text, skip_zero=True
             ):
                 yield replace(finding, low=CHECKS["mesh_misalignment"].low or 0.0, high=0.002 * face)
 
@@ -278,8 +278,8 @@ def _supports(mechanism: Mechanism) -> Iterator[Finding]:
     if "x" not in mechanism.additions.possible or not any(rotor.radial_stiffness for rotor in rotors):
         return
     for index, rotor in enumerate(rotors):
-        push, whole = _push(mechanism, index)
-        if mechanism.kinematics.sense[index] and not rotor.radial_stiffness and push > 1e-6 * whole:
+        push, total = _push(mechanism, index)
+        if mechanism.kinematics.sense[index] and not rotor.radial_stiffness and push > 1e-6 * total:
             reason = (
                 f'nothing carries "{rotor.shaft.name}" under {push:.4g} N of its meshes: it is held rigidly'
             )
@@ -289,15 +289,15 @@ def _supports(mechanism: Mechanism) -> Iterator[Finding]:
 
 def _push(mechanism: Mechanism, index: int) -> tuple[float, float]:
     """Return the resultant of the mesh forces across a shaft, and the sum of their amounts, N."""
-    scene, total, whole = mechanism.scene, np.zeros(2), 0.0
+    scene, total, sum_of_forces = mechanism.scene, np.zeros(2), 0.0
     for mesh, line, force in zip(scene.meshes, mechanism.lines, mechanism.nominal_force, strict=True):
         for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
             if scene.gear(name).shaft == scene.shafts[index].name:
                 pushed: FloatArray = (
                     sign * float(force) * np.array([float(line.force[0]), float(line.force[1])])
                 )
-                total, whole = total + pushed, whole + float(np.hypot(*pushed))
-    return float(np.hypot(*total)), whole
+                total, sum_of_forces = total + pushed, sum_of_forces + float(np.hypot(*pushed))
+    return float(np.hypot(*total)), sum_of_forces
 
 
 def _loads(mechanism: Mechanism) -> Iterator[Finding]:
@@ -312,7 +312,7 @@ def _loads(mechanism: Mechanism) -> Iterator[Finding]:
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
         module = driver.base_pitch / (math.pi * math.cos(math.radians(20.0)))
         intensity = float(force) / (min(driver.face_width, driven.face_width) * module)
-        words = f'"{mesh.name}" carries {intensity / 1e6:.3g} N/mm^2 of load over face width and module'
+        text = f'"{mesh.name}" carries {intensity / 1e6:.3g} N/mm^2 of load over face width and module'
         light = () if mesh.coast is not None else assessed("mesh_load", "", intensity, "Pa", skip_zero=True)
         for finding in (*light, *assessed("mesh_overload", "", intensity, "Pa")):
             low, high = 20.0 * (CHECKS["mesh_load"].low or 0.0), 0.5 * (CHECKS["mesh_overload"].high or 0.0)
@@ -322,7 +322,7 @@ def _loads(mechanism: Mechanism) -> Iterator[Finding]:
                 field=f"loads[{at}].torque",
                 value=torque,
                 unit="N m",
-                reason=words,
+                reason=text,
                 low=low * part,
                 high=high * part,
             )

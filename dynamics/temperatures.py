@@ -31,7 +31,7 @@ class WarmBearing:
 class WarmMesh:
     """What steady temperatures change of a mesh, m."""
 
-    apart: float
+    distance_change: float
     """Growth of the center distance less that of the gears' pitch radii."""
     backlash: float
     """Along the transverse line of action."""

@@ -108,9 +108,9 @@ def _axis(quantity: Quantity | None) -> str:
 
 def _numbers(values: FloatArray) -> list[str]:
     """Four numbers a record."""
-    whole = values.size // 4 * 4
-    rows = (("%20.12E" * 4 + "\n") * (whole // 4) % tuple(values[:whole])).splitlines()
-    rest = values[whole:]
+    full = values.size // 4 * 4
+    rows = (("%20.12E" * 4 + "\n") * (full // 4) % tuple(values[:full])).splitlines()
+    rest = values[full:]
     return [*rows, "%20.12E" * rest.size % tuple(rest)] if np.size(rest) else rows
 
 

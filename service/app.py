@@ -13,7 +13,7 @@ from fastapi import FastAPI
 from service.access.capacity import capacity
 from service.access.identities import open_identities
 from service.directory_lock import DirectoryLock
-from service.live.kept_answers import KeptAnswers
+from service.live.cached_answers import KeptAnswers
 from service.live.live_worker import live_pool
 from service.management.figures import process_registry
 from service.management.request_figures import Metrics
@@ -99,10 +99,10 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 
 
 def _route(app: FastAPI, offered: Registry) -> None:
-    shown = (documents.router, processes.processes_router(offered), jobs.router)
+    documented = (documents.router, processes.processes_router(offered), jobs.router)
     read = (job_results.job_results_router(offered), results.router, result_drawings.router)
     grouped = (queries.router, queries.live_router, drafts.router, batches.router, events.router)
-    for router in (*shown, *read, *grouped, *ROUTERS):
+    for router in (*documented, *read, *grouped, *ROUTERS):
         app.include_router(router, prefix=API_PREFIX)
     for router in (documents.pages_router, health.router):
         app.include_router(router)
@@ -140,8 +140,8 @@ def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     parts = job_machinery(settings, registry, works=works)
     pools, engine = (live_pool(settings), reading_pool(settings.data_directory)), parts.engine
-    kept = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
+    answers = KeptAnswers(settings.data_directory / CACHE_DIRECTORY / "figures")
     writes = WriteCheck(Deployment(engine, parts.store), parts.integrity)
     watcher = Watcher(engine, partial(events.event_of, registry=registry))
     queue = (parts.submissions, parts.scheduler, parts.store)
-    return Context(settings, registry, *queue, *pools, kept, engine, writes, watcher)
+    return Context(settings, registry, *queue, *pools, answers, engine, writes, watcher)

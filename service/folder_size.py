@@ -45,5 +45,5 @@ def _files(folder: Path) -> Iterator[UsedFile]:
     for path in folder.rglob("*"):
         with contextlib.suppress(FileNotFoundError):  # another process was quicker
             if path.is_file():
-                facts = path.stat()
-                yield UsedFile(facts.st_mtime, facts.st_size, path)
+                status = path.stat()
+                yield UsedFile(status.st_mtime, status.st_size, path)

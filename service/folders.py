@@ -24,7 +24,7 @@ def locked(path: Path, flags: int = os.O_RDWR | os.O_CREAT) -> int | None:
 
 
 @contextmanager
-def own_folder(home: Path) -> Iterator[Path]:
+def locked_folder(home: Path) -> Iterator[Path]:
     """Make a folder below another and remove it at the end; it is locked until then."""
     folder = home / uuid.uuid4().hex
     folder.mkdir(mode=0o700, parents=True)

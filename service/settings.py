@@ -188,8 +188,10 @@ class Settings(BaseSettings):
         key, secret = self.results_access_key_id, self.results_secret_access_key
         if key is not None and secret is not None:
             return key.get_secret_value(), secret.get_secret_value()
-        own, theirs = (os.environ.get(f"AWS_{name}") for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY"))
-        return (own, theirs) if own and theirs else None
+        environment_key, environment_secret = (
+            os.environ.get(f"AWS_{name}") for name in ("ACCESS_KEY_ID", "SECRET_ACCESS_KEY")
+        )
+        return (environment_key, environment_secret) if environment_key and environment_secret else None
 
     @property
     def loopback(self) -> bool:

@@ -43,7 +43,7 @@ def valid_traceparent(text: str) -> str:
     return text if _VALID.fullmatch(text) else ""
 
 
-def trace_facts(traceparent: str) -> dict[str, str]:
+def trace_fields(traceparent: str) -> dict[str, str]:
     """Return the trace for a line of the log; nothing without one."""
     match = _VALID.fullmatch(traceparent)
     return {} if match is None else {"trace_id": match[1]}
@@ -61,16 +61,18 @@ def current_traceparent(sent: str) -> str:
     return traceparent_of(trace.get_current_span()) or sent
 
 
-def begun_span(name: str, parent: str, at_s: float, facts: Mapping[str, Fact] | None = None) -> Span:
+def begun_span(name: str, parent: str, at_s: float, attributes: Mapping[str, Fact] | None = None) -> Span:
     """Return a span that began at an instant, s since 1970, within a parent or, without one, a trace."""
     tracer = (span_provider() or trace.get_tracer_provider()).get_tracer("lineofaction", solver_version())
     context = _W3C.extract({"traceparent": parent})
-    return tracer.start_span(name, context, attributes=dict(facts or {}), start_time=int(at_s * _NS))
+    return tracer.start_span(name, context, attributes=dict(attributes or {}), start_time=int(at_s * _NS))
 
 
-def end_span(span: Span, at_s: float, facts: Mapping[str, Fact] | None = None, *, fault: str = "") -> None:
+def end_span(
+    span: Span, at_s: float, attributes: Mapping[str, Fact] | None = None, *, fault: str = ""
+) -> None:
     """End a span at an instant, s since 1970, with facts and, if it failed, the reason."""
-    span.set_attributes(dict(facts or {}))
+    span.set_attributes(dict(attributes or {}))
     if fault:
         span.set_status(StatusCode.ERROR, fault)
     span.end(int(at_s * _NS))

@@ -201,12 +201,12 @@ def exterior_pressure(
     wavenumber = 2.0 * np.pi * frequency / air.sound_speed
     pressure = surface_pressure(hull, frequency, shapes, air).pressure
     slope = -1j * wavenumber * air.impedance * shapes
-    found = np.zeros((len(points), shapes.shape[1]), dtype=complex)
+    exterior = np.zeros((len(points), shapes.shape[1]), dtype=complex)
     for middle in MIDDLES:  # quadrature of second degree on every panel
         away = np.asarray(points)[:, None] - np.einsum("c,tcd->td", middle, hull.corners)
         distance = np.linalg.norm(away, axis=2)
         kernel = np.exp(-1j * wavenumber * distance) / (4.0 * np.pi * distance) * hull.areas / 3.0
         cosine = np.einsum("ptd,td->pt", away, hull.normals) / distance
         at = np.einsum("c,tcm->tm", middle, pressure[hull.triangles])
-        found += (kernel * (1j * wavenumber + 1.0 / distance) * cosine) @ at - kernel @ slope
-    return found
+        exterior += (kernel * (1j * wavenumber + 1.0 / distance) * cosine) @ at - kernel @ slope
+    return exterior

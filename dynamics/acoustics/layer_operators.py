@@ -52,8 +52,8 @@ def layer_operators(
     blocks = list(pairwise(ends))
     seconds = operators_cost(panels).seconds
     rows = divided(workers, _layer_rows, (hull, wavenumber), blocks, seconds)
-    for (first, end), own in zip(blocks, rows, strict=True):
-        single[first:end], double[first:end] = own
+    for (first, end), block_rows in zip(blocks, rows, strict=True):
+        single[first:end], double[first:end] = block_rows
         done(end / panels)
     return single, double
 
@@ -69,9 +69,11 @@ def _layer_rows(shared: tuple[Hull, float], block: tuple[int, int]) -> tuple[Com
     mesh = _mesh(hull, block)
     hats = ngsolve.H1(mesh, order=1, complex=True, definedon=mesh.Boundaries(".*")).TrialFunction()
     constant = ngsolve.SurfaceL2(mesh, order=0, complex=True).TrialFunction()
-    own = ngsolve.SurfaceL2(mesh, order=0, complex=True, definedon=mesh.Boundaries(TESTED)).TestFunction()
-    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
-    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * own * ds(TESTED)
+    test_function = ngsolve.SurfaceL2(
+        mesh, order=0, complex=True, definedon=mesh.Boundaries(TESTED)
+    ).TestFunction()
+    single = HelmholtzSL(constant * ds, wavenumber, use_fmm=False) * test_function * ds(TESTED)
+    double = HelmholtzDL(hats * ds, wavenumber, use_fmm=False) * test_function * ds(TESTED)
     return _dense(single.mat, block), _dense(double.mat, block)
 
 

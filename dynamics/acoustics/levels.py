@@ -192,14 +192,14 @@ def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]
 
 def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
     """Return deviations, at least 0, that add up in squares to what is reached, the rest as `JOINTLY`."""
-    whole = np.maximum(reached, 0.0) ** 2
+    square = np.maximum(reached, 0.0) ** 2
     squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
-    sum_of_squares = np.sum([0.0 * whole, *squares.values()], axis=0)
-    share = np.minimum(whole / np.maximum(sum_of_squares, 1e-300), 1.0)
+    sum_of_squares = np.sum([0.0 * square, *squares.values()], axis=0)
+    share = np.minimum(square / np.maximum(sum_of_squares, 1e-300), 1.0)
     squares = {name: share * value for name, value in squares.items()}
     return {
         name: np.sqrt(value)
-        for name, value in (*squares.items(), (JOINTLY, np.maximum(whole - sum_of_squares, 0.0)))
+        for name, value in (*squares.items(), (JOINTLY, np.maximum(square - sum_of_squares, 0.0)))
     }
 
 

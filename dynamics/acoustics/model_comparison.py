@@ -35,7 +35,7 @@ WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
 OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
 """ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
-WAVES_HELD = 4
+WAVES_IN_MEMORY = 4
 """Arrays of phases."""
 
 WORK = "radiation by {}"
@@ -81,7 +81,7 @@ class ElementalRadiators:
         if self.baffled or waves >= panels:
             return Cost((PAIR + PAIR_SHAPE * shapes) * panels**2, 8.0 * panels * (6.0 * BLOCK + 3.0 * shapes))
         seconds = (WAVE + WAVE_SHAPE * shapes) * waves * panels
-        return Cost(seconds, 8.0 * (WAVES_HELD * WAVES + 3.0 * panels * shapes))
+        return Cost(seconds, 8.0 * (WAVES_IN_MEMORY * WAVES + 3.0 * panels * shapes))
 
     def error_band(self, ka: float) -> tuple[float, float]:
         """Return what monopoles were off on spheres, boxes and gear cases, but for interior resonances.

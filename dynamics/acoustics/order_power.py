@@ -71,11 +71,11 @@ class ModalResistance:
         Raises `InputError`: a frequency lies outside of those computed.
         """
         frequency = np.atleast_1d(np.asarray(frequency, dtype=float))
-        own = np.einsum("mk,fmn,nk->fk", shapes.conj(), self.matrix, shapes, optimize=True).real
-        found = np.zeros((frequency.size, shapes.shape[1]))
+        diagonal = np.einsum("mk,fmn,nk->fk", shapes.conj(), self.matrix, shapes, optimize=True).real
+        resistance = np.zeros((frequency.size, shapes.shape[1]))
         for knot, near, share in self._hats(frequency):
-            found[near] += share[:, None] * own[knot]
-        return found
+            resistance[near] += share[:, None] * diagonal[knot]
+        return resistance
 
     def _hats(self, frequency: FloatArray) -> Iterator[tuple[int, BoolArray, FloatArray]]:
         """Yield each computed frequency, the samples near it, and what part of its matrix they take."""
@@ -210,8 +210,10 @@ class OrderPower:
         """
         parts = [(band_number(self.frequency), self.power)]
         if self.floor is not None:
-            heard = np.any(self.floor.power > 0.0, axis=0)
-            parts.append((band_number(self.floor.frequency[:, heard].T), self.floor.power[:, heard].T))
+            has_power = np.any(self.floor.power > 0.0, axis=0)
+            parts.append(
+                (band_number(self.floor.frequency[:, has_power].T), self.floor.power[:, has_power].T)
+            )
         ends = [end for band, _ in parts if band.size for end in (band.min(), band.max())]
         bands = np.arange(min(ends), max(ends) + 1)
         sums = [

@@ -51,13 +51,13 @@ def _free_sky(corners: FloatArray) -> FloatArray:
     middle = 0.5 * (middle.min(axis=0) + middle.max(axis=0))
     radius = float(np.linalg.norm(corners - middle, axis=2).max())
     scaled = (corners - middle) * (PIXELS / 2.0 / radius)
-    seen, whole = np.zeros(len(corners)), np.zeros(len(corners))
+    seen, total = np.zeros(len(corners)), np.zeros(len(corners))
     for view, weight in zip(*directions(ORDER), strict=True):
         cosine = normal @ view
         share = np.where(cosine > STEEP, weight * cosine, 0.0)
-        whole += share
+        total += share
         seen += share * _visible(scaled, view)
-    return np.asarray(seen / np.maximum(whole, 1e-300))
+    return np.asarray(seen / np.maximum(total, 1e-300))
 
 
 def _visible(corners: FloatArray, view: FloatArray) -> FloatArray:

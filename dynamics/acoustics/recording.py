@@ -131,11 +131,11 @@ def order_recording(
 def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArray:
     """Return 2 pi times the integral of a piecewise linear frequency, exactly."""
     step = np.diff(time)
-    whole = np.concatenate([[0.0], np.cumsum(0.5 * step * (frequency[1:] + frequency[:-1]))])
+    revolutions = np.concatenate([[0.0], np.cumsum(0.5 * step * (frequency[1:] + frequency[:-1]))])
     piece = np.clip(np.searchsorted(time, at, "right") - 1, 0, time.size - 2)
     since = at - time[piece]
     slope = (np.diff(frequency) / step)[piece]
-    return np.asarray(2.0 * np.pi * (whole[piece] + since * (frequency[piece] + 0.5 * slope * since)))
+    return np.asarray(2.0 * np.pi * (revolutions[piece] + since * (frequency[piece] + 0.5 * slope * since)))
 
 
 def audible(values: FloatArray, sample_rate: float) -> FloatArray:
@@ -164,8 +164,8 @@ def principal_direction(values: FloatArray, sample_rate: float) -> tuple[FloatAr
 
     Raises `InputError` as `audible`; or nothing varies.
     """
-    heard = audible(values, sample_rate)
-    variance, axes = np.linalg.eigh(heard @ heard.T)
+    weighted = audible(values, sample_rate)
+    variance, axes = np.linalg.eigh(weighted @ weighted.T)
     if not variance[-1] > 0.0:
         raise InputError("values", 0.0, "a vector that varies", "It is silent.")
     axis = axes[:, -1] * np.sign(axes[np.argmax(np.abs(axes[:, -1])), -1])
@@ -248,8 +248,8 @@ def wav_file(recording: Recording, full_scale: float) -> bytes:
         raise InputError("full_scale", full_scale, bound)
     sound = io.BytesIO()
     wavfile.write(sound, recording.sample_rate, (recording.samples / full_scale).astype(np.float32))
-    words = (recording.quantity, recording.unit, full_scale)
-    comment = json.dumps(dict(zip(COMMENT, words, strict=True))).encode("ascii")
+    entries = (recording.quantity, recording.unit, full_scale)
+    comment = json.dumps(dict(zip(COMMENT, entries, strict=True))).encode("ascii")
     information = b"INFO" + _chunk(b"ICMT", comment + b"\0")
     body = sound.getvalue()[8:] + _chunk(b"LIST", information)
     return _chunk(b"RIFF", body)

@@ -84,7 +84,9 @@ class System:
     @property
     def corrections(self) -> Json:
         """The base radii that were corrected, as given and as used; empty: none."""
-        radii = {name: {"given": given, "used": used} for name, (given, used) in self.corrected.items()}
+        radii = {
+            name: {"given": specified, "used": used} for name, (specified, used) in self.corrected.items()
+        }
         return {"base_radius_corrected": radii} if radii else {}
 
     @property

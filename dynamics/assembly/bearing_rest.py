@@ -161,7 +161,7 @@ def _with_tangent(
     bearing: Bushing | PlanetBearing, at: BearingElement, local: LocalState, rows: slice
 ) -> Bushing | PlanetBearing:
     """Return `bearing` with tangents and force that an element has in its `rows`."""
-    spread, size = at.own, at.way.shape[0]
+    spread, size = at.local_rows, at.way.shape[0]
     added = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
     stiffness = local.tangent[rows, :size]
     symmetric = 0.5 * (stiffness + stiffness.T)

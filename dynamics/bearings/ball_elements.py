@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.bearings import BallBearing
-from dynamics.bearings.rolling_bearing import AGAINST, ALONG, BOTH, HELD
+from dynamics.bearings.rolling_bearing import AGAINST, ALONG, BOTH, LOCATED
 from dynamics.kernels.compiled import compiled, inner
 from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
@@ -71,25 +71,25 @@ class BallElements(NamedTuple):
     """`arm_radius`, `arm_axial`: Center of the inner groove seen from the bearing's center, over the lever of
     tilts. Shape (l,) each.
     """
-    held: IntArray
-    """Directions in which the rings are held in their seats, `locating.HELD`. Shape (l,)."""
+    located: IntArray
+    """Directions in which the rings are held in their seats, `rolling_bearing.LOCATED`. Shape (l,)."""
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:
         """Lay out `rows` and how they are placed."""
-        figures = [_figures(bearing, place) for bearing, place in rows]
+        figures = [_figures(bearing, placement) for bearing, placement in rows]
         return cls(
-            balls=np.array([bearing.count * place.copies for bearing, place in rows], dtype=np.int64),
-            held=np.array([HELD[place.locating] for _, place in rows], dtype=np.int64),
+            balls=np.array([bearing.count * placement.copies for bearing, placement in rows], dtype=np.int64),
+            located=np.array([LOCATED[placement.locating] for _, placement in rows], dtype=np.int64),
             **{
                 name: np.array([values[name] for values in figures], dtype=float)
                 for name in cls._fields
-                if name not in ("balls", "held")
+                if name not in ("balls", "located")
             },
         )
 
 
-def _figures(bearing: BallBearing, place: RowPlacement) -> dict[str, float]:
+def _figures(bearing: BallBearing, placement: RowPlacement) -> dict[str, float]:
     """Return the figures of a row by the fields of `BallElements`; clearance leaves it in its middle."""
     angle, reach = bearing.free_contact_angle, bearing.groove_distance
     offset = (bearing.inner_groove - 0.5) * bearing.diameter
@@ -100,13 +100,13 @@ def _figures(bearing: BallBearing, place: RowPlacement) -> dict[str, float]:
         height = offset * math.sin(angle)
     arm = bearing.pitch_diameter / 2.0 + offset * math.cos(angle)
     return {
-        "stiffness": bearing.element_stiffness / place.copies,
-        "damping": place.damping,
+        "stiffness": bearing.element_stiffness / placement.copies,
+        "damping": placement.damping,
         "reach": reach,
         "radial": radial,
-        "axial": axial + place.shift,
-        "arm_radius": arm / place.lever,
-        "arm_axial": height / place.lever,
+        "axial": axial + placement.shift,
+        "arm_radius": arm / placement.lever,
+        "arm_axial": height / placement.lever,
     }
 
 
@@ -144,7 +144,7 @@ def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turn
         thrust on the seat (N), 0 of a ring that slides; the derivatives of the thrust in the five
         displacements at this z.
     """
-    y, angle, hold = local.coordinate, cage_angle(local, turned), laws.held[entry]
+    y, angle, hold = local.coordinate, cage_angle(local, turned), laws.located[entry]
     if hold != 0:
         thrust, kx, ky, kz, ktx, kty, _ = _thrust(laws, entry, angle, y, row, y[row + 2])
         if (thrust >= 0.0 and hold & ALONG) or (thrust <= 0.0 and hold & AGAINST):
@@ -214,7 +214,7 @@ def balls(laws: BallElements, entry: int, local: LocalState, row: int, turned: i
         local.force[row + i], local.elastic[row + i] = 0.0, 0.0
         for j in range(DIRECTIONS):
             local.tangent[row + i, j], local.viscous[row + i, j] = 0.0, 0.0
-    y, angle, loose = local.coordinate, cage_angle(local, turned), laws.held[entry] != HOLDS
+    y, angle, loose = local.coordinate, cage_angle(local, turned), laws.located[entry] != HOLDS
     z, axial_rate = y[row + AXIAL], 0.0 if loose else local.rate[row + AXIAL]
     hold, thrust, kx, ky, kz, ktx, kty = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if loose:
@@ -310,7 +310,7 @@ def balls_energy(
 
 @inner
 def _axial_displacement(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> float:
-    if laws.held[entry] == HOLDS:
+    if laws.located[entry] == HOLDS:
         return float(local.coordinate[row + AXIAL])
     return float(axial_seat(laws, entry, local, row, turned)[1])
 

@@ -45,7 +45,7 @@ class BearingLaw(Protocol):
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (p,), N/m."""
 
-    def missed(self, duty: BearingDuty) -> float:
+    def tangent_error(self, duty: BearingDuty) -> float:
         """Return what its tangent misses of the displacement under the typical load, m."""
 
 

@@ -85,7 +85,7 @@ def _rating(diameter: float, pitch: float) -> float:
 def _diameter(count: int, pitch: float, static_rating: float) -> float:
     """Return the diameter of `count` balls that have this rating, m; at most that of the circle."""
 
-    def missed(diameter: float) -> float:
+    def residual(diameter: float) -> float:
         return count * _rating(diameter, pitch) * diameter**2 - static_rating
 
-    return float(scipy.optimize.brentq(missed, 0.0, pitch, xtol=1e-12)) if missed(pitch) > 0.0 else pitch
+    return float(scipy.optimize.brentq(residual, 0.0, pitch, xtol=1e-12)) if residual(pitch) > 0.0 else pitch

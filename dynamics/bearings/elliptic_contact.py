@@ -36,12 +36,12 @@ class EllipticContact:
         if math.isclose(ratio, 1.0, rel_tol=1e-14):
             return 1.0
 
-        def missed(logarithm: float) -> float:
+        def residual(logarithm: float) -> float:
             square = math.exp(2.0 * logarithm)
             return math.log(elliprd(0.0, square, 1.0) / elliprd(0.0, 1.0, square)) - math.log(ratio)
 
         # below 0 by as much as rounding needs where the radii are almost equal
-        return math.exp(float(brentq(missed, math.log(MIN_RATIO), 1e-12, xtol=1e-15)))
+        return math.exp(float(brentq(residual, math.log(MIN_RATIO), 1e-12, xtol=1e-15)))
 
     @property
     def spring_constant(self) -> float:

@@ -75,13 +75,13 @@ class LoadedBearing:
         self.bearing, self.copies = bearing, copies
         self._local = by_address(LocalState.empty(SEAT, SEAT))
         self._load = np.zeros((bearing.count * copies, bearing.laminae))
-        place = RowPlacement(copies, damping=1.0, locating=locating)
+        placement = RowPlacement(copies, damping=1.0, locating=locating)
         if isinstance(bearing, BallBearing):
-            self._laws: Any = by_address(BallElements.packed([(bearing, place)]))
+            self._laws: Any = by_address(BallElements.packed([(bearing, placement)]))
             self._react: Any = ball_reaction
             routines: tuple[Routine, ...] = (axial_seat, balls, balls_energy)
         else:
-            self._laws = by_address(RollerElements.packed([(bearing, place)]))
+            self._laws = by_address(RollerElements.packed([(bearing, placement)]))
             self._react = roller_reaction
             routines = rollers, rollers_energy
         for routine in routines:
@@ -101,24 +101,24 @@ class LoadedBearing:
         local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)
         energy, slope = self._react(self._laws, local, self._load)
         matrices = local.tangent.copy(), local.viscous.copy()
-        whole = self.copies * self._load
-        return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), whole)
+        load = self.copies * self._load
+        return Reaction(local.force.copy(), *matrices, energy, slope / (2.0 * math.pi), load)
 
     def displacement(
         self,
         load: ArrayLike,
         angle: float = 0.0,
         start: ArrayLike = (0.0, 0.0, 0.0, 0.0, 0.0),
-        held: Sequence[int] = (),
+        fixed: Sequence[int] = (),
     ) -> FloatArray:
         """Return the displacement (5,) at which the bearing carries `load` (5,), N and N m.
 
         Damped Newton steps reduce energy less work of the load. Where the bearing does not resist, it stays
-        at `start`, and so do the coordinates that are `held`, as (3, 4) by a shaft that does not tilt; their
+        at `start`, and so do the coordinates that are `fixed`, as (3, 4) by a shaft that does not tilt; their
         load is of no account. Raises `SolveError`: no displacement carries the load.
         """
         wanted, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
-        free = np.setdiff1d(np.arange(SEAT), held)
+        free = np.setdiff1d(np.arange(SEAT), fixed)
         lever = self.bearing.pitch_diameter / 2.0
         scale = np.array([1.0, 1.0, 1.0, lever, lever])
         floor = TOLERANCE * float(np.linalg.norm((wanted / scale)[free]))

@@ -88,9 +88,11 @@ def _lamina_ratings(bearing: RollerBearing, rating: float) -> tuple[float, float
     return _of_rings(element_rating * bearing.laminae ** (-7.0 / 9.0), ratio, ROLLER_RINGS, 4.5)
 
 
-def _of_rings(each: float, ratio: float, constants: tuple[float, float], slope: float) -> tuple[float, float]:
-    inner = each / constants[0] * (1.0 + ratio**slope) ** (1.0 / slope)
-    outer = each / constants[1] * (1.0 + ratio**-slope) ** (1.0 / slope)
+def _of_rings(
+    rating: float, ratio: float, constants: tuple[float, float], slope: float
+) -> tuple[float, float]:
+    inner = rating / constants[0] * (1.0 + ratio**slope) ** (1.0 / slope)
+    outer = rating / constants[1] * (1.0 + ratio**-slope) ** (1.0 / slope)
     return inner, outer
 
 
@@ -98,6 +100,6 @@ def _edge_factor(laminae: int) -> FloatArray:
     """Return the rise of stress towards the ends of a roller, (laminae,): equation (60)."""
     if laminae == 1:
         return np.ones(1)
-    place = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae - 2.0)
+    coordinate = np.abs(2.0 * np.arange(1, laminae + 1) - laminae - 1.0) / (2.0 * laminae - 2.0)
     with np.errstate(divide="ignore"):  # in the very middle the logarithm is infinite: no rise
-        return np.asarray(1.0 - 0.01 / np.log(1.985 * place))
+        return np.asarray(1.0 - 0.01 / np.log(1.985 * coordinate))

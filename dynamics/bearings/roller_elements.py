@@ -45,10 +45,10 @@ class RollerElements(NamedTuple):
     """
     first: IntArray
     """First lamina of each bearing. Shape (l + 1,)."""
-    place: FloatArray
+    coordinate: FloatArray
     drop: FloatArray
-    """`place`, `drop`: Middle of each lamina along the roller over the lever of tilts, and by how much its
-    profile is lower there, on both contacts together, m. Shape (L,) each.
+    """`coordinate`, `drop`: Middle of each lamina along the roller over the lever of tilts, and by how much
+    its profile is lower there, on both contacts together, m. Shape (L,) each.
     """
 
     @classmethod
@@ -56,12 +56,14 @@ class RollerElements(NamedTuple):
         """Lay out `rows` and how they are placed."""
         figures = [_figures(bearing, at) for bearing, at in rows]
         places = [bearing.lamina_places for bearing, _ in rows]
-        drops = [2.0 * bearing.drop(place) for (bearing, _), place in zip(rows, places, strict=True)]
-        places_over_lever = [place / at.lever for (_, at), place in zip(rows, places, strict=True)]
+        drops = [
+            2.0 * bearing.drop(coordinate) for (bearing, _), coordinate in zip(rows, places, strict=True)
+        ]
+        places_over_lever = [coordinate / at.lever for (_, at), coordinate in zip(rows, places, strict=True)]
         return cls(
             rollers=np.array([bearing.count * at.copies for bearing, at in rows], dtype=np.int64),
             first=np.cumsum([0, *(bearing.laminae for bearing, _ in rows)], dtype=np.int64),
-            place=np.concatenate([np.empty(0), *places_over_lever]),
+            coordinate=np.concatenate([np.empty(0), *places_over_lever]),
             drop=np.concatenate([np.empty(0), *drops]),
             **{
                 name: np.array([figure[name] for figure in figures], dtype=float)
@@ -128,7 +130,7 @@ def _laminae(
     load, moment, total, turns = 0.0, 0.0, 0.0, 0.0
     k, kx, kxx, d, dx, dxx = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for lamina in range(laws.first[entry], laws.first[entry + 1]):
-        x = laws.place[lamina]
+        x = laws.coordinate[lamina]
         press = middle + x * turn - laws.drop[lamina]
         if press <= 0.0:
             continue
@@ -180,7 +182,7 @@ def rollers_energy(
         turning = -(y[row + 4] * s + y[row + 3] * c)
         across = (y[row + 1] * c - y[row] * s) * laws.cosine[entry] - laws.arm[entry] * turning
         for lamina in range(laws.first[entry], laws.first[entry + 1]):
-            x = laws.place[lamina]
+            x = laws.coordinate[lamina]
             press = pressed - laws.play[entry] + x * turn - laws.drop[lamina]
             if press > 0.0:
                 q = laws.stiffness[entry] * press**EXPONENT
@@ -202,7 +204,7 @@ def roller_reaction(laws: RollerElements, local: LocalState, load: FloatArray) -
         c, s = math.cos(angle + roller * step), math.sin(angle + roller * step)
         pressed, turn = _middle(laws, 0, c, s, local.coordinate, 0)
         for lamina in range(first, laws.first[1]):
-            press = pressed - laws.play[0] + laws.place[lamina] * turn - laws.drop[lamina]
+            press = pressed - laws.play[0] + laws.coordinate[lamina] * turn - laws.drop[lamina]
             load[roller, lamina - first] = laws.stiffness[0] * max(press, 0.0) ** EXPONENT
     energy, slope = rollers_energy(laws, 0, local, 0, 0)
     return energy, slope

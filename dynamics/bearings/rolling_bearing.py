@@ -89,7 +89,7 @@ LOCATING = Declared(
     later=True,
 )
 ALONG, AGAINST = 1, 2
-HELD = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
+LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 """The directions as bits."""
 AXIAL_PRELOAD = Declared(
     Kind.FORCE,
@@ -291,15 +291,15 @@ class RollerBearing(_Row):
         """Return c of load = c approach^(10/9) of a straight roller between both raceways, N/m^(10/9)."""
         return self.laminae * self.lamina_stiffness
 
-    def drop(self, place: FloatArray) -> FloatArray:
-        """Return how far the profile lies below the middle at `place` along the roller, m; one contact."""
+    def drop(self, coordinate: FloatArray) -> FloatArray:
+        """Return how far the profile lies below the middle at a `coordinate`, m; one contact."""
         length, diameter, tapered = self.length, self.diameter, self.contact_angle != 0.0
         if self.profile != LOGARITHMIC:
             crown = self.crown if self.profile == CROWNED else 0.0
-            return np.asarray(crown * (2.0 * place / length) ** 2)
+            return np.asarray(crown * (2.0 * coordinate / length) ** 2)
         straight = 0.0 if tapered or length <= LONG * diameter else length - LONG * diameter
         factor = 0.00045 if tapered else 0.0005 if straight > 0.0 else 0.00035  # [1]_
-        ratio = np.maximum(2.0 * np.abs(place) - straight, 0.0) / (length - straight)
+        ratio = np.maximum(2.0 * np.abs(coordinate) - straight, 0.0) / (length - straight)
         return np.asarray(-factor * diameter * np.log1p(-(ratio**2)))
 
     def peak_pressure(self, load: float) -> float:
@@ -318,7 +318,7 @@ def check_locating(row: BallBearing | RollerBearing, locating: str) -> None:
     Raises `InputError`: `locating` is none of the choices, or the row has a contact angle and not both
     directions are held.
     """
-    one_of("locating", locating, list(HELD))
+    one_of("locating", locating, list(LOCATED))
     if locating != BOTH and row.contact_angle != 0.0:
         bound = f'"{BOTH}" with a contact angle, whose sign is the direction in which the row holds'
         raise InputError("locating", locating, bound, "State the contact angle's sign instead.")

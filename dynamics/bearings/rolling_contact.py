@@ -114,7 +114,7 @@ class RollingContact(SceneBearingLaw):
         """Return the stiffness of the rows at the typical load, (2,), N/m."""
         return np.full(2, self.tangent(self.typical_load(duty.load)))
 
-    def missed(self, duty: BearingDuty) -> float:
+    def tangent_error(self, duty: BearingDuty) -> float:
         """Return what its tangent misses of the displacement under the typical load, m."""
         load = self.typical_load(duty.load)
         return self.displacement(load) - load / self.tangent(load)

@@ -72,7 +72,7 @@ class _RowLaw:
         """Return the displacement under the typical load across the axis, m."""
         return self._under(duty)[0]
 
-    def missed(self, duty: BearingDuty) -> float:
+    def tangent_error(self, duty: BearingDuty) -> float:
         way, at = self._under(duty)
         return way - float(at.force[0] / at.tangent[0, 0])
 
@@ -85,9 +85,9 @@ class _RowLaw:
 
     def passing_motion(self, duty: BearingDuty) -> float:
         """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
-        whole, pitch = LoadedBearing(self.row, 1, self.bearing.locating), 2.0 * math.pi / self.row.count
+        loaded, pitch = LoadedBearing(self.row, 1, self.bearing.locating), 2.0 * math.pi / self.row.count
         angles = np.arange(PASSING_ANGLES) * pitch / PASSING_ANGLES
-        return float(np.ptp([self._under(duty, whole, float(angle))[0] for angle in angles]))
+        return float(np.ptp([self._under(duty, loaded, float(angle))[0] for angle in angles]))
 
     def _under(
         self, duty: BearingDuty, loaded: LoadedBearing | None = None, angle: float = 0.0

@@ -101,7 +101,7 @@ class SpringCurve(SceneBearingLaw):
         """Return its mean stiffness, (1,), N/m."""
         return np.array([self.slope / self.lever(duty) ** 2])
 
-    def missed(self, duty: BearingDuty) -> float:
+    def tangent_error(self, duty: BearingDuty) -> float:
         """Return how far the table is off a straight line through its value at 0, m; of a tilt 0."""
         if self.direction.startswith("tilt"):
             return 0.0

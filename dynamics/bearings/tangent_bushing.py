@@ -11,7 +11,7 @@ from dynamics.bearings.matrix import matrix_rows
 
 
 def tangent_bushing(
-    bearing: LoadedBearing, place: tuple[str, str, float], displacement: ArrayLike, angle: float = 0.0
+    bearing: LoadedBearing, seat: tuple[str, str, float], displacement: ArrayLike, angle: float = 0.0
 ) -> Bushing:
     """Return the bushing with force and tangent of `bearing` at a displacement.
 
@@ -23,14 +23,14 @@ def tangent_bushing(
     ----------
     bearing : LoadedBearing
         Its outer ring is held by the ground, its center is on the shaft's axis.
-    place : (str, str, float)
+    seat : (str, str, float)
         Name of the bushing, its shaft, position along it (m).
     displacement : (5,) array_like
         Of the shaft at the bushing: x, y, z (m), tilt_x, tilt_y (rad).
     angle : float
         Of the first element from x towards y, rad.
     """
-    name, shaft, position = place
+    name, shaft, position = seat
     at = bearing.evaluate(displacement, angle)
     preload = at.tangent @ np.asarray(displacement, dtype=float) - at.force
     stiffness = matrix_rows(0.5 * (at.tangent + at.tangent.T))

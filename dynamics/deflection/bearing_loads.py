@@ -32,9 +32,9 @@ def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
     if bearing.dynamic_capacity is None:
         return math.nan
     law = row_law(bearing)
-    moved = np.array(displacement, dtype=float)
-    moved[2] += law.shift
-    return rating_life(bearing.row, law.loaded.evaluate(moved).load, bearing.dynamic_capacity).revolutions
+    shifted = np.array(displacement, dtype=float)
+    shifted[2] += law.shift
+    return rating_life(bearing.row, law.loaded.evaluate(shifted).load, bearing.dynamic_capacity).revolutions
 
 
 def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: Sequence[float]) -> float:
@@ -98,12 +98,12 @@ def bearing_loads(system: System, rest: Rest, strain: BearingStrain) -> tuple[Be
     for k, name in enumerate(system.supports.name):
         index, part = places[name]
         carrier = system.rotors[index].carrier if isinstance(part, PlanetBearing) else None
-        held = 0.0 if carrier is None else speed[carrier]
+        carrier_speed = 0.0 if carrier is None else speed[carrier]
         loads.append(
             BearingLoad(
                 name=name,
                 shaft=part.shaft,
-                speed=abs(float(speed[index] - held)),
+                speed=abs(float(speed[index] - carrier_speed)),
                 force=force[:, k].mean(axis=0),
                 largest_radial=float(np.max(np.hypot(force[:, k, 0], force[:, k, 1]))),
                 elastic=strain.elastic[k],

@@ -103,15 +103,15 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
     """Return the motions (b, 5) of the seats in housings that are no freedoms by the shafts' there (b, 5)."""
     places, names = supports_by_name(system.rotors), list(system.supports.name)
-    moved = np.zeros_like(total)
+    displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):
         parts = [places[name][1] for name in housing.bushings]
         at = [names.index(name) for name in housing.bushings]
         stiffness = np.zeros((SEAT * len(at), SEAT * len(at)))
         for k, part in enumerate(parts):
-            own = slice(SEAT * k, SEAT * k + SEAT)
-            stiffness[own, own] = part.seat_stiffness
+            block = slice(SEAT * k, SEAT * k + SEAT)
+            stiffness[block, block] = part.seat_stiffness
         preload = np.concatenate([part.preload or np.zeros(SEAT) for part in parts])
         pushed = stiffness @ total[at].ravel() - preload
-        moved[at] = (seat_compliance(housing, stiffness) @ pushed).reshape(-1, SEAT)
-    return moved
+        displacement[at] = (seat_compliance(housing, stiffness) @ pushed).reshape(-1, SEAT)
+    return displacement

@@ -35,15 +35,15 @@ class ForceUnderCase:
     moment: FloatArray = field(metadata=in_unit("n_m", "axis"))
 
 
-def _stated(force: AppliedForce, own: CaseForce | None) -> AppliedForce:
+def _case_force(force: AppliedForce, specified: CaseForce | None) -> AppliedForce:
     """Return a force with what a load case states of it."""
-    if own is None:
+    if specified is None:
         return force
-    factor = 1.0 if own.factor is None else own.factor
+    factor = 1.0 if specified.factor is None else specified.factor
     return replace(
         force,
-        force=_times(factor, force.force if own.force is None else own.force),
-        moment=_times(factor, force.moment if own.moment is None else own.moment),
+        force=_times(factor, force.force if specified.force is None else specified.force),
+        moment=_times(factor, force.moment if specified.moment is None else specified.moment),
     )
 
 
@@ -84,7 +84,7 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
     leader = leader_of(scene)
     speed = _speed(leader, case)
     scale = _turned(case) * (speed / abs(leader.speed) if leader.speed else speed)
-    drives = (*at_steady_speeds(scene, scale).drives, *_held_trains(scene, leader, scale))
+    drives = (*at_steady_speeds(scene, scale).drives, *_fixed_trains(scene, leader, scale))
     driven = replace(scene, drives=drives, free_rotations=())
     return replace(
         with_loads(driven, case),
@@ -101,9 +101,11 @@ def with_loads(scene: Scene, case: LoadCase) -> Scene:
     Every drive holds its largest speed: the torque of a run-up's acceleration is none of the case. Raises
     `InputError`: as `loaded_scene`.
     """
-    stated = {part.name: part for part in case.forces}
+    case_forces = {part.name: part for part in case.forces}
     steady = at_steady_speeds(scene)
-    pushed = replace(steady, forces=tuple(_stated(force, stated.get(force.name)) for force in scene.forces))
+    pushed = replace(
+        steady, forces=tuple(_case_force(force, case_forces.get(force.name)) for force in scene.forces)
+    )
     factor = case.factor
     if case.torque is not None:
         factor = _factor(pushed, _speed(leader_of(scene), case), case.torque)
@@ -141,11 +143,11 @@ def _effects_at_rest(scene: Scene) -> dict[str, str]:
     known = {
         effect.name: "on" if effect.at_rest else "off" for effect in EFFECTS if effect.at_rest is not None
     }
-    stated = scene.effects.items()
-    return known | {name: choice for name, choice in stated if choice == "off" or name not in known}
+    chosen = scene.effects.items()
+    return known | {name: choice for name, choice in chosen if choice == "off" or name not in known}
 
 
-def _held_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:
+def _fixed_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:
     """Yield a drive for every free train: it takes what its torques do not balance, at rest and in motion."""
     for free in scene.free_rotations:
         speed = free.initial_speed or (free.forward if free.shaft == leader.shaft else 0.0)

@@ -60,20 +60,24 @@ def _axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingSt
     places = supports_by_name(system.rotors)
     z = np.array([places[name][1].position for name in names])
     at = [system.supports.name.index(name) for name in names]
-    for cause, moved in ((BEARING, strain.elastic), (CLEARANCE, strain.clearance), (HOUSING, strain.seat)):
-        tilts[cause] += _line_tilt(z, moved[at])
+    for cause, displacement in (
+        (BEARING, strain.elastic),
+        (CLEARANCE, strain.clearance),
+        (HOUSING, strain.seat),
+    ):
+        tilts[cause] += _line_tilt(z, displacement[at])
     return tilts
 
 
-def _line_tilt(z: FloatArray, moved: FloatArray) -> FloatArray:
-    """Return tilt_x and tilt_y (rad) of the line through points at z (S,), m, moved by `moved` (S, 5).
+def _line_tilt(z: FloatArray, displacement: FloatArray) -> FloatArray:
+    """Return tilt_x and tilt_y (rad) of the line through points at z (S,), m, moved by `displacement` (S, 5).
 
     u_x = tilt_y z and u_y = -tilt_x z.
     """
     away = z - z.mean()
     if float(np.max(np.abs(away))) == 0.0:
-        return np.asarray(moved[:, TILT].mean(axis=0))
-    slope = away @ moved[:, :2] / (away @ away)
+        return np.asarray(displacement[:, TILT].mean(axis=0))
+    slope = away @ displacement[:, :2] / (away @ away)
     return np.array([-slope[1], slope[0]])
 
 
@@ -101,8 +105,8 @@ def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
         rotor = system.rotors[shaft]
         middle, ends = float(line.point[2]) - rotor.shaft.origin[2], np.zeros(2)
         if rotor.elastic is not None:  # linear between nodes: exact where torques act at nodes alone
-            own = motion[elastic_columns(system.rotors, shaft)][rotor.elastic.twists]
-            turned, at = rotor.elastic.torsion.shape @ own, np.array([middle - half, middle + half])
+            amplitudes = motion[elastic_columns(system.rotors, shaft)][rotor.elastic.twists]
+            turned, at = rotor.elastic.torsion.shape @ amplitudes, np.array([middle - half, middle + half])
             ends = np.interp(at, rotor.elastic.position, turned)
         lever = side * float(line.gradient(rotor.center)[5])
         grown -= towards * lever * float(ends[1] - ends[0])
@@ -146,7 +150,7 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
     motion = rest.motion.mean(axis=0)
     row = misalignment_gradient(scene, rotors, index, line, sense)
     course = mesh.misalignment + rest.motion @ row
-    apart = float(distance_gradient(scene, rotors, index, line) @ motion)
+    distance_change = float(distance_gradient(scene, rotors, index, line) @ motion)
     per_tilt = misalignment_per_tilt(scene, index, line, sense)[:2]
     driver, driven = (_gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
     causes = (driver - driven) @ per_tilt
@@ -160,7 +164,7 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
         minimum=float(course.min()),
         largest=float(course.max()),
         causes=causes,
-        center_distance_change=mesh.center_distance_change + apart,
+        center_distance_change=mesh.center_distance_change + distance_change,
         lead_torsion=_lead_torsion(system, index, motion),
         load_arm=float(rest.load_arm[:, index].mean()),
         in_table=inside,

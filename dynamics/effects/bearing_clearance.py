@@ -22,9 +22,9 @@ class BearingClearance(RotorEffect):
         Its influence is the most that the tangent of a law misses of the displacement under the load.
         """
         mechanism = rotor.mechanism
-        duties, own_supports = mechanism.bearing_duty, {part.name for part in rotor.rotor.supports}
-        laws = [law for law in mechanism.scene.bearing_laws if law.bushing in own_supports]
-        errors = [law.missed(duties[law.bushing]) for law in laws]
+        duties, supports = mechanism.bearing_duty, {part.name for part in rotor.rotor.supports}
+        laws = [law for law in mechanism.scene.bearing_laws if law.bushing in supports]
+        errors = [law.tangent_error(duties[law.bushing]) for law in laws]
         if not errors:
             return Verdict(False, False, "no bearing with clearance or a nonlinear law", 0.0)
         reason = "bearings with clearance or nonlinear laws; off: their tangents at the load"

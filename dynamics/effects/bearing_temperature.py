@@ -44,9 +44,9 @@ class BearingTemperature(RotorEffect):
         changed = [row for row in rows if _differs(row)]
         if not changed:
             return Verdict(False, False, "temperatures change no bearing with a row", 0.0)
-        words = [*_plays(changed), *_pair(rows)]
-        words += [f'"{row.drawn.name}" {ring} loose' for row in changed for ring in row.loose]
-        return Verdict(True, True, "; ".join(words), _moved(rotor, rows))
+        reasons = [*_plays(changed), *_pair(rows)]
+        reasons += [f'"{row.drawn.name}" {ring} loose' for row in changed for ring in row.loose]
+        return Verdict(True, True, "; ".join(reasons), _mesh_displacement(rotor, rows))
 
 
 def _warm_rows(scene: Scene) -> Sequence[WarmBearing]:
@@ -68,9 +68,9 @@ def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
         if row.drawn.row.contact_angle == 0.0:
             before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))
             along = 1e6 * (row_law(row.warm).shift - row_law(row.drawn).shift)
-            words = f'clearance of "{row.drawn.name}" {before:.4g} to {after:.4g} µm'
-            words += ", a preload" if after < 0.0 else ""
-            yield words + (f", rings {along:+.4g} µm apart along z" if along else "")
+            text = f'clearance of "{row.drawn.name}" {before:.4g} to {after:.4g} µm'
+            text += ", a preload" if after < 0.0 else ""
+            yield text + (f", rings {along:+.4g} µm apart along z" if along else "")
 
 
 def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
@@ -100,18 +100,19 @@ def axial_state(bearings: Sequence[RollingBearing]) -> tuple[float, float]:
     if high >= low:
         return high - low, 0.0
 
-    def force(moved: float, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
+    def force(displacement: float, sides: tuple[float, ...] = (1.0, -1.0)) -> float:
         opposed = (part for part in bearings if math.copysign(1.0, part.row.contact_angle) in sides)
         laws = (row_law(part) for part in opposed)
         return sum(
-            float(law.loaded.evaluate((0.0, 0.0, moved + law.shift, 0.0, 0.0)).force[2]) for law in laws
+            float(law.loaded.evaluate((0.0, 0.0, displacement + law.shift, 0.0, 0.0)).force[2])
+            for law in laws
         )
 
     rest = float(scipy.optimize.brentq(force, high, low, xtol=1e-15))
     return 0.0, force(rest, (1.0,))
 
 
-def _moved(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
+def _mesh_displacement(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float:
     """Return the largest change of the displacement at a mesh, linear between the bearings, m."""
     mechanism, bearings_rotor = rotor.mechanism, rotor.rotor
     duties, more, at = mechanism.bearing_duty, [], []

@@ -38,8 +38,8 @@ class ElementPassing(RotorEffect):
         if tolerance is None:
             return Verdict(False, True, f"{reason}; averaged, as no tolerance is stated", size)
         yielding = float(np.min(rotor.flanks.nominal_force / rotor.flanks.mean_stiffness))
-        words = f"{reason}, {engineering(size / yielding)} of what the meshes yield"
-        return Verdict(size > tolerance * yielding, True, words, size)
+        text = f"{reason}, {engineering(size / yielding)} of what the meshes yield"
+        return Verdict(size > tolerance * yielding, True, text, size)
 
     def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
         """Let the elements of the bearings pass on the shafts on which it is on."""

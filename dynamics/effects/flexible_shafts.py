@@ -101,8 +101,8 @@ def _points_of_application(
         tilts = bends and bushing.name in tilting
         points.append(PointOfApplication(rotor.on_shaft(bushing.position), bends, tilts, along))
     for position, full in _couplings(scene, rotor):
-        whole = bends and full
-        points.append(PointOfApplication(rotor.on_shaft(position), whole, whole, stretches and full, True))
+        bent = bends and full
+        points.append(PointOfApplication(rotor.on_shaft(position), bent, bent, stretches and full, True))
     torques: list[OnShaft] = [*scene.drives, *scene.loads, *scene.speed_torques]
     points += [
         PointOfApplication(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name
@@ -149,7 +149,9 @@ class FlexibleShafts(RotorEffect):
             if part is not None and part.mass.size == 0:
                 refusals[index], elastic[index] = NOTHING_BENDS, None
         flexible = _with_elastic(mechanism, elastic)
-        stiffness = _held(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
+        stiffness = (
+            _support_stiffness(flexible) if any(part is not None for part in elastic) else np.empty((0, 0))
+        )
         return [
             _Bending(False, False, refusal, 0.0)
             if part is None
@@ -170,7 +172,7 @@ def _with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) 
 
 
 def _influence(
-    mechanism: Mechanism, flanks: Flanks, index: int, held: FloatArray, elastic: ElasticShaft
+    mechanism: Mechanism, flanks: Flanks, index: int, stiffness: FloatArray, elastic: ElasticShaft
 ) -> _Bending:
     """Assess the bending of the shaft `index` by the nominal forces, its neighbors at rest."""
     scene, rotors = mechanism.scene, mechanism.rotors
@@ -185,9 +187,9 @@ def _influence(
     force = _torques(mechanism, index)[axes] - sum(
         (mechanism.nominal_force[mesh] * row for mesh, row in rows.items()), start=np.zeros(axes.size)
     )
-    displacement = np.linalg.lstsq(held[np.ix_(axes, axes)], force, rcond=1e-13)[0]
+    displacement = np.linalg.lstsq(stiffness[np.ix_(axes, axes)], force, rcond=1e-13)[0]
     displacement[: len(rigid)] -= np.linalg.lstsq(
-        held[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13
+        stiffness[np.ix_(rigid, rigid)], force[: len(rigid)], rcond=1e-13
     )[0]
     loads: list[OnShaft] = [*scene.forces, *scene.unbalances]
     if not rows and scene.shafts[index].name in [part.shaft for part in loads]:
@@ -232,7 +234,7 @@ def _torques(mechanism: Mechanism, index: int) -> FloatArray:
     return force
 
 
-def _held(mechanism: Mechanism) -> FloatArray:
+def _support_stiffness(mechanism: Mechanism) -> FloatArray:
     """Stiffness of bearings, at their typical load, and of shafts, on all freedoms, (N, N)."""
     rotors = mechanism.rotors
     joined = gather_connections(mechanism.scene, rotors)

@@ -39,7 +39,7 @@ class FlankTerms:
 
     def following(self, axis: int, flank: FlankInSpace, gradient: FloatArray) -> FlankTerms:
         """Return the terms with the table over its axes, of which the force follows one if it has knots."""
-        table = flank.whole_table
+        table = flank.complete_table
         over = replace(self, table=table)
         if np.size((table.misalignment, table.center_distance_change)[axis]) == 1:
             return over
@@ -73,7 +73,7 @@ class FlankInSpace:
         return line_of_action(self.mechanism.scene, self.index, self.sense)
 
     @property
-    def whole_table(self) -> MeshTable:
+    def complete_table(self) -> MeshTable:
         """The table over all its axes."""
         mesh = self.mechanism.scene.meshes[self.index]
         if not self.coast:

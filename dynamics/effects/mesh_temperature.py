@@ -37,13 +37,13 @@ class MeshTemperature(MeshEffect):
         change = warm.meshes[mesh.index]
         if not any(vars(change).values()):
             return Verdict(False, False, "temperatures change nothing of this mesh", 0.0)
-        shift = np.array([change.misalignment, change.apart])
+        shift = np.array([change.misalignment, change.distance_change])
         point = np.array([mesh.mesh.misalignment, mesh.mesh.center_distance_change])
         other = point + (shift if scene.temperatures.meshes is None else -shift)
         influence = abs(_mean_error(mesh, point) - _mean_error(mesh, other))
         if mesh.mesh.coast is not None and np.min(mesh.train.mean_force[mesh.index]) <= 0.0:
             influence = max(influence, abs(change.backlash))
-        return Verdict(True, True, _words(mesh, change), influence)
+        return Verdict(True, True, _text(mesh, change), influence)
 
 
 def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
@@ -57,10 +57,10 @@ def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
     return float(mean)
 
 
-def _words(mesh: LoadedMesh, change: WarmMesh) -> str:
+def _text(mesh: LoadedMesh, change: WarmMesh) -> str:
     """Say what changes, and which of it the scene cannot follow."""
     table, coast = mesh.mesh.table, mesh.mesh.coast
-    parts = [f"center distance {1e6 * change.apart:+.4g} µm against the gears"]
+    parts = [f"center distance {1e6 * change.distance_change:+.4g} µm against the gears"]
     if np.size(table.center_distance_change) == 1:
         parts.append("the table has one center distance only")
     parts.append(f"backlash {1e6 * change.backlash:+.4g} µm" if coast else "no coast flank given")

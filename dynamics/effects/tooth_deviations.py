@@ -47,12 +47,12 @@ class ToothDeviations(MeshEffect):
         made = table_as_made(mesh.mesh.table)
         if made.period == 1:
             return _of_assumed_class(mesh)
-        nominal, words = nominal_table(made), f"the table repeats after {made.period} base pitches"
+        nominal, text = nominal_table(made), f"the table repeats after {made.period} base pitches"
         if nominal is made:
-            return Verdict(True, False, f"{words}, whose positions differ: it has no mean of one", 0.0)
+            return Verdict(True, False, f"{text}, whose positions differ: it has no mean of one", 0.0)
         mean = _static_error(nominal, mesh.force)
         size = float(np.max(np.abs(_static_error(made, mesh.force).reshape(-1, mean.size) - mean)))
-        return Verdict(True, True, f"{words}, which differ from their mean by up to {_um(size)}", size)
+        return Verdict(True, True, f"{text}, which differ from their mean by up to {_um(size)}", size)
 
 
 def _of_assumed_class(mesh: LoadedMesh) -> Verdict:

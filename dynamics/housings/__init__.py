@@ -4,7 +4,7 @@ The only package of dynamics that uses scikit-fem, meshlane and, in a child proc
 """
 
 import host.analysis  # noqa: F401 (says what to install)
-from dynamics.housings.kept_reduction import meshed_step, reduced_housing
+from dynamics.housings.cached_reduction import meshed_step, reduced_housing
 from dynamics.housings.mesh_faces import Bore, BoundedPlane, Box, Group, Plane
 from dynamics.housings.mesh_files import read_mesh
 from dynamics.housings.meshed_housing import MaterialDamping, MeshedHousing, ModalDamping

@@ -17,7 +17,7 @@ from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
 
-HELD = 1e-12
+LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 BLOCK = 3
 """Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
@@ -178,12 +178,12 @@ def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: _
     """Return the motion of a seat along its own axes, (motions, f)."""
     bore, frame = seat
     if bore.ring is Ring.RIGID:
-        whole = sp.csr_array(
+        seat_motion = sp.csr_array(
             sp.eye_array(freedoms.motion.shape[1], format="csr")[freedoms.face(f"seats.{bore.name}")]
         )
     else:
-        whole = mean_motion(mesh, bore.bore, frame.position) @ freedoms.motion
-    return sp.csr_array(sp.csr_array(in_axes(frame)) @ whole)
+        seat_motion = mean_motion(mesh, bore.bore, frame.position) @ freedoms.motion
+    return sp.csr_array(sp.csr_array(in_axes(frame)) @ seat_motion)
 
 
 def _stiffness_and_damping_of_mounts(
@@ -211,4 +211,4 @@ def _loose(
     size = np.array(3 * [1.0] + 3 * [float(np.linalg.norm(points - center, axis=1).max())])
     rigid = freedoms.rigid(points, center) / size
     value, vector = np.linalg.eigh(rigid.T @ (stiffness @ rigid))
-    return np.asarray(rigid @ vector[:, value <= HELD * max(value[-1], 1e-300)])
+    return np.asarray(rigid @ vector[:, value <= LOOSE_STIFFNESS * max(value[-1], 1e-300)])

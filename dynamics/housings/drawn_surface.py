@@ -56,11 +56,11 @@ class DrawnSurface:
             points, facets = simplify(self.points, self.facets, target_count=maximum, agg=aggressiveness)
             weight = _OF_NORMALS * float(np.linalg.norm(_across(points[facets]), axis=1).mean() ** 0.5)
             there = np.hstack([points, weight * node_normals(points, facets)])
-            own = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
-            corners = np.asarray(cKDTree(own).query(there)[1])[facets]
+            descriptors = np.hstack([self.points, weight * node_normals(self.points, self.facets)])
+            corners = np.asarray(cKDTree(descriptors).query(there)[1])[facets]
         area = np.linalg.norm(_across(self.points[corners]), axis=1)
-        kept, facets = np.unique(corners[area > _MIN_AREA * area.mean()], return_inverse=True)
-        return DrawnSurface(self.points[kept], facets.reshape(-1, 3)), kept
+        retained, facets = np.unique(corners[area > _MIN_AREA * area.mean()], return_inverse=True)
+        return DrawnSurface(self.points[retained], facets.reshape(-1, 3)), retained
 
 
 def node_normals(points: FloatArray, facets: IntArray) -> FloatArray:

@@ -96,26 +96,28 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     shift = SHIFT * float(np.max(squares))
     shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
     solve = _factorized(shifted)
-    held = housing.loose
-    factor = np.linalg.cholesky(held.T @ (housing.mass @ held))
-    rigid: FloatArray = np.asarray(np.linalg.solve(factor, held.T).T)  # orthonormal
+    rigid_motions = housing.loose
+    factor = np.linalg.cholesky(rigid_motions.T @ (housing.mass @ rigid_motions))
+    rigid: FloatArray = np.asarray(np.linalg.solve(factor, rigid_motions.T).T)  # orthonormal
     square, shape = _lanczos(housing, solve, shift, count + loose)
     deflection, residual = _deflections(housing, solve, rigid)
-    elastic, own = shape[:, loose:], square[loose:]
+    elastic, eigenvalues = shape[:, loose:], square[loose:]
     force = housing.stiffness @ elastic
-    missed = np.linalg.norm(force - (housing.mass @ elastic) * own, axis=0)
+    imbalance = np.linalg.norm(force - (housing.mass @ elastic) * eigenvalues, axis=0)
     status = ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
-    if own.size != count:
+    if eigenvalues.size != count:
         status = ModeStatus.ITERATION_LIMIT
     return FreeModes(
         rigid=rigid,
         shape=elastic,
-        frequency=np.sqrt(np.maximum(own, 0.0)) / (2.0 * math.pi),
+        frequency=np.sqrt(np.maximum(eigenvalues, 0.0)) / (2.0 * math.pi),
         deflection=deflection,
         status=status,
-        eigen_residual=float(np.max(missed / np.linalg.norm(force, axis=0), initial=0.0)),
+        eigen_residual=float(np.max(imbalance / np.linalg.norm(force, axis=0), initial=0.0)),
         solve_residual=residual,
-        rigid_ratio=math.sqrt(float(np.abs(square[:loose]).max()) / own[0]) if loose and own.size else 0.0,
+        rigid_ratio=math.sqrt(float(np.abs(square[:loose]).max()) / eigenvalues[0])
+        if loose and eigenvalues.size
+        else 0.0,
     )
 
 
@@ -153,13 +155,13 @@ def _deflections(housing: AssembledHousing, solve: Solve, rigid: FloatArray) -> 
     inertia = housing.mass @ rigid
     load = housing.seats.T.toarray()
     load -= inertia @ (rigid.T @ load)
-    deflection, missed = np.zeros_like(load), load
+    deflection, imbalance = np.zeros_like(load), load
     residual = math.inf
     for _ in range(REFINEMENTS):
-        deflection = deflection + solve(missed)
+        deflection = deflection + solve(imbalance)
         deflection -= rigid @ (inertia.T @ deflection)
-        missed = load - housing.stiffness @ deflection
-        lost, done = (np.einsum("fs,fs->s", deflection, force) for force in (missed, load))
+        imbalance = load - housing.stiffness @ deflection
+        lost, done = (np.einsum("fs,fs->s", deflection, force) for force in (imbalance, load))
         previous, residual = residual, float(np.max(np.abs(lost) / done))
         if residual <= REFINED or residual > 0.5 * previous:
             break

@@ -105,8 +105,8 @@ class Bore:
         there = f" ({share:.0%} is)" if share > 0.0 else ""
         bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{there}"
         x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
-        place = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
-        remedy = Text.of(place, "position, axis, length and the unit of the mesh: ", others, ".")
+        location = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
+        remedy = Text.of(location, "position, axis, length and the unit of the mesh: ", others, ".")
         raise InputError("diameter", self.diameter, bound, remedy)
 
 
@@ -127,7 +127,7 @@ class Plane:
         height = (mesh.points[surface[:, :3]] - np.array(self.point)) @ direction
         size = np.sqrt(_normals(mesh, surface)[1])[:, None]
         facing = _normals(mesh, surface)[0] @ direction > 1.0 - NEAR
-        return _require_some(
+        return _require_facets(
             "point", self.point, mesh, facing & np.all(np.abs(height) <= NEAR * size, axis=1)
         )
 
@@ -147,7 +147,7 @@ class Box:
         """Return the triangles whose corners are all inside."""
         corner = mesh.points[mesh.surface[:, :3]]
         inside = np.all((corner >= np.array(self.low)) & (corner <= np.array(self.high)), axis=(1, 2))
-        return _require_some("low", self.low, mesh, inside)
+        return _require_facets("low", self.low, mesh, inside)
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Group:
         one_of("name", self.name, list(mesh.groups), "Name the physical group or node set in the mesh file.")
         member = np.zeros(len(mesh.points), dtype=bool)
         member[mesh.groups[self.name]] = True
-        return _require_some("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
+        return _require_facets("name", self.name, mesh, np.all(member[mesh.surface[:, :3]], axis=1))
 
 
 def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, FloatArray]:
@@ -190,11 +190,13 @@ def _normals(mesh: TetrahedralMesh, triangles: IntArray) -> tuple[FloatArray, Fl
     return area / size[:, None], size
 
 
-def _require_some(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
+def _require_facets(field: str, value: object, mesh: TetrahedralMesh, chosen: BoolArray) -> IntArray:
     if not chosen.any():
         extent = np.stack([mesh.points.min(axis=0), mesh.points.max(axis=0)], axis=1).ravel()
         ends = (Quantity(float(end), "m", digits=6) for end in extent)
-        words = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
-        remedy = Text.of(*(part for pair in zip(words, ends, strict=True) for part in pair), " in x, y, z.")
+        separators = ("The mesh spans ", " to ", ", ", " to ", ", ", " to ")
+        remedy = Text.of(
+            *(part for pair in zip(separators, ends, strict=True) for part in pair), " in x, y, z."
+        )
         raise InputError(field, value, "where the surface has triangles", remedy)
     return np.asarray(mesh.surface[chosen])

@@ -135,8 +135,8 @@ def _checked(content: _Content, scale: float) -> TetrahedralMesh:
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
     groups = {name: number[nodes] for name, nodes in content.groups.items()}
-    whole = {name: np.unique(nodes[nodes >= 0]) for name, nodes in groups.items()}
-    mesh = TetrahedralMesh(points[used], tetrahedra.reshape(-1, 10), whole)
+    node_groups = {name: np.unique(nodes[nodes >= 0]) for name, nodes in groups.items()}
+    mesh = TetrahedralMesh(points[used], tetrahedra.reshape(-1, 10), node_groups)
     _check_quality(mesh)
     return mesh
 

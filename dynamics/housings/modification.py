@@ -98,8 +98,8 @@ def _renewed(
     the ratio of its number.
     """
     circular, shape = housing.modes
-    own = housing.damping - _mounts(housing)[1]  # without that of the mounts
-    loss = np.einsum("rm,rs,sm->m", shape, own, shape, optimize=True)
+    material_damping = housing.damping - _mounts(housing)[1]  # without that of the mounts
+    loss = np.einsum("rm,rs,sm->m", shape, material_damping, shape, optimize=True)
     ratio = loss / np.where(circular > 0.0, 2.0 * circular, np.inf)
     varied = replace(
         housing,

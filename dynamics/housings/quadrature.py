@@ -43,7 +43,7 @@ def triangle() -> _ShapeFunctions:
     return _ShapeFunctions(weight, shape, np.array([slope for _, slope in values]))
 
 
-def _apart(points: FloatArray, tetrahedra: IntArray) -> Any:
+def _separate_mesh(points: FloatArray, tetrahedra: IntArray) -> Any:
     """Return scikit-fem's mesh of the tetrahedra apart from each other, whose nodes it orders as we do."""
     from skfem import MeshTet2  # noqa: PLC0415 (start-up time)
 
@@ -55,7 +55,7 @@ def determinants(points: FloatArray, tetrahedra: IntArray) -> FloatArray:
     """Return those of the map from the reference at the quadrature points, (e, p): not above 0 in a fold."""
     from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
 
-    mesh = _apart(points, tetrahedra)
+    mesh = _separate_mesh(points, tetrahedra)
     rows = mesh.mapping().DF(get_quadrature(mesh.elem, ORDER)[0])
     return np.asarray(np.sum(rows[0] * np.cross(rows[1], rows[2], axis=0), axis=0))
 
@@ -67,7 +67,7 @@ def over_volume(points: FloatArray, tetrahedra: IntArray) -> tuple[sp.csr_array,
     """
     from skfem import Basis, BilinearForm, ElementTetP2  # noqa: PLC0415 (start-up time)
 
-    basis = Basis(_apart(points, tetrahedra), ElementTetP2(), intorder=ORDER, disable_doflocs=True)
+    basis = Basis(_separate_mesh(points, tetrahedra), ElementTetP2(), intorder=ORDER, disable_doflocs=True)
     node = np.empty(basis.N, dtype=np.int32)
     node[basis.element_dofs] = tetrahedra.T
 

@@ -232,14 +232,14 @@ def _turn(seat: SeatFrame) -> FloatArray:
         angle = Quantity(math.asin(min(off, 1.0)), "rad", digits=3)
         bound = Text.of("along z, as the shafts of a scene; its bore is off by ", angle)
         raise InputError(f"seats.{seat.name}", "not along z", bound, "Turn the mesh.")
-    whole = np.kron(np.eye(2), seat.axes.T)
-    return np.asarray(whole[: len(seat.motions), : len(seat.motions)])
+    rotation = np.kron(np.eye(2), seat.axes.T)
+    return np.asarray(rotation[: len(seat.motions), : len(seat.motions)])
 
 
 def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
     """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
-    own = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
-    return matrix_rows(own)
+    rotated = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
+    return matrix_rows(rotated)
 
 
 @dataclass(frozen=True)

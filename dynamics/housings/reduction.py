@@ -49,12 +49,12 @@ def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     frequency = np.concatenate([np.zeros(modes.rigid.shape[1]), modes.frequency])
     motion, law = coordinates.motion, housing.damping
     springs, mounts = (_symmetric(motion.T @ (part @ motion)) for part in assembled.mounts)
-    ratio, own = _own_damping(housing, assembled, coordinates, springs)
+    ratio, material_damping = _material_damping(housing, assembled, coordinates, springs)
     nodes, triangles = np.unique(housing.mesh.surface, return_inverse=True)
     return ReducedHousing(
         mass=coordinates.mass,
         stiffness=coordinates.stiffness,
-        damping=own + mounts,
+        damping=material_damping + mounts,
         seats=assembled.frames,
         frequency=frequency,
         damping_ratio=ratio[: len(frequency)],
@@ -84,39 +84,39 @@ def _require_converged(modes: FreeModes, count: int) -> None:
 
 def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
     """Return rigid motions, modes and what the deflections add to them, unit modal masses, (f, r)."""
-    kept = np.hstack([modes.rigid, modes.shape])
+    basis = np.hstack([modes.rigid, modes.shape])
     rest = modes.deflection
     for _ in range(2):  # the second time takes out what rounding left
-        rest = rest - kept @ (kept.T @ (housing.mass @ rest))
-    own = np.einsum("fs,fs->s", modes.deflection, housing.mass @ modes.deflection)
-    gram = rest.T @ (housing.mass @ rest) / np.sqrt(np.outer(own, own))
+        rest = rest - basis @ (basis.T @ (housing.mass @ rest))
+    norm = np.einsum("fs,fs->s", modes.deflection, housing.mass @ modes.deflection)
+    gram = rest.T @ (housing.mass @ rest) / np.sqrt(np.outer(norm, norm))
     value, vector = np.linalg.eigh(gram)
     if value[0] <= INDEPENDENT * value[-1]:
         names = [frame.name for frame in housing.frames]
         raise InputError(
             "seats", names, "independent of each other", "Two seats share a bore: make them one."
         )
-    return np.hstack([kept, rest / np.sqrt(own) @ (vector / np.sqrt(value))])
+    return np.hstack([basis, rest / np.sqrt(norm) @ (vector / np.sqrt(value))])
 
 
 def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> _Coordinates:
     """Change to coordinates of which the first are the motions of the seats."""
     mass, stiffness = (_symmetric(space.T @ (matrix @ space)) for matrix in (housing.mass, housing.stiffness))
     seats = housing.seats @ space
-    held = null_space(seats)
+    fixed_space = null_space(seats)
     static = np.linalg.pinv(seats)
-    inside = held.T @ stiffness @ held
-    static = static - held @ (
-        np.linalg.pinv(inside, SINGULAR, hermitian=True) @ (held.T @ stiffness @ static)
+    inside = fixed_space.T @ stiffness @ fixed_space
+    static = static - fixed_space @ (
+        np.linalg.pinv(inside, SINGULAR, hermitian=True) @ (fixed_space.T @ stiffness @ static)
     )
-    _, shape = eigh(inside, held.T @ mass @ held)
-    change = np.hstack([static, held @ shape])
+    _, shape = eigh(inside, fixed_space.T @ mass @ fixed_space)
+    change = np.hstack([static, fixed_space @ shape])
     return _Coordinates(
         _symmetric(change.T @ mass @ change), _symmetric(change.T @ stiffness @ change), space @ change
     )
 
 
-def _own_damping(
+def _material_damping(
     housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates, springs: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts."""
@@ -126,8 +126,8 @@ def _own_damping(
     share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)
     ratio = housing.damping.ratios(np.clip(share, 0.0, 1.0))
     impulse = coordinates.mass @ shape
-    own = impulse @ np.diag(2.0 * ratio * np.sqrt(np.maximum(square, 0.0))) @ impulse.T
-    return ratio, _symmetric(own)
+    damping = impulse @ np.diag(2.0 * ratio * np.sqrt(np.maximum(square, 0.0))) @ impulse.T
+    return ratio, _symmetric(damping)
 
 
 def _residuals(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeModes) -> ReductionChecks:

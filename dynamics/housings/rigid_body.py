@@ -39,8 +39,8 @@ def rigid_motions(points: FloatArray, about: FloatArray) -> FloatArray:
 def rigid_body(points: FloatArray, mass: sp.csr_array) -> RigidBody:
     """Return mass, center of gravity and inertia by a mass matrix between nodes, (n, n)."""
     share = np.asarray(mass.sum(axis=0)).ravel()
-    whole = float(share.sum())
-    center = share @ points / whole
+    total_mass = float(share.sum())
+    center = share @ points / total_mass
     arm = points - center
     second = arm.T @ (mass @ arm)
-    return RigidBody(whole, center, np.trace(second) * np.eye(3) - second)
+    return RigidBody(total_mass, center, np.trace(second) * np.eye(3) - second)

@@ -44,11 +44,11 @@ def _coaxial(walls: Sequence[BoreWall]) -> Iterator[list[BoreWall]]:
     """Yield the walls that have axis and radius in common."""
     groups: list[list[BoreWall]] = []
     for wall in walls:
-        own = next((group for group in groups if _same_cylinder(group[0], wall)), None)
-        if own is None:
+        group = next((group for group in groups if _same_cylinder(group[0], wall)), None)
+        if group is None:
             groups.append([wall])
         else:
-            own.append(wall)
+            group.append(wall)
     yield from groups
 
 

@@ -127,8 +127,8 @@ class Foot:
 
 
 def _with_rotations(matrix: Matrix | None) -> FloatArray:
-    whole = np.zeros((6, 6))
+    full = np.zeros((6, 6))
     if matrix is not None:
         rows = len(matrix)
-        whole[:rows, :rows] = 0.5 * (np.array(matrix) + np.array(matrix).T)
-    return whole
+        full[:rows, :rows] = 0.5 * (np.array(matrix) + np.array(matrix).T)
+    return full

@@ -52,5 +52,5 @@ def raised(corners: IntArray, points: FloatArray) -> tuple[FloatArray, IntArray]
     ends = np.sort(corners[:, EDGES].reshape(-1, 2), axis=1)
     edges, number = np.unique(ends, axis=0, return_inverse=True)
     middle = points[edges].mean(axis=1)
-    own = len(points) + number.reshape(-1, len(EDGES))
-    return np.vstack([points, middle]), np.hstack([corners, own])
+    midside = len(points) + number.reshape(-1, len(EDGES))
+    return np.vstack([points, middle]), np.hstack([corners, midside])

@@ -166,7 +166,7 @@ class Housing:
         return tuple(SEAT * seat + kind for seat in range(len(self.bushings)) for kind in range(amplitudes))
 
     @property
-    def own_columns(self) -> tuple[int, ...]:
+    def matrix_columns(self) -> tuple[int, ...]:
         """The same among the rows of the matrices."""
         per = self.per_seat
         return tuple(
@@ -182,7 +182,7 @@ class Housing:
         stiffness = np.array(self.stiffness, dtype=float)
         damping = np.zeros_like(stiffness) if self.damping is None else np.array(self.damping, dtype=float)
         stiffness, damping = 0.5 * (stiffness + stiffness.T), 0.5 * (damping + damping.T)
-        columns = np.array(self.own_columns, dtype=np.int64)
+        columns = np.array(self.matrix_columns, dtype=np.int64)
         out = np.setdiff1d(np.arange(rows), columns)
         follow = np.zeros((rows, columns.size))
         follow[columns] = np.eye(columns.size)

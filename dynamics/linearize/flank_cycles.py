@@ -18,7 +18,7 @@ from dynamics.types import FloatArray
 
 SAMPLES, MIN_SAMPLES, MAX_POSITIONS = 512, 64, 8192
 ITERATIONS = 60
-HELD = 1e-12  # of the force: where the search for a deflection ends
+SOLVED = 1e-12  # of the force: where the search for a deflection ends
 MIN_FORCE = 1e-3  # of the first level: an unloaded flank just touches
 
 
@@ -96,11 +96,11 @@ def _cycle(system: System, local: LocalState, index: int, force: float, position
     guess = np.empty_like(position)
     static_deflections(system.flanks.law.table, index, position, force, guess)
     size = rows.stop - rows.start
-    coordinate, held, blocked = (np.empty((position.size, size)) for _ in range(3))
+    coordinate, reaction, blocked = (np.empty((position.size, size)) for _ in range(3))
     tangent = np.empty((position.size, size, size))
-    _hold(elements, local, index, force, position, guess, coordinate, held, tangent)
+    _hold(elements, local, index, force, position, guess, coordinate, reaction, tangent)
     _block(elements, local, index, float(np.mean(coordinate[:, 0])), position, blocked)
-    return FlankCycle(rows, coordinate, held, tangent, blocked)
+    return FlankCycle(rows, coordinate, reaction, tangent, blocked)
 
 
 @compiled
@@ -112,7 +112,7 @@ def _hold(
     position: FloatArray,
     guess: FloatArray,
     coordinate: FloatArray,
-    held: FloatArray,
+    reaction: FloatArray,
     tangent: FloatArray,
 ) -> None:
     """Write coordinates (T, p), forces (T, p) and tangents (T, p, p) where the first row carries `force`.
@@ -127,13 +127,13 @@ def _hold(
             evaluate(elements, local, e)
             left, stiffness = force - local.force[row], local.tangent[row, 0]
             coordinate[t, 0] = local.coordinate[row]
-            if abs(left) <= HELD * force:
+            if abs(left) <= SOLVED * force:
                 break
             local.coordinate[row] += left / stiffness if stiffness > 0.0 else abs(guess[t])
-        for p in range(held.shape[1]):
-            held[t, p] = local.force[row + p]
+        for p in range(reaction.shape[1]):
+            reaction[t, p] = local.force[row + p]
             coordinate[t, p] = local.coordinate[row + p] if p > 0 else coordinate[t, 0]
-            for s in range(held.shape[1]):
+            for s in range(reaction.shape[1]):
                 tangent[t, p, s] = local.tangent[row + p, s]
     local.position[mesh], local.coordinate[row] = start, rest
 

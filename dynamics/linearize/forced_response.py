@@ -17,14 +17,14 @@ from dynamics.linearize.harmonic_response import (
     response_of,
     varied_floor,
 )
-from dynamics.linearize.linear_system import HELD_BY
+from dynamics.linearize.linear_system import SPRING_KINDS
 from dynamics.linearize.load_harmonics import load_cycles
 from dynamics.linearize.natural_modes import natural_modes
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
 from dynamics.linearize.power_balance import PowerBalance, power_balance
 from dynamics.linearize.steady_vibration import (
     Excited,
-    heard_harmonics,
+    excited_harmonics,
 )
 from dynamics.linearize.strongest_lines import require_memory
 from dynamics.linearize.varying_stiffness import varied_vibration
@@ -33,7 +33,7 @@ from dynamics.results.run_checks import checked_ledger
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
 
-KINDS = (*HELD_BY, "load", "frame")
+KINDS = (*SPRING_KINDS, "load", "frame")
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
 
 
@@ -142,7 +142,7 @@ def forced_response(
     frequency = natural_modes(at.linear).frequency
     seconds = {"equilibrium_and_modes": cpu_seconds() - began}
     began = cpu_seconds()
-    harmonics = heard_harmonics(at, speeds, lines.harmonics)
+    harmonics = excited_harmonics(at, speeds, lines.harmonics)
     if not harmonics.size:
         raise InputError("orders", orders, NOTHING_EXCITES, "Give a mesh a table, or let a load vary.")
     steady, *largest = varied_vibration(at, speeds, harmonics, progress)
@@ -157,8 +157,8 @@ def forced_response(
         **power.fields,
         bearing_floor=floor,
         bearing_floor_error=floor_error,
-        facts=_facts(at, time, seconds)
-        | lines.facts(response.floor is not None)
+        facts=_metadata(at, time, seconds)
+        | lines.to_json(response.floor is not None)
         | {"effect_ledger": ledger}
         | system.corrections,
     )
@@ -173,7 +173,7 @@ def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
     require_memory(speeds, harmonics, numbers, freedoms)
 
 
-def _facts(at: Excited, time: float, seconds: Json) -> Json:
+def _metadata(at: Excited, time: float, seconds: Json) -> Json:
     start = at.linear.equilibrium
     return {
         "leading_shaft": at.system.scene.references[leading_law(at.system)].shaft,

@@ -300,14 +300,14 @@ def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, Fl
     """
     harmonic = _harmonics(tuple(order.tolist()))
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
-    whole = harmonic % harmonic[:1] == 0
-    if samples > max(MAX_SAMPLES, MAX_PER_LINE * order.size) and not np.all(whole):
+    is_multiple = harmonic % harmonic[:1] == 0
+    if samples > max(MAX_SAMPLES, MAX_PER_LINE * order.size) and not np.all(is_multiple):
         if order.size > MAX_PARTED:
             maximum = np.sum(np.abs(amplitude), axis=-1)
             return -maximum, maximum
         parts = (
-            extremes(amplitude[..., whole], order[whole]),
-            extremes(amplitude[..., ~whole], order[~whole]),
+            extremes(amplitude[..., is_multiple], order[is_multiple]),
+            extremes(amplitude[..., ~is_multiple], order[~is_multiple]),
         )
         return parts[0][0] + parts[1][0], parts[0][1] + parts[1][1]
     if samples > MAX_SAMPLES:

@@ -22,7 +22,7 @@ WIDEST = 0.01
 """Of a step between frequencies, of the frequency: no wider where no mode is near."""
 OF_MODE = 0.25
 """Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
-MISSED = 1.0 / 7.0
+LINE_ERROR = 1.0 / 7.0
 """Of a second difference, that a straight line misses at most: an eighth of a parabola, more of others."""
 MIN_RATIO = 1e-4
 COUNTED = 1e-10
@@ -115,7 +115,7 @@ class LineFloor:
         """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
-        curvature_error = np.square(np.maximum(step[1:], step[:-1])) * bend * MISSED
+        curvature_error = np.square(np.maximum(step[1:], step[:-1])) * bend * LINE_ERROR
         return np.concatenate([curvature_error[:1], curvature_error, curvature_error[-1:]])
 
 

@@ -16,7 +16,7 @@ from dynamics.motion.force_balance import at_mean_loads, force_balance
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
-HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
+SPRING_KINDS = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
 
 
 @dataclass(frozen=True)

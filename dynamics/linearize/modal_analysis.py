@@ -131,11 +131,11 @@ class ModalAnalysis(ArrayFile):
         metadata=stored("m", "x, y, z of a point per freedom", "surface_point", "axis", "freedom"),
     )
 
-    def held_by(self, strain_energy: FloatArray) -> dict[str, float]:
+    def strain_shares(self, strain_energy: FloatArray) -> dict[str, float]:
         """Sum the shares (p,) of one mode over each mesh, bearing, coupling and drive, the largest first."""
         return _summed(self.spring_part, strain_energy)
 
-    def moved(self, kinetic_energy: FloatArray) -> dict[str, float]:
+    def kinetic_shares(self, kinetic_energy: FloatArray) -> dict[str, float]:
         """Sum the shares (n,) of one mode over the motions of each shaft ("output torsional")."""
         return _summed([" ".join(part) for part in freedom_parts(self.freedom)], kinetic_energy)
 
@@ -203,12 +203,12 @@ def modal_analysis(
     branches = whirl_branches(system, linear, speeds, progress)
     crossings = critical_speeds(system, linear, branches, orders)
     seconds["over_speed"] = cpu_seconds() - began
-    facts = _facts(system, linear, time, orders, seconds, speeds.size > 0) | {"effect_ledger": ledger}
-    facts |= {"highest_frequency": highest} | system.corrections
-    return _analysis(system, linear, rest, branches, crossings, facts)
+    metadata = _metadata(system, linear, time, orders, seconds, speeds.size > 0) | {"effect_ledger": ledger}
+    metadata |= {"highest_frequency": highest} | system.corrections
+    return _analysis(system, linear, rest, branches, crossings, metadata)
 
 
-def _facts(
+def _metadata(
     system: System, linear: LinearSystem, time: float, orders: int, seconds: Json, rotating: bool
 ) -> Json:
     scene, start = system.scene, linear.equilibrium
@@ -233,7 +233,7 @@ def _analysis(
     rest: Modes,
     branches: WhirlBranches,
     crossings: CriticalSpeeds,
-    facts: Json,
+    metadata: Json,
 ) -> ModalAnalysis:
     parts = spring_parts(system, linear.spring)
     meshes = np.empty((len(system.scene.meshes), 0))
@@ -249,7 +249,7 @@ def _analysis(
         mesh_frequency=mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
         **vars(branches),
         **{f"critical_{name}": values for name, values in vars(crossings).items()},
-        facts=facts,
+        facts=metadata,
         axis_shaft=axes.shaft,
         axis_position=axes.position,
         axis_motion=system.freedoms.keep(axes.motion),

@@ -65,12 +65,12 @@ class _ModalElimination:
         return np.asarray((real + 1j * imaginary).reshape(*inverse.shape[:-1], rows, rows))
 
     def product(
-        self, omega: FloatArray | ComplexArray, moved: ComplexArray, swept: Sequence[FloatArray] = ()
+        self, omega: FloatArray | ComplexArray, displacement: ComplexArray, swept: Sequence[FloatArray] = ()
     ) -> ComplexArray:
-        """Return the forces (S, H, n, f) that the displacements `moved` (S, H, n, f) take."""
+        """Return the forces (S, H, n, f) that a `displacement` (S, H, n, f) takes."""
         first = self.bodies.shape[1]
         out, into, along = (_sum(omega, part) for part in (self.outward, self.inward, self.along))
-        bodies, modes = moved[..., :first, :], moved[..., first:, :]
+        bodies, modes = displacement[..., :first, :], displacement[..., first:, :]
         rows = self.shape @ modes
         modal_sum = _sum(omega, self.modal)[..., None] * modes
         pushed = modal_sum + self.shape.T @ (into @ bodies + along @ rows)

@@ -46,7 +46,7 @@ def kinetic_shares(linear: LinearSystem, shape: FloatArray | ComplexArray) -> Fl
 
 
 def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str], ...]:
-    """Return the part that each of `spring` belongs to and its kind, one of `HELD_BY`.
+    """Return the part that each of `spring` belongs to and its kind, one of `SPRING_KINDS`.
 
     The springs of a bearing's directions are one part, and so are the modes of a housing; a housing without
     mass is one with its bearings. What is no mesh, bearing, housing, coupling or drive is of a shaft that

@@ -86,15 +86,15 @@ def unbounded(linear: LinearSystem, omega: FloatArray | ComplexArray) -> SolveEr
     """
     modes, excited = natural_modes(linear), np.unique(np.abs(omega)) / (2.0 * math.pi)
     elastic = np.flatnonzero(modes.frequency)
-    words = "a harmonic of the speed excites an undamped mode"
+    reason = "a harmonic of the speed excites an undamped mode"
     if elastic.size:
         hertz = modes.frequency[elastic]
         off = np.abs(excited[:, None] / hertz - 1.0) + modes.damping_ratio[elastic]
         at, mode = np.unravel_index(np.argmin(off), off.shape)
         part = modes.freedom[int(np.argmax(modes.kinetic_energy[elastic[mode]]))]
-        words = (
+        reason = (
             f"{excited[at]:.6g} Hz excite the mode at {hertz[mode]:.6g} Hz, in which {part} moves most and "
         )
-        words += f"whose damping ratio is {engineering(modes.damping_ratio[elastic[mode]], 1)}"
+        reason += f"whose damping ratio is {engineering(modes.damping_ratio[elastic[mode]], 1)}"
     remedy = "Give the meshes, shafts or supports damping, or leave that speed out"
-    return SolveError(f"the vibration is unbounded: {words}. {remedy}")
+    return SolveError(f"the vibration is unbounded: {reason}. {remedy}")

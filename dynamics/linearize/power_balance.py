@@ -56,7 +56,7 @@ class PowerBalance:
         """Return what parts of a kind lose together, all harmonics, (S,)."""
         total = np.sum(self.loss, axis=2)
         return {
-            kind: np.sum(total[[own == kind for own in self.kind]], axis=0)
+            kind: np.sum(total[[part_kind == kind for part_kind in self.kind]], axis=0)
             for kind in dict.fromkeys(self.kind)
         }
 

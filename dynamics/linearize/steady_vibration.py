@@ -99,18 +99,18 @@ def steady_vibration(
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
     """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
-    harmonics = heard_harmonics(at, speed, harmonics, (excitation,))
+    harmonics = excited_harmonics(at, speed, harmonics, (excitation,))
     return _vibration(at, speed, harmonics, excitation, progress=progress)[0]
 
 
-def heard_harmonics(
+def excited_harmonics(
     at: Excited, speed: FloatArray, harmonics: IntArray, excitations: Sequence[str] = EXCITATIONS
 ) -> IntArray:
     """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    excited_lines = _heard(np.moveaxis(loads / at.linear.scale, 1, 2))
+    excited_lines = _is_excited(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
-        excited_lines = excited_lines | _heard(flank_forces(at, harmonics, excitation)[1])
+        excited_lines = excited_lines | _is_excited(flank_forces(at, harmonics, excitation)[1])
     return harmonics[excited_lines]
 
 
@@ -121,10 +121,10 @@ def with_blocked(
 
     (m, H), m.
     """
-    return _vibration(at, speed, harmonics, EXCITATIONS[0], rows, beside=EXCITATIONS[1])
+    return _vibration(at, speed, harmonics, EXCITATIONS[0], rows, second=EXCITATIONS[1])
 
 
-def _heard(force: ComplexArray) -> BoolArray:
+def _is_excited(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
     largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
     return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # what is not a number excites
@@ -165,13 +165,13 @@ def _vibration(
     harmonics: IntArray,
     excitation: str,
     rows: FloatArray | None = None,
-    beside: str = "",
+    second: str = "",
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Steady, FloatArray]:
-    """Return the vibration in all `harmonics`, and what `_solve` returns of the excitation `beside` it."""
+    """Return the vibration in all `harmonics`, and what `_solve` returns of the `second` excitation."""
     static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
-    other = _pushed(at, flank_forces(at, harmonics, beside)[1]) + loads if beside else None
+    other = _pushed(at, flank_forces(at, harmonics, second)[1]) + loads if second else None
     omega = _omega(at, speed, harmonics)
     terms = gyroscopic_terms(at.system, speed) if at.turning else []
     u, residual, largest = _solve(at, _pushed(at, force) + loads, omega, terms, rows, other, progress)
@@ -256,21 +256,21 @@ def _solve(
     omega: FloatArray | ComplexArray,
     terms: Sequence[Terms] = (),
     rows: FloatArray | None = None,
-    beside: ComplexArray | None = None,
+    second: ComplexArray | None = None,
     progress: Callable[[float], None] | None = None,
     fractions: bool = False,
 ) -> tuple[ComplexArray, float, FloatArray]:
     """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
 
     The first are those of `force` (S or 1, H, n) on the freedoms, the others per force along each of
-    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing. Of the forces
-    `beside` them only the largest motion along each driving line of action is returned, (m, H).
+    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing. Of the
+    `second` forces only the largest motion along each driving line of action is returned, (m, H).
     """
     linear, per_meter = at.linear, 1.0 / at.linear.scale
     mass, damping, total = (
         per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
-    pushed = _right_sides(force, rows, beside) * per_meter[:, None]
+    pushed = _right_sides(force, rows, second) * per_meter[:, None]
     saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
     # a freedom at a time in memory, as results have it
@@ -292,20 +292,20 @@ def _solve(
         swept = _swept(terms[part], per_meter)
         with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
             if by_modes is not None:
-                moved, miss = by_modes.solve(omega[part], exciting)
+                solution, miss = by_modes.solve(omega[part], exciting)
                 if not np.max(miss, initial=0.0) <= PRECISE * maximum:
                     by_modes = None
             if by_modes is None and small is None:
-                moved, miss = _dense(parts, omega[part], swept, right)
+                solution, miss = _dense(parts, omega[part], swept, right)
             elif small is not None:
                 turning = [matrix[:, :first, :first] for matrix in swept]
-                moved = small.solve(omega[part], right, turning)
-                miss = np.abs(small.product(omega[part], moved[..., :1], turning) - right[..., :1])
+                solution = small.solve(omega[part], right, turning)
+                miss = np.abs(small.product(omega[part], solution[..., :1], turning) - right[..., :1])
         left = np.maximum(left, np.max(miss, initial=0.0))  # not a number, if any of them is
-        farthest = np.maximum(farthest, np.max(np.abs(moved[..., 0]), axis=(0, 1), initial=0.0))
-        displacement[part] = moved[..., :saved] * per_meter[:, None]
-        if beside is not None:
-            along = np.max(np.abs(moved[..., saved] * per_meter @ watched.T), axis=0, initial=0.0)
+        farthest = np.maximum(farthest, np.max(np.abs(solution[..., 0]), axis=(0, 1), initial=0.0))
+        displacement[part] = solution[..., :saved] * per_meter[:, None]
+        if second is not None:
+            along = np.max(np.abs(solution[..., saved] * per_meter @ watched.T), axis=0, initial=0.0)
             largest = np.maximum(largest, along.T)
         if progress is not None:
             progress(min(part.stop, omega.shape[0]) / omega.shape[0])
@@ -328,13 +328,13 @@ def _swept(terms: Sequence[Terms], per_meter: FloatArray) -> list[FloatArray]:
     return [np.stack([per_meter[:, None] * term[k] * per_meter for term in terms]) for k in (0, 1)]
 
 
-def _right_sides(force: ComplexArray, rows: FloatArray | None, beside: ComplexArray | None) -> ComplexArray:
-    """Return `force` (S or 1, H, n), one along each of `rows` (f, n), and those `beside`, side by side."""
+def _right_sides(force: ComplexArray, rows: FloatArray | None, second: ComplexArray | None) -> ComplexArray:
+    """Return `force` (S or 1, H, n), one along each of `rows` (f, n), and the `second`, side by side."""
     sides = [force[..., None]]
     if rows is not None:
         sides.append(np.broadcast_to(rows.T, (*force.shape, len(rows))))
-    if beside is not None:
-        sides.append(beside[..., None])
+    if second is not None:
+        sides.append(second[..., None])
     return np.concatenate(sides, axis=-1)
 
 

@@ -18,7 +18,7 @@ from dynamics.types import BoolArray, FloatArray, IntArray, Json
 
 ALWAYS = 500
 """Lines that every response has; periods with no more of them are solved in all."""
-HELD = 6e6
+MAX_AMPLITUDES = 6e6
 """Amplitudes of speeds, lines and freedoms that a response may have beyond them: 0.1 GB."""
 
 
@@ -34,7 +34,7 @@ class Lines(NamedTuple):
     the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
     """
 
-    def facts(self, in_totals: bool) -> Json:
+    def to_json(self, in_totals: bool) -> Json:
         """Return what facts say of those left out, and whether totals have them; nothing without any."""
         if not self.left_out.size:
             return {}
@@ -48,7 +48,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
     row in its mesh order. Orders of the meshes and of the loads at the highest `speed` (S,), rad/s, always
     count.
     """
-    maximum = max(ALWAYS, int(HELD / max(speed.size * at.system.arrays.mass.shape[0], 1)))
+    maximum = max(ALWAYS, int(MAX_AMPLITUDES / max(speed.size * at.system.arrays.mass.shape[0], 1)))
     if harmonics.size <= maximum:
         return Lines(harmonics, harmonics[:0])
     force = np.abs(flank_forces(at, harmonics)[1])
@@ -66,7 +66,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
         (squares[:, inside & ~chosen], squares[:, inside])
         for inside in (band == k for k in range(bands.size))
     ]
-    left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in each)))) for each in parts]
+    left = [np.sqrt(np.max(_share(*(part.sum(axis=1) for part in pair)))) for pair in parts]
     return Lines(harmonics[chosen], harmonics[~chosen & np.any(force, axis=0)], float(max(left)))
 
 
@@ -77,14 +77,14 @@ def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None
     """
     maximum = int(MAX_BYTES // (16 * numbers * max(lines, 1)))
     if speeds > maximum:
-        held = f"as {MAX_BYTES / 1e9:g} GB hold"
-        bound = f"at most {maximum} values in {lines} orders of {freedoms} freedoms, {held}"
+        memory = f"as {MAX_BYTES / 1e9:g} GB hold"
+        bound = f"at most {maximum} values in {lines} orders of {freedoms} freedoms, {memory}"
         raise InputError("speed", f"{speeds} values", bound, "Take wider steps, or fewer orders.")
 
 
-def _share(part: FloatArray, whole: FloatArray) -> FloatArray:
+def _share(part: FloatArray, total: FloatArray) -> FloatArray:
     """Return a part of a whole; of nothing 0."""
-    return np.divide(part, whole, out=np.zeros_like(part), where=whole > 0.0)
+    return np.divide(part, total, out=np.zeros_like(part), where=total > 0.0)
 
 
 def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:

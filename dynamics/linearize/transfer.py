@@ -200,9 +200,9 @@ class FlankTransfer(ArrayFile):
         Differentiated, (1 + X A) dv = de' - dX (A v + G u_0).
         """
         taken = self._taken(flanks.tangent - self.tangent, flanks.viscous - self.viscous, self.motion)
-        moved = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
+        motion = np.einsum("rshc,shc->rsh", self.motion, inputs)[..., None]
         right = [
-            change.force.T[None] - self._taken(change.tangent, change.viscous, moved)[..., 0]
+            change.force.T[None] - self._taken(change.tangent, change.viscous, motion)[..., 0]
             for change in changes
         ]
         v = solved(np.eye(len(self.force)) + taken[..., 1:], np.stack(right, axis=-1))
@@ -231,14 +231,14 @@ class FlankTransfer(ArrayFile):
             raise SolveError("the vibration is unbounded with these flanks at one of the speeds")
         return inputs, residual
 
-    def _taken(self, stiffer: FloatArray, damped: FloatArray, moved: ComplexArray) -> ComplexArray:
+    def _taken(self, stiffer: FloatArray, damped: FloatArray, motion: ComplexArray) -> ComplexArray:
         """Return the forces (S, H, R, c) that changed tangents (R, R) take of motions (R, S, H, c)."""
-        omega, taken = 2j * math.pi * self.frequency[..., None], np.zeros_like(moved)
+        omega, taken = 2j * math.pi * self.frequency[..., None], np.zeros_like(motion)
         for start, end in pairwise(self.first.tolist()):
             flank_rows = slice(start, end)
             tangent, viscous = stiffer[flank_rows, flank_rows], damped[flank_rows, flank_rows]
             if np.any(tangent) or np.any(viscous):
-                part = moved[flank_rows]
+                part = motion[flank_rows]
                 taken[flank_rows] = np.tensordot(tangent, part, 1) + omega * np.tensordot(viscous, part, 1)
         return np.moveaxis(taken, 0, 2)
 

@@ -118,7 +118,7 @@ class _Varying:
     """A flank of p rows whose tangents vary, in the Q lines of its table among those of the vibration."""
 
     rows: slice
-    own: IntArray
+    line_index: IntArray
     """Where its lines are among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
     line: IntArray
     """Multiples of the table's own frequency, 0 first. Shape (Q + 1,)."""
@@ -150,23 +150,23 @@ class VaryingStiffness:
         flanks = range(len(at.cycles))
         return cls(tuple(part for index in flanks for part in _varying(at, index, harmonics)), still)
 
-    def push(self, moved: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    def push(self, receptance: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
         """Return what the varying tangents take (S, H + 1, R'), N, and the relative residuals (S,) left.
 
-        The first is the mean, the others are amplitudes. `moved` (S, H, R', R') are receptances of the rows,
-        m/N, and `made` (S, H, R') amplitudes of what makes force with the mean tangents, m.
+        The first is the mean, the others are amplitudes. `receptance` (S, H, R', R') are those of the
+        rows, m/N, and `made` (S, H, R') amplitudes of what makes force with the mean tangents, m.
         """
         speeds, harmonics, rows = made.shape
         push, left = np.zeros((speeds, harmonics + 1, rows), dtype=complex), np.zeros(speeds)
         balance = DirectBalance.of(self.parts, harmonics + 1, rows)
         for part in speed_blocks((speeds, harmonics + 1), rows * max(rows, balance.size)):
-            mean = np.broadcast_to(self.still, (len(moved[part]), 1, rows, rows))
-            whole = np.concatenate([mean, moved[part]], axis=1)
+            mean = np.broadcast_to(self.still, (len(receptance[part]), 1, rows, rows))
+            receptances = np.concatenate([mean, receptance[part]], axis=1)
             sources = np.concatenate([np.zeros_like(made[part, :1]), 0.5 * made[part]], axis=1)
             if balance.size <= DIRECT:
-                push[part], left[part] = balance.solve(whole, sources)
+                push[part], left[part] = balance.solve(receptances, sources)
                 continue
-            pairs = [_solved(self.parts, *speed) for speed in zip(whole, sources, strict=True)]
+            pairs = [_solved(self.parts, *speed) for speed in zip(receptances, sources, strict=True)]
             push[part] = [force for force, _ in pairs]
             left[part] = [residual for _, residual in pairs]
         push[:, 1:] *= 2.0
@@ -204,18 +204,20 @@ class DirectBalance:
             return cls(np.zeros((0, 0, 0), dtype=complex), harmonic, row, imaginary)
         pressing, first = np.zeros((harmonics, rows, harmonic.size), dtype=complex), 0
         for part in parts:
-            own = _pressing(part)
-            at = slice(first, first + own.shape[2])
-            pressing[part.own, part.rows, at], first = own, at.stop
+            part_pressing = _pressing(part)
+            at = slice(first, first + part_pressing.shape[2])
+            pressing[part.line_index, part.rows, at], first = part_pressing, at.stop
         return cls(pressing, harmonic, row, imaginary)
 
-    def solve(self, moved: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
+    def solve(self, receptance: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
         """Return the forces (S, H + 1, R'), Fourier coefficients, and the residuals (S,) left, relative.
 
-        `moved` (S, H + 1, R', R') are receptances of the rows, `made` (S, H + 1, R') coefficients of what
-        makes force with the mean tangents.
+        `receptance` (S, H + 1, R', R') are receptances of the rows, `made` (S, H + 1, R') coefficients of
+        what makes force with the mean tangents.
         """
-        answer = np.matmul(moved[:, self.harmonic, self.row, None], self.pressing[self.harmonic])[..., 0, :]
+        answer = np.matmul(receptance[:, self.harmonic, self.row, None], self.pressing[self.harmonic])[
+            ..., 0, :
+        ]
         matrix = np.where(self.imaginary[:, None], answer.imag, answer.real) + np.eye(self.size)
         sources = made[:, self.harmonic, self.row]
         right = np.where(self.imaginary, sources.imag, sources.real)
@@ -232,7 +234,7 @@ def _felt(part: _Varying) -> IntArray:
 
 def _unknowns(part: _Varying) -> list[tuple[int, int, bool]]:
     """Return harmonic, row and which part of the coefficient each unknown of a flank is."""
-    lines = part.own.tolist()
+    lines = part.line_index.tolist()
     rows = (part.rows.start + _felt(part)).tolist()
     return [
         (harmonic, row, imaginary)
@@ -288,13 +290,13 @@ def _alike(cycle: FlankCycle) -> bool:
 
 
 def _solved(
-    parts: tuple[_Varying, ...], moved: ComplexArray, made: ComplexArray
+    parts: tuple[_Varying, ...], receptance: ComplexArray, made: ComplexArray
 ) -> tuple[ComplexArray, float]:
     """Solve the balance at a speed, and return the residual that is left, relative.
 
     Parameters
     ----------
-    moved : (H + 1, R', R') complex array
+    receptance : (H + 1, R', R') complex array
         Receptances of the rows, of the mean and the harmonics, m/N.
     made : (H + 1, R') complex array
         Fourier coefficients of what makes force with the mean tangents, m.
@@ -309,12 +311,12 @@ def _solved(
     def pressed(w: ComplexArray) -> ComplexArray:
         force = np.zeros_like(w)
         for part in parts:
-            force[part.own, part.rows] = part.pressed(w[part.own, part.rows])
+            force[part.line_index, part.rows] = part.pressed(w[part.line_index, part.rows])
         return force
 
     def balance(real: FloatArray) -> FloatArray:
         w = _complex(real, harmonics, rows)
-        return real + _real(np.matmul(moved, pressed(w)[..., None])[..., 0])
+        return real + _real(np.matmul(receptance, pressed(w)[..., None])[..., 0])
 
     right = _real(made)
     size = float(np.linalg.norm(right))

@@ -78,7 +78,7 @@ class ForceCourseLaws(NamedTuple):
         by_time = np.repeat(self.kind == BY_TIME, np.diff(self.factor.first))
         return self._replace(factor=self.factor._replace(start=self.factor.start - time * by_time))
 
-    def held_at(self, time: float) -> ForceCourseLaws:
+    def frozen_at(self, time: float) -> ForceCourseLaws:
         """Return the laws with factors by time for ever as they are at `time`, s."""
         factor, coefficient = self.factor, self.factor.coefficient.copy()
         for entry in np.flatnonzero(self.kind == BY_TIME):

@@ -27,7 +27,7 @@ class BearingElement:
     """The element's rows per strain of the bearing x, y, z, tilt_x, tilt_y: 1 along a displacement, a radius
     in m for a tilt. Shape (p, 5).
     """
-    own: FloatArray
+    local_rows: FloatArray
     """The same per strain in the bearing's own axes. Shape (p, 5)."""
     typical: FloatArray
     """Stiffness of the rows at the typical load, N/m; of a linear bearing without cross terms. Shape (p,)."""

@@ -72,14 +72,14 @@ def modal_housing(housing: Housing) -> _ModalHousing:
         root = np.sqrt(np.maximum(np.diag(damping), 0.0))
         damping = np.where(np.abs(damping) > ROUNDING * np.outer(root, root), damping, 0.0)
     seats = np.zeros((SEAT * len(housing.bushings), square.size))
-    seats[list(housing.columns)] = shape[list(housing.own_columns)]
+    seats[list(housing.columns)] = shape[list(housing.matrix_columns)]
     of_seats = seats.reshape(-1, SEAT, square.size)
     return _ModalHousing(housing.name, housing.bushings, square, damping, of_seats, shape)
 
 
 def _symmetric(matrix: object) -> FloatArray:
-    whole = np.array(matrix, dtype=float)
-    return np.asarray(0.5 * (whole + whole.T))
+    values = np.array(matrix, dtype=float)
+    return np.asarray(0.5 * (values + values.T))
 
 
 @dataclass(frozen=True, eq=False)

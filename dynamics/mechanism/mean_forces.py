@@ -36,8 +36,8 @@ def _telling_moments(scene: Scene) -> FloatArray:
     """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
     courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
     laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
-    stated = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
-    inside = stated[(stated > 0.0) & (stated < scene.duration)]
+    times = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
+    inside = times[(times > 0.0) & (times < scene.duration)]
     knots = np.unique(np.concatenate([[0.0, scene.duration], inside]))
     part = np.linspace(0.0, 1.0, BETWEEN_KNOTS, endpoint=False)
     between = knots[:-1, None] + np.diff(knots)[:, None] * part

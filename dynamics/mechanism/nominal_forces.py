@@ -20,9 +20,9 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *,
     coast flanks that are given carry load. Raises `InputError`: the balance does not determine a force that
     is needed, or a load pulls flanks apart that have no coast flank behind them.
     """
-    given_forces = [mesh.nominal_force for mesh in scene.meshes]
-    if all(force is not None for force in given_forces):
-        return np.array(given_forces, dtype=float)
+    specified = [mesh.nominal_force for mesh in scene.meshes]
+    if all(force is not None for force in specified):
+        return np.array(specified, dtype=float)
     # the balance of all shafts but those of drives; by least squares planets share a load equally
     lever = levers(scene, kinematics)
     torque = load_moments(scene, kinematics, np.zeros(1))[:, 0]
@@ -39,7 +39,7 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *,
             bound, suggestion = "loaded on its driving flank", "Turn the load, or give it its coast flank."
             raise InputError(f"meshes[{index}]", Quantity(float(value), "N", digits=6), bound, suggestion)
     balanced = np.where(driving_only, np.maximum(force, 0.0), np.abs(force))
-    return np.array([b if g is None else g for g, b in zip(given_forces, balanced, strict=True)], dtype=float)
+    return np.array([b if g is None else g for g, b in zip(specified, balanced, strict=True)], dtype=float)
 
 
 def shafts_without_drive(scene: Scene, kinematics: Kinematics) -> list[int]:

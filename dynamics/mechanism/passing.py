@@ -36,12 +36,12 @@ class Excitation:
     """Repetitions per revolution of the shaft that orders are of, > 0."""
     harmonics: int
     """Multiples of the rate that are looked at, from 1."""
-    beside: tuple[float, ...] = ()
+    shift: tuple[float, ...] = ()
     """Added to the order of each harmonic, of sidebands; empty: nothing."""
 
     def order(self, harmonic: int) -> float:
         """Return the order of a harmonic."""
-        return harmonic * self.rate + (self.beside[harmonic - 1] if self.beside else 0.0)
+        return harmonic * self.rate + (self.shift[harmonic - 1] if self.shift else 0.0)
 
 
 @dataclass(frozen=True)

@@ -136,8 +136,12 @@ def _damped(support: Support, share: float, tilting: float) -> Support:
     where the matrix holds tilt alone.
     """
 
-    def damping(stated: float | None, stiffness: float) -> float:
-        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if stated is None else stated
+    def damping(specified: float | None, stiffness: float) -> float:
+        return (
+            2.0 * support.damping_ratio * float(np.sqrt(stiffness * share))
+            if specified is None
+            else specified
+        )
 
     support = replace(
         support,

@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from dynamics.identity_cache import KEPT, cached_by
+from dynamics.identity_cache import MAX_CACHED, cached_by
 from dynamics.mechanism.kinematics import Kinematics
 from dynamics.mechanism.phases import cage_turns, load_orders
 from dynamics.scene.scene import MIN_RATE, Scene, check_samples
@@ -84,7 +84,7 @@ class Sampling:
         return {**asdict(self), "edge": self.edge}
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=MAX_CACHED)
 def _filter_taps(taps: int, factor: int) -> FloatArray:
     """Return the weights (taps,) of a filter to every `factor`-th point; 0: of none."""
     at = np.arange(taps) - taps // 2

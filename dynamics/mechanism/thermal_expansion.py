@@ -75,8 +75,8 @@ def _seat(warm: Temperatures, shaft: Shaft, position: float) -> Cylinder:
     under = [part for part, end in zip(shaft.sections, ends, strict=True) if position <= end]
     if not shaft.sections:
         return Cylinder(0.0, 1.0, strain=strain)
-    own = under[0] if under else shaft.sections[-1]
-    return Cylinder(own.bore_diameter, own.outer_diameter, own.youngs_modulus, own.poissons_ratio, strain)
+    seat = under[0] if under else shaft.sections[-1]
+    return Cylinder(seat.bore_diameter, seat.outer_diameter, seat.youngs_modulus, seat.poissons_ratio, strain)
 
 
 def _wall(warm: Temperatures, bearing: RollingBearing) -> Cylinder:

@@ -90,7 +90,7 @@ class _Train:
         self.assumed_angles: list[tuple[int, int]] = []
         self.assumed_thickness: dict[int, None] = {}  # in the order in which they were assumed
 
-    def place(self, key: tuple[int, int], angle: float, moves: dict[int, float]) -> None:
+    def assign(self, key: tuple[int, int], angle: float, moves: dict[int, float]) -> None:
         """Place a flank."""
         self.angle[key] = angle
         self.moves.setdefault(key[0], moves)
@@ -131,7 +131,7 @@ def _off(pitches: float) -> float:
 def _phases(train: _Train) -> TrainPhases:
     """Return the phases of all meshes; raises `InputError`: what is stated contradicts the teeth."""
     for meshes in _trains(train.scene):
-        _place_train(train, meshes)
+        _assign_train(train, meshes)
     _check_angles(train)
     positions = [
         _wrapped(train.position(index), mesh.table.period)
@@ -144,7 +144,7 @@ def _phases(train: _Train) -> TrainPhases:
     return TrainPhases(np.array(positions, dtype=float), angles, thickness)
 
 
-def _place_train(train: _Train, meshes: list[int]) -> None:
+def _assign_train(train: _Train, meshes: list[int]) -> None:
     """Place the meshes of a train, its first one where it is stated or at the pitch point."""
     start = train.scene.meshes[meshes[0]].position_offset
     _state(train, meshes[0], start or 0.0)
@@ -187,7 +187,7 @@ def _state(train: _Train, index: int, position: float) -> None:
     """Place a mesh at a stated position, or refuse it."""
     driver, _ = train.pairs[index]
     if driver.key not in train.angle:
-        train.place(driver.key, driver.angle(position), {})
+        train.assign(driver.key, driver.angle(position), {})
         _follow(train)
         return
     if abs(_off(position - driver.position(train.angle[driver.key]))) > FIT:
@@ -212,11 +212,11 @@ def _follow(train: _Train) -> None:
             for source, target in (pair, pair[::-1]):
                 if source.key in train.angle and target.key not in train.angle:
                     position = source.position(train.angle[source.key])
-                    train.place(target.key, target.angle(position), train.moves[source.gear])
+                    train.assign(target.key, target.angle(position), train.moves[source.gear])
             _check_mesh(train, index)
         for gear, side in list(train.angle):
             if train.states_thickness(gear):
-                _place_back(train, gear, side)
+                _assign_back_flank(train, gear, side)
 
 
 def _check_mesh(train: _Train, index: int) -> None:
@@ -230,7 +230,7 @@ def _check_mesh(train: _Train, index: int) -> None:
         raise _misfit(f"meshes[{index}]", mesh.name, off, "the rest of the train")
 
 
-def _place_back(train: _Train, gear: int, side: int) -> None:
+def _assign_back_flank(train: _Train, gear: int, side: int) -> None:
     """Place the other flank of a tooth, or refuse a gear that does not fit between its meshes."""
     angle = train.angle[gear, side] - side * train.thickness[gear]
     off = _off(train.angle.setdefault((gear, -side), angle) - angle)
@@ -273,7 +273,7 @@ def _follow_shaft(train: _Train) -> bool:
                 train.assumed_angles.append((first, second))
             center = ratio * train.tooth_center(first) + (angle or 0.0)
             flank = train.first[second]
-            train.place(flank.key, center + flank.side * 0.5 * train.thickness[second], moves)
+            train.assign(flank.key, center + flank.side * 0.5 * train.thickness[second], moves)
             unknown = (gear for gear in (first, second) if not train.states_thickness(gear))
             train.assumed_thickness.update(dict.fromkeys(unknown))
             return True
@@ -285,7 +285,7 @@ def _neighbors(train: _Train) -> Iterator[tuple[int, int, float | None]]:
 
     None: it is not stated. Stated angles come first, then gears of one shaft, then those of coupled shafts.
     """
-    angles = list(_stated_angles(train))
+    angles = list(_specified_angles(train))
     for first, second, angle in angles:
         yield first, second, angle
         yield second, first, -angle * train.scene.gears[first].teeth / train.scene.gears[second].teeth
@@ -298,7 +298,7 @@ def _neighbors(train: _Train) -> Iterator[tuple[int, int, float | None]]:
             )
 
 
-def _stated_angles(train: _Train) -> Iterator[tuple[int, int, float]]:
+def _specified_angles(train: _Train) -> Iterator[tuple[int, int, float]]:
     """Yield neighbors on a shaft, and the stated angle between their teeth in pitches of the second."""
     for shaft in train.scene.shafts:
         gears = [index for index, gear in enumerate(train.scene.gears) if gear.shaft == shaft.name]
@@ -323,7 +323,7 @@ def _check_angles(train: _Train) -> None:
 
     A gear of z teeth may stand a whole number of its teeth on, z_2 / z_1 pitches of the other gear.
     """
-    for first, second, angle in _stated_angles(train):
+    for first, second, angle in _specified_angles(train):
         if not (train.states_thickness(first) and train.states_thickness(second)):
             continue
         z_1, z_2 = (train.scene.gears[gear].teeth for gear in (first, second))
@@ -337,10 +337,10 @@ def _check_angles(train: _Train) -> None:
 def _angle_contradiction(scene: Scene, gear: int, turns: float) -> InputError:
     """Return the error for the angle of a gear that is less than the train has it by some turns."""
     name = scene.gears[gear].shaft
-    place = [part.name for part in scene.gears if part.shaft == name].index(scene.gears[gear].name)
-    angle = (scene.shaft(name).tooth_angles or ())[place]
+    number = [part.name for part in scene.gears if part.shaft == name].index(scene.gears[gear].name)
+    angle = (scene.shaft(name).tooth_angles or ())[number]
     geometry = Quantity(angle + 2.0 * math.pi * turns, "rad", digits=9)
-    field = f"shafts[{scene.shaft_index(name)}].tooth_angles[{place}]"
+    field = f"shafts[{scene.shaft_index(name)}].tooth_angles[{number}]"
     remedy = "Leave tooth_angles out: the train leaves the shaft no other angle."
     bound = Text.of(geometry, ", where the teeth of its train touch, or whole pitches more")
     return InputError(field, Quantity(angle, "rad", digits=9), bound, remedy)

@@ -50,20 +50,20 @@ def _at_temperature(mesh: GearMesh, change: WarmMesh) -> GearMesh:
     return replace(
         mesh,
         coast=coast,
-        center_distance_change=_along_axis(mesh, "center_distance_change", change.apart),
+        center_distance_change=_along_axis(mesh, "center_distance_change", change.distance_change),
         misalignment=_along_axis(mesh, "misalignment", change.misalignment),
     )
 
 
-def _along_axis(mesh: GearMesh, name: str, moved: float) -> float:
+def _along_axis(mesh: GearMesh, name: str, shift: float) -> float:
     """Return the operating point of a mesh along an axis of its table, moved if the table has the axis."""
     value, knots = float(getattr(mesh, name)), np.asarray(getattr(mesh.table, name), dtype=float)
     if knots.size == 1:
         return value
-    if not knots[0] <= value + moved <= knots[-1]:
+    if not knots[0] <= value + shift <= knots[-1]:
         bound = from_to(float(knots[0]), float(knots[-1]), "m")
-        raise InputError(name, value + moved, bound, "Widen this axis of the table to the temperatures.")
-    return value + moved
+        raise InputError(name, value + shift, bound, "Widen this axis of the table to the temperatures.")
+    return value + shift
 
 
 def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:

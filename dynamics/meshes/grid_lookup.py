@@ -139,15 +139,15 @@ def sample(number: FloatArray, cell: Cell, level: int, channel: int) -> Sample:
                 for q in range(cell.a_sides):
                     left = corner + cell.x_left + 2 * (p * cell.a_sides + q)
                     right = left - cell.x_left + cell.x_right
-                    here = cell.x[0] * number[left] + cell.x[1] * number[left + 1]
-                    here += cell.x[2] * number[right] + cell.x[3] * number[right + 1]
+                    node_value = cell.x[0] * number[left] + cell.x[1] * number[left + 1]
+                    node_value += cell.x[2] * number[right] + cell.x[3] * number[right + 1]
                     slope = cell.dx[0] * number[left] + cell.dx[1] * number[left + 1]
                     slope += cell.dx[2] * number[right] + cell.dx[3] * number[right + 1]
                     m, a = cell.m[2 * i + p], cell.a[2 * j + q]
-                    value += m * a * here
+                    value += m * a * node_value
                     in_x += m * a * slope
-                    in_m += cell.dm[2 * i + p] * a * here
-                    in_a += m * cell.da[2 * j + q] * here
+                    in_m += cell.dm[2 * i + p] * a * node_value
+                    in_a += m * cell.da[2 * j + q] * node_value
     return Sample(value, in_x, in_m, in_a)
 
 

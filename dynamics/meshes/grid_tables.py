@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.identity_cache import identity_cached
 from dynamics.meshes.mesh_table import LEVERS, MeshTable
-from dynamics.meshes.packed_tables import PackedTables, joined, kept_knots, pack_tables
+from dynamics.meshes.packed_tables import PackedTables, joined, pack_tables, retained_knots
 from dynamics.types import FloatArray, IntArray
 
 
@@ -98,10 +98,10 @@ class GridTables(NamedTuple):
             orders = 2 * min(m, 2) * min(a, 2)
             size = m * a * knots * levels * channels * orders
             number = self.number[self.first[flank] : self.first[flank] + size]
-            knots_kept = kept_knots(knots, every)[:-1]
-            number = number.reshape(m * a, knots, levels * channels * orders)[:, knots_kept]
+            retained = retained_knots(knots, every)[:-1]
+            number = number.reshape(m * a, knots, levels * channels * orders)[:, retained]
             same = self.first == begin
-            first[same], shape[same, 2] = sum(part.size for part in numbers), knots_kept.size
+            first[same], shape[same, 2] = sum(part.size for part in numbers), retained.size
             numbers.append(number.ravel())
         return self._replace(
             base=self.base.decimated(every),

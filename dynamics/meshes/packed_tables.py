@@ -71,7 +71,7 @@ class PackedTables(NamedTuple):
         part.energy[:] = energy_below(part.row, part.level)
 
 
-def kept_knots(knots: int, every: int) -> IntArray:
+def retained_knots(knots: int, every: int) -> IntArray:
     """Return the knots that stay, and the one that closes the period."""
     indices = np.arange(0, knots, every)
     if indices.size < MIN:
@@ -106,7 +106,7 @@ def _part(tables: PackedTables, flank: int) -> _Table:
 def _decimated(table: _Table, every: int) -> _Table:
     """Return a table on each `every`-th knot."""
     knot, level = table.knot, table.level
-    indices = kept_knots(knot.size - 1, every)
+    indices = retained_knots(knot.size - 1, every)
     if indices.size == knot.size:
         return table
     cubic = table.row.reshape(knot.size - 1, level.size, 2, 4)

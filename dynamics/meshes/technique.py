@@ -45,23 +45,23 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
     weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
     alone = weight_m.size == weight_d.size == 1
 
-    def here(name: str) -> FloatArray:
+    def coefficient(name: str) -> FloatArray:
         values = np.asarray(getattr(table, name), dtype=float)
         if alone:
             return values
         return np.asarray(np.einsum("m,d,mdpl->pl", weight_m, weight_d, values)[None, None])
 
-    levers = {name: here(name) for name in LEVERS if getattr(table, name, None) is not None}
+    levers = {name: coefficient(name) for name in LEVERS if getattr(table, name, None) is not None}
 
     return PlainTable(
         position=np.asarray(table.position, dtype=float),
         level=np.asarray(table.level, dtype=float),
         misalignment=np.array([misalignment]),
         center_distance_change=np.array([center_distance_change]),
-        deflection=here("deflection"),
-        deflection_slope=here("deflection_slope"),
-        stiffness=here("stiffness"),
-        stiffness_slope=here("stiffness_slope"),
+        deflection=coefficient("deflection"),
+        deflection_slope=coefficient("deflection_slope"),
+        stiffness=coefficient("stiffness"),
+        stiffness_slope=coefficient("stiffness_slope"),
         period=table.period,
         **levers,
     )
@@ -124,7 +124,7 @@ def table_at_operating_point(
     m = _hermite_weights(np.asarray(table.misalignment, dtype=float), misalignment)
     a = _hermite_weights(np.asarray(table.center_distance_change, dtype=float), center_distance_change)
 
-    def here(name: str, order: int) -> FloatArray:
+    def coefficient(name: str, order: int) -> FloatArray:
         derivative = getattr(table, f"{name}_derivative", None)
         if derivative is None:
             return np.asarray(getattr(table, name if order == 0 else f"{name}_slope"), dtype=float)
@@ -136,10 +136,10 @@ def table_at_operating_point(
         level=np.asarray(table.level, dtype=float),
         misalignment=np.array([misalignment]),
         center_distance_change=np.array([center_distance_change]),
-        deflection=here("deflection", 0),
-        deflection_slope=here("deflection", 1),
-        stiffness=here("stiffness", 0),
-        stiffness_slope=here("stiffness", 1),
+        deflection=coefficient("deflection", 0),
+        deflection_slope=coefficient("deflection", 1),
+        stiffness=coefficient("stiffness", 0),
+        stiffness_slope=coefficient("stiffness", 1),
         period=table.period,
     )
 

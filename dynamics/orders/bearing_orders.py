@@ -22,7 +22,7 @@ SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
 """Of Hann weights about their middle, over the square of the window's length."""
 PITCHES = 16
 """Base pitches of a window, if orders lie no closer than an eighth."""
-APART = 2.0
+MIN_DISTANCE = 2.0
 """Cycles by which two orders differ within a window, or its Hann weights do not tell them apart."""
 ROWS = 400
 """Most windows; they overlap by half where that makes fewer."""
@@ -205,19 +205,19 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     steady = [row for row in rows if row.sweep <= MAX_SWEEP]  # a mesh that rests or reverses sweeps from 0
     if not steady:
         raise _no_window(mesh_cycles, pitches, rows)
-    facts: Json = {
+    metadata: Json = {
         "leading_shaft": leading_shaft(result),
         "pitches": pitches,
         "windows_left_out": len(windows) - len(steady),
         "effect_ledger": result.effect_ledger,
     }
     falls = all(later.speed < earlier.speed for earlier, later in pairwise(steady))
-    return _put_together(result, harmonics, steady[::-1] if falls else steady, facts)
+    return _put_together(result, harmonics, steady[::-1] if falls else steady, metadata)
 
 
 def _checked_pitches(harmonics: _MeshHarmonics, pitches: int | None) -> int:
     """Return the base pitches of a window that tells the orders apart."""
-    minimum = int(np.ceil(APART / harmonics.closest * (1.0 - 1e-6)))
+    minimum = int(np.ceil(MIN_DISTANCE / harmonics.closest * (1.0 - 1e-6)))
     if pitches is None:
         return max(PITCHES, minimum)
     integer("pitches", pitches, 1, 1_000_000)
@@ -227,9 +227,9 @@ def _checked_pitches(harmonics: _MeshHarmonics, pitches: int | None) -> int:
     return pitches
 
 
-def _windows(own: FloatArray, pitches: int) -> Iterator[slice]:
+def _windows(position: FloatArray, pitches: int) -> Iterator[slice]:
     """Yield the samples of windows of `pitches` over the cycles (T,) of the mesh that counts."""
-    travel = np.maximum.accumulate(own)
+    travel = np.maximum.accumulate(position)
     spare = float(travel[-1]) - pitches
     if spare < 0.0:
         return
@@ -276,16 +276,16 @@ def _remainder(
     line = np.fft.rfftfreq(weight.size, 1.0 / rate)
     half = 0.5 * float(frequency[0])
     band = (line >= half) & (line <= float(frequency[-1]) + half)
-    energy, whole = (
+    energy, total = (
         np.sum(np.abs(np.fft.rfft(series * weight, axis=-1)[..., band]) ** 2, axis=(-2, -1))
         for series in (left, left + orders)
     )
-    return np.asarray(np.divide(energy, whole, out=np.zeros(energy.shape), where=whole > 0.0))
+    return np.asarray(np.divide(energy, total, out=np.zeros(energy.shape), where=total > 0.0))
 
 
-def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
+def _no_window(position: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
     if not rows:
-        value = f"{float(np.max(own)):.4g} base pitches of one sense"
+        value = f"{float(np.max(position)):.4g} base pitches of one sense"
         return InputError("result", value, f"at least {pitches}, the length of a window", "Run for longer.")
     minimum = min(row.sweep for row in rows)
     value = f"speeds that change by {100.0 * minimum:.3g} % or more within {pitches} base pitches"
@@ -294,7 +294,7 @@ def _no_window(own: FloatArray, pitches: int, rows: list[_Row]) -> InputError:
 
 
 def _put_together(
-    result: RunResult, harmonics: _MeshHarmonics, rows: list[_Row], facts: Json
+    result: RunResult, harmonics: _MeshHarmonics, rows: list[_Row], metadata: Json
 ) -> BearingOrders:
     frequency = np.stack([row.frequency for row in rows])
     sweep = np.array([row.sweep for row in rows])
@@ -309,5 +309,5 @@ def _put_together(
         sweep,
         _smearing(result.modes, frequency, sweep),
         np.stack([row.remainder for row in rows], axis=-1),
-        facts,
+        metadata,
     )

@@ -16,7 +16,7 @@ NEIGHBORHOOD = 0.5
 """Of an order: how far its noise is looked for."""
 MEDIAN = math.log(2.0)
 """Median over mean of the power of a line of Gaussian noise: side lines of orders do not move a median."""
-BESIDE = 3
+NEIGHBORS = 3
 """Blocks on either side, by speed, whose lines count to the noise of one."""
 ONE_SPEED = 0.02
 """Of the mesh frequency: what two signals at one speed may lie apart."""
@@ -87,7 +87,7 @@ def _neighbors(blocks: Waterfall, order: int) -> IntArray:
 def _noise(lines: FloatArray) -> FloatArray:
     """Return the power of the noise on one line of each block, (B,), from lines (B, n) that hold no order."""
     count = len(lines)
-    spans = (slice(max(block - BESIDE, 0), block + BESIDE + 1) for block in range(count))
+    spans = (slice(max(block - NEIGHBORS, 0), block + NEIGHBORS + 1) for block in range(count))
     return np.array([np.median(lines[span]) / MEDIAN for span in spans])
 
 

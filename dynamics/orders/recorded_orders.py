@@ -127,9 +127,9 @@ class _Block:
         per_pitch = _samples_per_pitch(signal, start, pitches, highest)
         grid = start + np.arange(pitches * per_pitch) / per_pitch
         time = np.interp(grid, signal.position, signal.time)
-        place = FINER * signal.sample_rate * (time - signal.time[0])
-        index = np.clip(place.astype(int), 0, fine.size - 2)
-        values = cubic_between(fine, index, place - index)
+        coordinate = FINER * signal.sample_rate * (time - signal.time[0])
+        index = np.clip(coordinate.astype(int), 0, fine.size - 2)
+        values = cubic_between(fine, index, coordinate - index)
         return cls(
             spectrum(values, float(per_pitch), signal.unit, window),
             float(time.mean()),

@@ -163,9 +163,9 @@ def resample_to_position(
 def _at(values: FloatArray, index: IntArray, part: FloatArray) -> FloatArray:
     """Interpolate `values` (..., T) of a uniform grid at (N,) places, `part` of the way after `index`."""
     rows = values.reshape(-1, values.shape[-1])  # one at a time: the finer grid is four times as long
-    place = FINER * (index + part)
-    fine = np.minimum(place.astype(int), FINER * (rows.shape[1] - 1) - 1)
-    made = [cubic_between(interpolated(row, FINER, HALF_LENGTH), fine, place - fine) for row in rows]
+    coordinate = FINER * (index + part)
+    fine = np.minimum(coordinate.astype(int), FINER * (rows.shape[1] - 1) - 1)
+    made = [cubic_between(interpolated(row, FINER, HALF_LENGTH), fine, coordinate - fine) for row in rows]
     return np.reshape(made, (*values.shape[:-1], index.size))
 
 

@@ -94,9 +94,9 @@ def order_track(
     The lines of `order_waterfall` at multiples of the mesh frequency. Raises `InputError`: the run is shorter
     than one block, or its output does not hold the order.
     """
-    whole = order_waterfall(result, series, pitches, highest, mesh)
-    orders = np.arange((whole.line.size - 1) // pitches + 1)
-    return replace(whole, line=orders.astype(float), amplitude=whole.amplitude[..., orders * pitches])
+    waterfall = order_waterfall(result, series, pitches, highest, mesh)
+    orders = np.arange((waterfall.line.size - 1) // pitches + 1)
+    return replace(waterfall, line=orders.astype(float), amplitude=waterfall.amplitude[..., orders * pitches])
 
 
 def frequency_waterfall(
@@ -220,6 +220,6 @@ def band_sums(
     edges = REFERENCE * 10.0 ** ((np.append(band, band[-1] + 1) - 0.5) / 10.0)
     below = np.concatenate([np.zeros_like(power[..., :1]), np.cumsum(power, axis=-1)], axis=-1)
     at = np.clip(edges / width - 0.5, 0.0, power.shape[-1])
-    whole = np.minimum(at.astype(int), power.shape[-1] - 1)
-    under = below[..., whole] + (at - whole) * power[..., whole]
+    floor = np.minimum(at.astype(int), power.shape[-1] - 1)
+    under = below[..., floor] + (at - floor) * power[..., floor]
     return band, edges, np.maximum(np.diff(under, axis=-1), 0.0)

@@ -72,7 +72,7 @@ def _march(
     for step in range(level.size):
         if keep:
             _keep(work, step, path)
-        if not _whole_step(
+        if not _full_step(
             system, work, implicit, force_tolerance, time[step], level[step] * (HALVINGS + 1), touching
         ):
             return False
@@ -85,7 +85,7 @@ def _march(
 
 
 @inner
-def _whole_step(
+def _full_step(
     system: SystemArrays,
     work: Workspace,
     implicit: bool,
@@ -210,7 +210,7 @@ def _at_constant_speed(system: System, period: CommonPeriod, speed: float, time:
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     arrays = system.arrays
     laws = arrays.elements.laws
-    laws = laws._replace(applied_force=laws.applied_force.held_at(time))
+    laws = laws._replace(applied_force=laws.applied_force.frozen_at(time))
     changed = arrays._replace(
         reference=arrays.reference._replace(speed=speeds, full_turns=none, fraction=none),
         load=arrays.load._replace(torque=_constant(torque)),

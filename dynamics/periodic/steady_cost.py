@@ -24,7 +24,7 @@ PROBED, AFFORDED = 9, 0.5
 """Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
 RESPONSES, ORDERS = 400, 10
 """Speeds of the linear response, and orders of the meshes in it."""
-SOME = 30
+SAMPLED_SPEEDS = 30
 """Speeds at most whose steps are counted."""
 CHANGE = 5e-3
 """Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
@@ -80,7 +80,7 @@ def point_periods(
 
 def steps_share(problem: PeriodicProblem, speed: FloatArray) -> float:
     """Return how many steps motions at speeds take on average, of those of the problem."""
-    sample = speed[np.linspace(0, speed.size - 1, min(speed.size, SOME)).astype(int)]
+    sample = speed[np.linspace(0, speed.size - 1, min(speed.size, SAMPLED_SPEEDS)).astype(int)]
     return float(np.mean([problem.at(float(w)).grid.level.size for w in sample])) / problem.grid.level.size
 
 
@@ -102,10 +102,10 @@ def steady_cost(
         seconds, length = _settling(problem, at, states) if affords else (period_cost, _lengths(states).sum())
         period_cost, points = seconds, min(int(np.ceil(length / LARGEST_STEP)) + 1, MAX_POINTS)
         making = min(_taken(PeriodMap(problem, end), problem.rest, 1) for end in ends)
-    whole = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
+    motions = [motion_periods(freedoms, periods, expected_iterations(problem, end, periods)) for end in ends]
     return SteadyCost(
         speed.size * (2 if speed.size > 1 else 1),
-        float(np.mean(whole)) * period_cost * steps_share(problem, sense * speed),
+        float(np.mean(motions)) * period_cost * steps_share(problem, sense * speed),
         points,
         point_periods(freedoms) * period_cost + BRANCH_MAPS * making,
         tuple(repeat * abs(count) for count in problem.period.pitches),
@@ -150,13 +150,13 @@ def _settling(problem: PeriodicProblem, speed: FloatArray, states: FloatArray) -
 
 def period_seconds(problem: PeriodicProblem, speed: float) -> float:
     """Return the CPU seconds of a period of the motions at a speed, by the first steps from rest."""
-    over_period, steps, whole = PeriodMap(problem, speed), MIN_STEPS, problem.grid.level.size
+    over_period, steps, levels = PeriodMap(problem, speed), MIN_STEPS, problem.grid.level.size
     over_period.begun(problem.rest, 1)  # reads the code
     while True:
-        steps = min(steps, whole)
+        steps = min(steps, levels)
         seconds = min(_taken(over_period, problem.rest, steps) for _ in range(TIMES))
-        if seconds >= ENOUGH or steps == whole:
-            return problem.repeat * whole * seconds / steps
+        if seconds >= ENOUGH or steps == levels:
+            return problem.repeat * levels * seconds / steps
         steps *= 2
 
 

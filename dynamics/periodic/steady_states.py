@@ -356,8 +356,10 @@ def _swept(shared: tuple[PeriodicProblem, int], speeds: FloatArray) -> tuple[Orb
 
 def _sweep_seconds(problem: PeriodicProblem, courses: Sequence[FloatArray], periods: int) -> float:
     first = float(courses[0][0])
-    whole = motion_periods(problem.rest.size // 2, periods, expected_iterations(problem, first, periods))
-    return period_seconds(problem, first) * steps_share(problem, courses[0]) * whole * sum(map(len, courses))
+    motions = motion_periods(problem.rest.size // 2, periods, expected_iterations(problem, first, periods))
+    return (
+        period_seconds(problem, first) * steps_share(problem, courses[0]) * motions * sum(map(len, courses))
+    )
 
 
 def _study(
@@ -371,7 +373,7 @@ def _study(
     jumps = _jumps(figures, len(curves[UP])) if curves[DOWN] else []
     scene = problem.system.scene
     largest = np.asarray(np.max(np.nan_to_num(figures["largest_force"]), axis=0, initial=0.0))
-    facts: Json = {
+    metadata: Json = {
         "leading_shaft": scene.references[leading_law(problem.system)].shaft,
         "branch": branch.status.name if branch is not None else "none",
         "repeat": problem.repeat,
@@ -394,7 +396,7 @@ def _study(
         bifurcation_kind=np.array([KINDS.index(b.kind) for b in bifurcations], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
-        facts=facts,
+        facts=metadata,
     )
 
 

@@ -15,9 +15,9 @@ from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf import UnreadableFile
 
 
-def stored(units: str, words: str, *dimensions: str) -> dict[str, Stored]:
+def stored(units: str, text: str, *dimensions: str) -> dict[str, Stored]:
     """Return the metadata of a field that is an array of a file: SI unit, description, dimensions."""
-    return {"stored": Stored(dimensions, units, words)}
+    return {"stored": Stored(dimensions, units, text)}
 
 
 class ArrayFile:

@@ -60,7 +60,7 @@ class ContactChecks:
             "coast flanks are not reached",
             mesh.name,
             bool(gap <= room),
-            _contact_in_words(gap, mesh.coast is not None, room),
+            _contact_text(gap, mesh.coast is not None, room),
             {
                 "parted": float(self._parted[index] / max(self._samples, 1)),
                 "widest_gap": gap,
@@ -69,7 +69,7 @@ class ContactChecks:
         )
 
 
-def _contact_in_words(gap: float, known: bool, room: float) -> str:
+def _contact_text(gap: float, known: bool, room: float) -> str:
     if gap == 0.0:
         return "the driving flanks stayed in contact"
     if known and gap <= room:

@@ -73,13 +73,13 @@ class HeldOperatingPointChecks:
         )
 
 
-def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
-    """Return the relative change of the mean transmission error at `force` by `moved` (m) along an axis."""
+def _change(mesh: GearMesh, force: float, axis: int, shift: float) -> float:
+    """Return the relative change of the mean transmission error at `force` by `shift` (m) along an axis."""
     level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
     point = np.array([mesh.misalignment, mesh.center_distance_change])
     means = [
         float(np.mean(table_at_operating_point(mesh.table, *at).deflection[..., level]))
-        for at in (point, point + moved * np.eye(2)[axis])
+        for at in (point, point + shift * np.eye(2)[axis])
     ]
     return means[1] / means[0] - 1.0 if means[0] != 0.0 else 0.0
 

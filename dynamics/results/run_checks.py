@@ -176,4 +176,4 @@ class RunChecks:
 
     def checks(self) -> list[Check]:
         """Return the checks of all that was seen."""
-        return [check for each in self._all for check in each.checks()]
+        return [check for part in self._all for check in part.checks()]

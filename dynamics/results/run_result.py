@@ -262,9 +262,9 @@ class RunResult:
 
 
 _STORED: dict[str, Stored] = {
-    each.name: each.metadata["stored"] for each in fields(RunResult) if "stored" in each.metadata
+    entry.name: entry.metadata["stored"] for entry in fields(RunResult) if "stored" in entry.metadata
 }
-OVER_TIME = {name: each for name, each in _STORED.items() if each.dimensions[-1] == "time"}
+OVER_TIME = {name: entry for name, entry in _STORED.items() if entry.dimensions[-1] == "time"}
 """Series over time."""
 SAMPLED = ("time", *OVER_TIME)
 """All that has one value per sample."""

@@ -112,10 +112,10 @@ def _parting_row(system: System, mesh: GearMesh, z: float, axis: int) -> FloatAr
     """Return what the driven gear's axis moves along x or y, less the driver's, at z per freedom, (n,)."""
     along = np.eye(3)[axis]
 
-    def moved(center: FloatArray) -> FloatArray:
+    def displacement(center: FloatArray) -> FloatArray:
         return np.concatenate([along, np.cross([0.0, 0.0, z - center[2]], along)])
 
-    sides = [(mesh.driven, moved), (mesh.driver, lambda center: -moved(center))]
+    sides = [(mesh.driven, displacement), (mesh.driver, lambda center: -displacement(center))]
     return system.freedoms.keep(gear_row(system.scene, system.rotors, sides))
 
 

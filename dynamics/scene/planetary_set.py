@@ -210,13 +210,13 @@ class PlanetarySet:
     def _meshes(self, index: int) -> tuple[GearMesh, GearMesh]:
         """Return both meshes of a planet; those of the first one state how its ring mesh is ahead."""
         planet = self.called(f"planet {index + 1}")
-        phase_given = index == 0 and self.ring_phase is not None
+        phase_specified = index == 0 and self.ring_phase is not None
         flow = (self.called("sun"), planet), (planet, self.called("ring"))
         if self.driver == "ring":
             flow = (planet, self.called("sun")), (self.called("ring"), planet)
         details = (
-            ("sun", self.sun_table, 0.0 if phase_given else None),
-            ("ring", self.ring_table, self.ring_phase if phase_given else None),
+            ("sun", self.sun_table, 0.0 if phase_specified else None),
+            ("ring", self.ring_table, self.ring_phase if phase_specified else None),
         )
         first, second = (
             GearMesh(

@@ -124,12 +124,12 @@ def _check_frames(scene: Scene) -> None:
             raise InputError(field, bearing.carrier, "another shaft than the planet's")
     for kind in ("bushings", "rolling_bearings"):
         for index, part in enumerate(getattr(scene, kind)):
-            if not _on_own_axis(scene, scene.shaft(part.shaft)):
+            if not _is_on_carrier_axis(scene, scene.shaft(part.shaft)):
                 bound, remedy = "a shaft on the carrier's axis", "Planets rest on planet bearings."
                 raise InputError(f"{kind}[{index}].shaft", part.shaft, bound, remedy)
 
 
-def _on_own_axis(scene: Scene, shaft: Shaft) -> bool:
+def _is_on_carrier_axis(scene: Scene, shaft: Shaft) -> bool:
     """Whether a shaft lies on the axis of its carrier, if it has one."""
     return shaft.frame is None or on_axis(shaft, scene.shaft(shaft.frame))
 
@@ -155,7 +155,7 @@ def _check_couplings(scene: Scene) -> None:
         if not scene.crosses_frames(coupling):
             continue
         for side, shaft in (("first", first), ("second", second)):
-            if not _on_own_axis(scene, shaft):
+            if not _is_on_carrier_axis(scene, shaft):
                 bound = f"on the axis of its carrier {shaft.frame}, as it joins shafts of different frames"
                 raise InputError(f"couplings[{index}].{side}", shaft.name, bound)
         for name, matrix in (("stiffness", coupling.stiffness), ("damping", coupling.damping)):

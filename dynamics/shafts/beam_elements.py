@@ -134,10 +134,10 @@ def _rod(
 ) -> tuple[FloatArray, FloatArray]:
     """Mass and stiffness (k, 2, 2) of what is pulled or twisted; `at`, `inside` stiffnesses of a length."""
     step = length[:, None] * _WEIGHT
-    whole = np.sum(step / at, axis=1)
-    extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / whole[:, None]
+    total = np.sum(step / at, axis=1)
+    extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / total[:, None]
     shape = np.stack([1.0 - extension, extension], axis=-1)
-    stiffness = np.array([[1.0, -1.0], [-1.0, 1.0]]) / whole[:, None, None]
+    stiffness = np.array([[1.0, -1.0], [-1.0, 1.0]]) / total[:, None, None]
     return np.einsum("kpi,kp,kpj->kij", shape, step * mass, shape), stiffness
 
 

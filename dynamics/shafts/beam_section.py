@@ -97,11 +97,11 @@ class BeamSection:
         at = np.asarray(share, dtype=float)
         outer, bore = (d[0] + at * (d[1] - d[0]) for d in (self.outer_diameters, self.bore_diameters))
         nu, square = self.poissons_ratio, (bore / outer) ** 2
-        whole = (1.0 + square) ** 2
+        quotient = (1.0 + square) ** 2
         return _CrossSection(
             math.pi / 4.0 * (outer**2 - bore**2),
             math.pi / 64.0 * (outer**4 - bore**4),
-            6.0 * (1.0 + nu) * whole / ((7.0 + 6.0 * nu) * whole + (20.0 + 12.0 * nu) * square),
+            6.0 * (1.0 + nu) * quotient / ((7.0 + 6.0 * nu) * quotient + (20.0 + 12.0 * nu) * square),
         )
 
     @property
@@ -133,8 +133,8 @@ class BeamSection:
     def body(self) -> tuple[Inertia, float]:
         """Inertia about its center of mass, and how far that is from the left end, m."""
         if self.end_outer_diameter is None and self.end_bore_diameter is None:
-            whole = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
-            return whole, 0.5 * self.length
+            cylinder = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
+            return cylinder, 0.5 * self.length
         share, weight = 0.5 * (1.0 + _EXACT[0]), 0.5 * self.length * self.density * _EXACT[1]
         cut, z = self.cross_section(share), share * self.length
         mass = float(weight @ cut.area)

@@ -114,7 +114,7 @@ class Family:
     mass: FloatArray
     stiffness: FloatArray
     rigid: FloatArray
-    held: int = -1
+    imposed: int = -1
 
 
 def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> ElasticModes:
@@ -125,18 +125,18 @@ def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> Elas
     freedom held, whose motion is imposed, the motions that leave it at rest. `highest` is the frequency of
     interest, Hz.
     """
-    mass, stiffness, rigid, fixed = family.mass, family.stiffness, family.rigid, family.held
+    mass, stiffness, rigid, fixed = family.mass, family.stiffness, family.rigid, family.imposed
     interface = np.array(sorted(set(acting)), dtype=np.int64)
     if interface.size == 0:
         n, k = rigid.shape
         return ElasticModes(np.zeros((n, 0)), np.zeros(0), np.zeros(0), np.zeros((0, k)), 0, highest, 0.0)
-    whole = free_frequencies(family)
+    complete = free_frequencies(family)
     for cut_off in CUT_OFFS:
         reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
         none = np.zeros((reduced.frequency.size, rigid.shape[1]))  # rigid motions are of the interface alone
         motion, at = np.concatenate([rigid[interface], none]), np.flatnonzero(interface == fixed)
         square, vectors = _split(reduced.mass, reduced.stiffness, motion, int(at[0]) if fixed >= 0 else -1)
-        truncation = worst_error(_hertz(square), whole, highest)
+        truncation = worst_error(_hertz(square), complete, highest)
         if truncation <= TRUNCATION:
             break
     shape = reduced.motion @ vectors
@@ -157,7 +157,7 @@ def free_frequencies(family: Family) -> FloatArray:
     """Return the elastic natural frequencies of a whole family, Hz."""
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
-    mass, fixed = family.mass, family.held
+    mass, fixed = family.mass, family.imposed
     free = np.delete(np.arange(mass.shape[0]), fixed) if fixed >= 0 else np.arange(mass.shape[0])
     block = np.ix_(free, free)
     square = eigh(family.stiffness[block], mass[block], eigvals_only=True)
@@ -178,12 +178,12 @@ def worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
 
 
 def _split(
-    mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, held: int
+    mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, imposed: int
 ) -> tuple[FloatArray, FloatArray]:
     """Squared circular frequencies and shapes of unit modal mass of the elastic motions."""
     from scipy.linalg import eigh, null_space  # noqa: PLC0415 (start-up time)
 
-    basis = np.delete(np.eye(mass.shape[0]), held, axis=1) if held >= 0 else null_space(rigid.T @ mass)
+    basis = np.delete(np.eye(mass.shape[0]), imposed, axis=1) if imposed >= 0 else null_space(rigid.T @ mass)
     if basis.shape[1] == 0:
         return np.zeros(0), basis
     square, vectors = eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)

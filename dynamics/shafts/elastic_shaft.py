@@ -43,7 +43,7 @@ class PointOfApplication:
 
 
 def _families(
-    beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None
+    beam: TimoshenkoBeam, discs: Sequence[Disc], imposed: float | None
 ) -> tuple[Family, Family, Family]:
     """Return bending in x z, extension and torsion with the discs' inertia."""
     mass, nodes = beam.mass.copy(), beam.position.size
@@ -56,7 +56,7 @@ def _families(
     ones = np.ones((nodes, 1))
     tilted = np.stack([beam.position - beam.position.mean(), np.ones(nodes)], axis=1).ravel()
     rigid_motion = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
-    turned = -1 if held is None else int(np.argmin(np.abs(beam.position - held)))
+    turned = -1 if imposed is None else int(np.argmin(np.abs(beam.position - imposed)))
 
     def part(columns: IntArray, rigid: FloatArray, at: int = -1) -> Family:
         block = np.ix_(columns, columns)
@@ -74,16 +74,16 @@ def _fine_beam(
     discs: Sequence[Disc],
     points: Sequence[PointOfApplication],
     highest: float,
-    held: float | None,
+    imposed: float | None,
 ) -> tuple[TimoshenkoBeam, float]:
     """Return a beam and the estimated error of its frequencies; errors fall with the length squared."""
     stations = [*(disc.position for disc in discs), *(point.position for point in points)]
     length, parts = sum(section.length for section in sections), FIRST_PARTS
     beam = timoshenko_beam(sections, stations, length / parts)
-    coarse = _frequencies(beam, discs, held)
+    coarse = _frequencies(beam, discs, imposed)
     while True:
         finer = timoshenko_beam(sections, stations, 0.5 * float(np.max(np.diff(beam.position))))
-        exact = _frequencies(finer, discs, held)
+        exact = _frequencies(finer, discs, imposed)
         error = 4.0 / 3.0 * max(worst_error(a, b, highest) for a, b in zip(coarse, exact, strict=True))
         parts *= 2
         if error <= MESH_ERROR or parts > LAST_PARTS:
@@ -91,8 +91,8 @@ def _fine_beam(
         beam, coarse = finer, exact
 
 
-def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None) -> list[FloatArray]:
-    return [free_frequencies(part) for part in _families(beam, discs, held)]
+def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], imposed: float | None) -> list[FloatArray]:
+    return [free_frequencies(part) for part in _families(beam, discs, imposed)]
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ class ElasticShaft:
     """Elastic coordinates of a shaft: bending in x z, bending alike in y z, extension, torsion.
 
     They are measured against the motion of the shaft as a rigid body about its center of mass with which they
-    share no kinetic energy; torsion against the rotation at `held` where that is imposed.
+    share no kinetic energy; torsion against the rotation at `imposed` where that is imposed.
     """
 
     position: FloatArray
@@ -130,12 +130,12 @@ class ElasticShaft:
     @cached_property
     def mass(self) -> FloatArray:
         """Modal mass per coordinate, kg or kg m^2."""
-        return self._each("mass")
+        return self._joined("mass")
 
     @cached_property
     def stiffness(self) -> FloatArray:
         """Modal stiffness per coordinate, N/m or N m/rad."""
-        return self._each("stiffness")
+        return self._joined("stiffness")
 
     @property
     def damping(self) -> FloatArray:
@@ -176,7 +176,7 @@ class ElasticShaft:
         rows[5, 2 * b + s :] = self.torsion.shape[k]
         return rows
 
-    def _each(self, name: str) -> FloatArray:
+    def _joined(self, name: str) -> FloatArray:
         parts = (self.bending, self.bending, self.extension, self.torsion)
         return np.concatenate([np.asarray(getattr(part, name), dtype=float) for part in parts])
 
@@ -188,7 +188,7 @@ def elastic_shaft(
     points: tuple[PointOfApplication, ...],
     highest: float,
     damping_ratio: float,
-    held: float | None = None,
+    imposed: float | None = None,
 ) -> ElasticShaft:
     """Return the elastic coordinates of a shaft of `sections` with `discs` on it, held by nothing.
 
@@ -202,11 +202,11 @@ def elastic_shaft(
         From the left end.
     highest : float
         Hz; modes of the free shaft up to it, and the first of each family anyway, are of interest.
-    held : float or None
+    imposed : float or None
         Where along the shaft its rotation is imposed, m: one of the points of application.
     """
-    beam, error = _fine_beam(sections, discs, points, highest, held)
-    across, along, turn = _families(beam, discs, held)
+    beam, error = _fine_beam(sections, discs, points, highest, imposed)
+    across, along, turn = _families(beam, discs, imposed)
     nodes = [int(np.argmin(np.abs(beam.position - point.position))) for point in points]
     pairs = list(zip(nodes, points, strict=True))
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]

@@ -76,8 +76,8 @@ def timoshenko_beam(
     pieces = []
     for left, right in pairwise(node):
         index = int(np.searchsorted(ends, 0.5 * (left + right), side="right")) - 1
-        start, whole = ends[index], sections[index].length
-        pieces.append(Piece(sections[index], float((left - start) / whole), float((right - start) / whole)))
+        start, span = ends[index], sections[index].length
+        pieces.append(Piece(sections[index], float((left - start) / span), float((right - start) / span)))
     for k, (m, s) in enumerate(zip(*_coupled(beam_elements(pieces)), strict=True)):
         rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)
         mass[rows, rows] += m

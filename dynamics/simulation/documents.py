@@ -295,14 +295,14 @@ def _carried(
     elements: Elements, local: LocalState, e: int, at: BearingElement, bearing: RollingBearing
 ) -> Json:
     rows, law, turned = slice(elements.first[e], elements.first[e + 1]), row_law(bearing), elements.mesh[e]
-    shift = local.coordinate[rows] / np.diag(at.own)
+    shift = local.coordinate[rows] / np.diag(at.local_rows)
     shift[2] += law.shift
     angle = 2.0 * np.pi * float(local.position[turned]) if turned >= 0 else 0.0
     loaded = LoadedBearing(bearing.row, 1, bearing.locating) if turned >= 0 else law.loaded
     load = loaded.evaluate(shift, angle).load
     return {
         "displacement": shift.tolist(),
-        "force": (local.force[rows] @ at.own).tolist(),
+        "force": (local.force[rows] @ at.local_rows).tolist(),
         "element_load": float(np.max(load.sum(axis=1))),
         "peak_pressure": bearing.row.peak_pressure(float(np.max(load))),
     }

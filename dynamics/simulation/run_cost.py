@@ -17,7 +17,7 @@ from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import States, Widths
 from dynamics.scene import Scene
 from dynamics.simulation.error_by_source import SHARE
-from dynamics.simulation.whole_run_error import outlives_windows
+from dynamics.simulation.long_run_error import outlives_windows
 from host import cpu_seconds
 
 PARTS = (0.05, 0.5, 0.95)

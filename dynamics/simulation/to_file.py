@@ -44,8 +44,8 @@ from dynamics.simulation.documents import (
 )
 from dynamics.simulation.error_by_source import error_by_source, window_starts
 from dynamics.simulation.light_loads import with_tolerance_to_scale
+from dynamics.simulation.long_run_error import RunPair, blind_windows, finer_run
 from dynamics.simulation.violations import FIRST, EarlierRun, StatesOf, needed_effects, taken_over
-from dynamics.simulation.whole_run_error import RunPair, blind_windows, finer_run
 from dynamics.types import Json, RunStatus
 from model_studies.stage_clock import StageClock, TimeTaken
 

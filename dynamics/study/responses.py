@@ -162,7 +162,7 @@ def responses_of(
 
     Raises `InputError`: no such part, an order that the output does not hold, or a `start` behind the end.
     """
-    bearings = {row for each in responses if each.kind.of == "bearing" for row in each.rows(run)}
+    bearings = {row for item in responses if item.kind.of == "bearing" for row in item.rows(run)}
     highest = max((response.order for response in responses), default=0)
     window = _Window.of(run, start, highest, tuple(sorted(bearings)))
     values = [response.of(window) for response in responses]

@@ -117,8 +117,8 @@ class Study(ArrayFile):
         """Return the values of a factor of grid or list, and the mean response over all else at each."""
         values = np.unique(self.value[:, factor])
         column = self.figure[:, response]
-        here = (column[(self.value[:, factor] == value) & np.isfinite(column)] for value in values)
-        return values, np.array([part.mean() if part.size else np.nan for part in here])
+        selected = (column[(self.value[:, factor] == value) & np.isfinite(column)] for value in values)
+        return values, np.array([part.mean() if part.size else np.nan for part in selected])
 
     def swing(self, factor: int, response: int) -> float:
         """Return what a factor of the grid or the list does: the spread of the means of its levels."""

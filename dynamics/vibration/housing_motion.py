@@ -145,8 +145,10 @@ def _on_seats(
     turns = [  # forces and moments along a seat's axes per a bearing's signals
         np.kron(np.eye(2), seat.axes.T)[: len(seat.motions), : signals.shape[1]] for seat in housing.seats
     ]
-    own = [signals[known.index(name)] for name in names]
-    return np.concatenate([np.tensordot(turn, force, 1) for turn, force in zip(turns, own, strict=True)])
+    seat_signals = [signals[known.index(name)] for name in names]
+    return np.concatenate(
+        [np.tensordot(turn, force, 1) for turn, force in zip(turns, seat_signals, strict=True)]
+    )
 
 
 def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: ComplexArray) -> ComplexArray:
@@ -174,9 +176,9 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     damping = shape.T @ housing.damping @ shape
     omega = 2.0 * math.pi * np.asarray(frequency, dtype=float)
     pushed = np.asarray(force) @ shape[: np.shape(force)[-1]]
-    own = np.diag(damping)
+    diagonal = np.diag(damping)
     square = natural**2 - omega[:, None] ** 2
-    dynamic = square + 1j * omega[:, None] * own  # stiffness of every mode, (N, m)
+    dynamic = square + 1j * omega[:, None] * diagonal  # stiffness of every mode, (N, m)
     unheld = ~(np.abs(dynamic) > UNDAMPED * (natural**2 + omega[:, None] ** 2))
     if np.any(unheld):
         at, mode = np.argwhere(unheld)[0]
@@ -184,7 +186,9 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
         where = Quantity(float(natural[mode] / (2.0 * math.pi)), "Hz")
         off = Text.of("off the natural frequency of a mode of the housing without damping, ", where)
         raise InputError("frequency", float(omega[at] / (2.0 * math.pi)), off, remedy)
-    if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
+    if np.all(
+        np.abs(damping - np.diag(diagonal)) <= ROUNDING * np.sqrt(np.outer(diagonal, diagonal).clip(0.0))
+    ):
         return np.asarray(pushed / dynamic[:, None, :])
     return _coupled(square, omega, damping, pushed)
 

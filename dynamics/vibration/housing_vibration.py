@@ -137,8 +137,8 @@ class HousingVibration:
     highest_valid_frequency: float
     """`ReducedHousing.valid_frequency`, Hz."""
     floor: FloatArray | None = None
-    floor_missed: FloatArray | None = None
-    """`floor`, `floor_missed`: Mean square velocity of each point in the orders of long tables that are not
+    floor_error: FloatArray | None = None
+    """`floor`, `floor_error`: Mean square velocity of each point in the orders of long tables that are not
     listed, and by how much it may be off, m^2/s^2; None where every order is. Shape (k, S) each.
     """
 
@@ -162,11 +162,11 @@ class HousingVibration:
         """By how much `overall` may be off for the orders that are not listed, (k, S), m/s."""
         return self.overall - self._with_floor(1.0)
 
-    def _with_floor(self, missed: float) -> FloatArray:
-        if self.floor is None or self.floor_missed is None:
+    def _with_floor(self, share: float) -> FloatArray:
+        if self.floor is None or self.floor_error is None:
             return overall(self.rms)
         listed = np.sum(np.square(self.rms), axis=-1)
-        return np.asarray(np.sqrt(listed + np.maximum(self.floor - missed * self.floor_missed, 0.0)))
+        return np.asarray(np.sqrt(listed + np.maximum(self.floor - share * self.floor_error, 0.0)))
 
     def of(self, quantity: MotionQuantity) -> ComplexArray:
         """Return peak amplitudes of another quantity of the points, (k, 3, S, H)."""
@@ -233,10 +233,10 @@ def _point_floor(
     """Return the mean squares of the velocity of points (k, 3, r) in the lines left out, and their errors."""
     amplitude = modal_amplitudes(housing, floor.frequency, seat_forces(floor, housing, bearings))
     rate = 2j * np.pi * floor.frequency[:, None, None] * (amplitude @ housing.modes[1].T)
-    moved = [rate @ own.T for own in rows]
-    made = [floor.power(0.5 * own.conj() @ np.swapaxes(own, 1, 2)) for own in moved]
+    velocities = [rate @ velocity.T for velocity in rows]
+    made = [floor.power(0.5 * velocity.conj() @ np.swapaxes(velocity, 1, 2)) for velocity in velocities]
     shape = (len(rows), floor.pace.size)
     return (
-        np.reshape([np.sum(each.power, axis=1) for each in made], shape),
-        np.reshape([np.sum(each.missed, axis=1) for each in made], shape),
+        np.reshape([np.sum(power.power, axis=1) for power in made], shape),
+        np.reshape([np.sum(power.missed, axis=1) for power in made], shape),
     )

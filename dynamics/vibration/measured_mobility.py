@@ -113,12 +113,12 @@ class MeasuredMobility:
         in the complex plane.
         """
         hertz = np.asarray(frequency, dtype=float)
-        moved = np.full((hertz.size, *self.mobility.shape[1:]), np.nan, dtype=complex)
+        mobility = np.full((hertz.size, *self.mobility.shape[1:]), np.nan, dtype=complex)
         inside = np.flatnonzero(self.covers(hertz))
         for first in range(0, inside.size, BLOCK):
             part = inside[first : first + BLOCK]
-            moved[part] = self._between(hertz[part])
-        return moved
+            mobility[part] = self._between(hertz[part])
+        return mobility
 
     def _between(self, hertz: FloatArray) -> ComplexArray:
         """Return the mobilities (N, q, e) at frequencies inside the band."""
@@ -225,7 +225,7 @@ def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) ->
     measured = {(response.bearing.index(part.name), part.axis) for part in housing.excitation}
     omitted = [at for at in np.ndindex(*square.shape[:2]) if at not in measured and np.any(square[at])]
     lost = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
-    whole = square.sum(axis=(0, 1))
+    total = square.sum(axis=(0, 1))
     return MeasuredVibration(
         housing.points,
         response.speed,
@@ -234,7 +234,7 @@ def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) ->
         _velocity(housing, response, force),
         covered,
         tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
-        np.divide(lost, whole, out=np.zeros(covered.shape), where=whole > 0.0),
+        np.divide(lost, total, out=np.zeros(covered.shape), where=total > 0.0),
         bool(np.any(response.bearing_force[:, 3:])),
         response.floor is not None,
     )
@@ -245,12 +245,12 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
     shape = response.frequency.shape
     pushed = np.array([force[response.bearing.index(part.name), part.axis] for part in housing.excitation])
     hertz, loads = response.frequency.ravel(), pushed.reshape(len(pushed), -1)
-    moved = np.empty((len(housing.response), hertz.size), dtype=complex)
+    responses = np.empty((len(housing.response), hertz.size), dtype=complex)
     for first in range(0, hertz.size, BLOCK):
         part = slice(first, first + BLOCK)
-        moved[:, part] = np.einsum("nqe,en->qn", housing.at(hertz[part]), loads[:, part])
+        responses[:, part] = np.einsum("nqe,en->qn", housing.at(hertz[part]), loads[:, part])
     velocity = np.full((len(housing.points), 3, *shape), np.nan, dtype=complex)
-    for row, point in zip(moved, housing.response, strict=True):
+    for row, point in zip(responses, housing.response, strict=True):
         velocity[housing.points.index(point.name), point.axis] = row.reshape(shape)
     return velocity
 
@@ -262,11 +262,11 @@ def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> Flo
     against the sum. NaN outside the measured band and where nothing moves. Raises `InputError` as
     `measured_vibration`.
     """
-    whole = measured_vibration(response, housing).velocity
-    square = np.nansum(np.abs(whole) ** 2, axis=1)
+    total = measured_vibration(response, housing).velocity
+    square = np.nansum(np.abs(total) ** 2, axis=1)
     shares = []
     for bearing in housing.bearings:
         part = measured_vibration(response, housing.through(bearing)).velocity
-        felt = np.nansum((whole.conj() * part).real, axis=1)
+        felt = np.nansum((total.conj() * part).real, axis=1)
         shares.append(np.divide(felt, square, out=np.full(square.shape, np.nan), where=square > 0.0))
     return np.array(shares)

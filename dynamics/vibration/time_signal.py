@@ -66,13 +66,13 @@ class _CoupledModes:
         modes, forces = push.shape
         angle = natural * step
         scale = np.maximum(angle, 1.0)
-        whole = np.zeros((2 * modes + CUBIC * forces,) * 2)
-        whole[:modes, modes : 2 * modes] = np.diag(scale)
-        whole[modes : 2 * modes, :modes] = -np.diag(angle**2 / scale)
-        whole[modes : 2 * modes, modes : 2 * modes] = -step * damping
-        whole[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
-        whole[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
-        exponential = expm(whole)[: 2 * modes]
+        system = np.zeros((2 * modes + CUBIC * forces,) * 2)
+        system[:modes, modes : 2 * modes] = np.diag(scale)
+        system[modes : 2 * modes, :modes] = -np.diag(angle**2 / scale)
+        system[modes : 2 * modes, modes : 2 * modes] = -step * damping
+        system[modes : 2 * modes, 2 * modes : 2 * modes + forces] = step**2 * push
+        system[2 * modes : -forces, 2 * modes + forces :] = np.eye((CUBIC - 1) * forces)
+        exponential = expm(system)[: 2 * modes]
         gain = exponential[:, 2 * modes :].reshape(2 * modes, CUBIC, forces)
         return cls(exponential[:, : 2 * modes], np.ascontiguousarray(np.moveaxis(gain, 1, 0)), scale)
 
@@ -103,11 +103,11 @@ class _SeparateModes:
         """Integrate as `_CoupledModes` does, with the `damping` (m,) of each mode."""
         angle = natural * step
         scale = np.maximum(angle, 1.0)
-        whole = np.zeros((natural.size, 2 + CUBIC, 2 + CUBIC))
-        whole[:, 0, 1], whole[:, 1, 0], whole[:, 1, 1] = scale, -(angle**2) / scale, -step * damping
-        whole[:, 1, 2] = step**2
-        whole[:, 2:-1, 3:] = np.eye(CUBIC - 1)
-        exponential = np.ascontiguousarray(np.moveaxis(expm(whole)[:, :2], 0, 2))
+        systems = np.zeros((natural.size, 2 + CUBIC, 2 + CUBIC))
+        systems[:, 0, 1], systems[:, 1, 0], systems[:, 1, 1] = scale, -(angle**2) / scale, -step * damping
+        systems[:, 1, 2] = step**2
+        systems[:, 2:-1, 3:] = np.eye(CUBIC - 1)
+        exponential = np.ascontiguousarray(np.moveaxis(expm(systems)[:, :2], 0, 2))
         return cls(exponential[:, :2].copy(), exponential[:, 2:].copy(), push, scale)
 
     def advance(self, derivatives: FloatArray, state: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -126,12 +126,12 @@ def _advance_modes(transition: FloatArray, gain: FloatArray, force: FloatArray, 
     for sample in range(states.shape[0] - 1):
         for mode in range(states.shape[2]):
             amplitude, rate = states[sample, 0, mode], states[sample, 1, mode]
-            moved = transition[0, 0, mode] * amplitude + transition[0, 1, mode] * rate
+            advanced = transition[0, 0, mode] * amplitude + transition[0, 1, mode] * rate
             paced = transition[1, 0, mode] * amplitude + transition[1, 1, mode] * rate
             for order in range(CUBIC):
-                moved += gain[0, order, mode] * force[order, sample, mode]
+                advanced += gain[0, order, mode] * force[order, sample, mode]
                 paced += gain[1, order, mode] * force[order, sample, mode]
-            states[sample + 1, 0, mode], states[sample + 1, 1, mode] = moved, paced
+            states[sample + 1, 0, mode], states[sample + 1, 1, mode] = advanced, paced
 
 
 def point_signal(
@@ -160,8 +160,8 @@ def point_signal(
     """
     motion = np.stack([point.motion for point in named_points(housing, points)])
     rows = motion.reshape(-1, motion.shape[2])
-    moved = np.concatenate(list(motion_pieces(housing, time, force, rows, quantity)))
-    return moved.reshape(-1, *motion.shape[:2])
+    signal = np.concatenate(list(motion_pieces(housing, time, force, rows, quantity)))
+    return signal.reshape(-1, *motion.shape[:2])
 
 
 def motion_pieces(
@@ -206,8 +206,8 @@ def motion_pieces(
     damping = shape.T @ housing.damping @ shape
     push, seen = shape[: housing.motions].T, (np.asarray(rows) @ shape).T
     propagator = _propagator(natural, damping, push, step)
-    held = natural > LOOSE * natural.max()
-    rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=held)
+    elastic = natural > LOOSE * natural.max()
+    rest = np.divide(push @ forces[0], natural**2, out=np.zeros(natural.size), where=elastic)
     state = np.concatenate([rest * propagator.scale, np.zeros(natural.size)])
     of_amplitudes, of_rates = seen / propagator.scale[:, None], seen / step
     for first in range(0, times.size, PIECE):
@@ -243,9 +243,11 @@ def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) 
 
 def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:
     """Return what advances the modes by a step: each by itself unless damping couples them."""
-    own = np.diag(damping)
-    if np.all(np.abs(damping - np.diag(own)) <= ROUNDING * np.sqrt(np.outer(own, own).clip(0.0))):
-        return _SeparateModes.of(natural, own, push, step)
+    diagonal = np.diag(damping)
+    if np.all(
+        np.abs(damping - np.diag(diagonal)) <= ROUNDING * np.sqrt(np.outer(diagonal, diagonal).clip(0.0))
+    ):
+        return _SeparateModes.of(natural, diagonal, push, step)
     return _CoupledModes.of(natural, damping, push, step)
 
 

@@ -52,9 +52,9 @@ class Parts:
             On the motions of the seats (`seat_forces`).
         """
         owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
-        apart = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
-        motion = housing_motion(housing, np.full(len(apart), float(frequency)), apart)
-        return cls(tuple(seat.name for seat in housing.seats), np.full(len(apart), np.nan), motion)
+        separate = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
+        motion = housing_motion(housing, np.full(len(separate), float(frequency)), separate)
+        return cls(tuple(seat.name for seat in housing.seats), np.full(len(separate), np.nan), motion)
 
     @classmethod
     def of_modes(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
@@ -62,11 +62,11 @@ class Parts:
         loads = np.asarray(force)[None, None]
         amplitude = modal_amplitudes(housing, np.array([float(frequency)]), loads)[0, 0]
         every = amplitude[:, None] * housing.modes[1].T
-        kept = len(housing.frequency)
-        names = tuple(f"mode {number + 1}" for number in range(kept))
-        if kept == len(every):
+        count = len(housing.frequency)
+        names = tuple(f"mode {number + 1}" for number in range(count))
+        if count == len(every):
             return cls(names, housing.frequency, every)
-        motion = np.vstack([every[:kept], every[kept:].sum(axis=0, keepdims=True)])
+        motion = np.vstack([every[:count], every[count:].sum(axis=0, keepdims=True)])
         return cls((*names, RESIDUAL), np.append(housing.frequency, np.nan), motion)
 
     def shares(self, weight: FloatArray) -> FloatArray:
@@ -80,8 +80,8 @@ class Parts:
         weight : (r, r) array
             Symmetric: `surface_weight`, or m^T m of the rows m of a point's motion.
         """
-        whole = self.motion.sum(axis=0)
-        felt = (whole.conj() @ weight) @ self.motion.T
+        total = self.motion.sum(axis=0)
+        felt = (total.conj() @ weight) @ self.motion.T
         size = float(felt.sum().real)
         if not size > 0.0:
             raise InputError(
@@ -124,8 +124,8 @@ def transfer_functions(
         not_negative(f"frequency[{index}]", float(value))
     loads = np.eye(housing.motions, len(housing.mass)) if excitation is None else np.asarray(excitation)
     amplitude = modal_amplitudes(housing, hertz, loads[None].astype(complex))
-    moved = np.swapaxes(amplitude @ (np.asarray(response) @ housing.modes[1]).T, 1, 2)
-    return quantity.of(moved, hertz[:, None, None])
+    motion = np.swapaxes(amplitude @ (np.asarray(response) @ housing.modes[1]).T, 1, 2)
+    return quantity.of(motion, hertz[:, None, None])
 
 
 def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight: FloatArray) -> FloatArray:
@@ -291,15 +291,15 @@ def analyze_vibration(
 def _mobilities(housing: ReducedHousing, highest: float, points: Sequence[str] | None = None) -> _Mobilities:
     """Return the transfer functions of a housing up to a frequency in Hz, its resonances among them."""
     even = np.linspace(highest / FREQUENCIES, highest, FREQUENCIES)
-    own = housing.frequency[(housing.frequency > even[0]) & (housing.frequency < highest)]
-    hertz = np.unique(np.concatenate([even, own]))
+    natural = housing.frequency[(housing.frequency > even[0]) & (housing.frequency < highest)]
+    hertz = np.unique(np.concatenate([even, natural]))
     rows = point_rows(housing, points)
-    moved = transfer_functions(housing, hertz, rows.reshape(-1, rows.shape[2]))
+    transfer = transfer_functions(housing, hertz, rows.reshape(-1, rows.shape[2]))
     surface = np.zeros((hertz.size, housing.motions))
     if housing.surface is not None:
         surface = mean_square_mobility(housing, hertz, surface_weight(housing))
     names = tuple(f"{seat.name} {motion}" for seat in housing.seats for motion in seat.motions)
-    by_point = moved.reshape(hertz.size, len(rows), 3, housing.motions)
+    by_point = transfer.reshape(hertz.size, len(rows), 3, housing.motions)
     return _Mobilities(names, hertz, np.ascontiguousarray(np.moveaxis(by_point, 0, 2)), surface)
 
 

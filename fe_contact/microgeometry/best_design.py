@@ -60,7 +60,7 @@ def posed(study: DesignStudy, request: OptimizationRequest, memory: Path | None)
     )
     if memory is not None:
         problem = replace(problem, memory=DesignMemory.of(memory, request, study.evaluator))
-    assessed = problem.assess(problem.place(request.start_design))
+    assessed = problem.assess(problem.unit_point(request.start_design))
     if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
         raise SolveError("the contact of the start design cannot be solved at every position and load")
     return replace(problem, scale=assessed.objective)

@@ -16,7 +16,7 @@ from bounds import written
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.optimization import OptimizationRequest
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from fe_contact.types import FloatArray
 
 MAX_FILES = 200

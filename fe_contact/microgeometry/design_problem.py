@@ -90,7 +90,7 @@ class SearchProblem(ABC):
         inside = np.clip(point, 0.0, 1.0).tolist()
         return {v.name: v.low + x * (v.high - v.low) for v, x in zip(self.variables, inside, strict=True)}
 
-    def place(self, values: tuple[float, ...]) -> FloatArray:
+    def unit_point(self, values: tuple[float, ...]) -> FloatArray:
         """Return the nearest point of the unit cube to a design."""
         ends = [(v.low, v.high) for v in self.variables]
         fractions = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]

@@ -35,7 +35,7 @@ def search_all(
     """
     from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
-    first = problem.place(start_design)
+    first = problem.unit_point(start_design)
     others = qmc.Sobol(first.size, rng=search.seed).random_base2((search.starts - 1).bit_length())[
         1 : search.starts
     ]

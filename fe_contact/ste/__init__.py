@@ -2,9 +2,9 @@
 
 from fe_contact.ste.curve import Curve
 from fe_contact.ste.database import SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import MeshForce, Validity
+from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.tooth_loads import ToothLoads
 
 __all__ = [

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError, SolveError
-from fe_contact.ste.facts import Metadata, PairFacts
+from fe_contact.ste.metadata import Metadata, PairFacts
 from fe_contact.types import BoolArray, FloatArray, Status
 
 GRID = ("position", "force", "misalignment", "center_distance_change")

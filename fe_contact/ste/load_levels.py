@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.ste.facts import PairFacts
+from fe_contact.ste.metadata import PairFacts
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 # shared by the steps that hold a kink; with more, the position knots are what limits the table

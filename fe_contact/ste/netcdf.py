@@ -14,8 +14,8 @@ import numpy as np
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import OFF_MESH
-from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
+from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.types import Json, Status
 from model_studies.netcdf import UnreadableFile, opened
 from model_studies.netcdf_content import NetcdfContent, Variable

@@ -12,7 +12,7 @@ from pathlib import Path
 from fe_contact.errors import DatabaseError
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
 from lineofaction.cli.output import Report
 from lineofaction.cli.verb_warnings import warn

@@ -11,7 +11,7 @@ from host.directories import keep_private
 from lineofaction.cli.output import print_json
 from lineofaction.gearbox.problems import EXIT_FAILED
 from service.settings import load_settings
-from service.store.database import Schema, database_engine, shown
+from service.store.database import Schema, database_engine, redacted_url
 from service.store.migrations import REVISIONS
 from service.store.places import DATABASE_FILE
 
@@ -27,7 +27,7 @@ class JobTables:
         engine = database_engine(
             settings.database_address or settings.data_directory / DATABASE_FILE, pooled=False
         )
-        self._schema, self._name, self._as_json = Schema(engine), shown(engine), as_json
+        self._schema, self._name, self._as_json = Schema(engine), redacted_url(engine), as_json
 
     def upgrade(self) -> None:
         """Upgrade, and tell from which schema to which."""

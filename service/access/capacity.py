@@ -17,7 +17,7 @@ from lineofaction.gearbox.problems import BadInput, TooManyHeld, TooManyRequests
 from service.access.holder import Holder
 from service.access.quotas import Quota
 
-_AGAIN_S = 1
+_RETRY_S = 1
 NOBODY = ""
 """Holder of what callers without a key hold."""
 
@@ -31,7 +31,7 @@ _FILES_OF_A_WORKER = 4
 RAISE = "Raise the limit of the process (ulimit -n, LimitNOFILE= of systemd)."
 
 
-class Held:
+class Usage:
     """Counts of one kind by the names of their holders, in one event loop of one server process.
 
     Parameters
@@ -43,31 +43,31 @@ class Held:
     """
 
     def __init__(self, what: str, in_all: int | None = None) -> None:
-        self._what, self._in_all, self._held = what, in_all, Counter[str]()
+        self._what, self._in_all, self._counts = what, in_all, Counter[str]()
 
     def number(self, name: str) -> int:
         """Return how many a holder has."""
-        return self._held[name]
+        return self._counts[name]
 
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
         """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have theirs."""
-        if maximum is not None and self._held[name] >= maximum:
+        if maximum is not None and self._counts[name] >= maximum:
             who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
             text = f"{who} {maximum} {self._what}, the limit. End one of them, or try again."
-            raise TooManyHeld.after(_AGAIN_S, text)
-        if self._in_all is not None and self._held.total() >= self._in_all:
+            raise TooManyHeld.after(_RETRY_S, text)
+        if self._in_all is not None and self._counts.total() >= self._in_all:
             raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")
 
     @contextmanager
     def one(self, name: str) -> Iterator[None]:
         """Hold one more while the context lasts."""
-        self._held[name] += 1
+        self._counts[name] += 1
         try:
             yield
         finally:
-            self._held[name] -= 1
-            if not self._held[name]:
-                del self._held[name]
+            self._counts[name] -= 1
+            if not self._counts[name]:
+                del self._counts[name]
 
 
 class RateLimits:
@@ -140,12 +140,14 @@ def capacity(workers: int) -> Capacity:
     Raises `BadInput`: it may open too few files to serve at all.
     """
     files = most_open_files()
-    kept = _OTHER_FILES + _FILES_OF_A_WORKER * workers
-    if files - kept < _MIN_CONNECTIONS:
-        bound = f"at least {kept + _MIN_CONNECTIONS}, and {kept + _MAX_CONNECTIONS} for all connections"
+    reserved = _OTHER_FILES + _FILES_OF_A_WORKER * workers
+    if files - reserved < _MIN_CONNECTIONS:
+        bound = (
+            f"at least {reserved + _MIN_CONNECTIONS}, and {reserved + _MAX_CONNECTIONS} for all connections"
+        )
         raise BadInput.of("open files", int(files), bound, RAISE)
-    bearable = Capacity(int(min(files - kept, _MAX_CONNECTIONS)))
+    bearable = Capacity(int(min(files - reserved, _MAX_CONNECTIONS)))
     if bearable.connections < _MAX_CONNECTIONS:
-        facts = {"connections": bearable.connections, "requests": bearable.requests, "share": bearable.share}
-        logger.warning("limits lowered", open_files=int(files), **facts, remedy=RAISE)
+        limits = {"connections": bearable.connections, "requests": bearable.requests, "share": bearable.share}
+        logger.warning("limits lowered", open_files=int(files), **limits, remedy=RAISE)
     return bearable

@@ -92,11 +92,11 @@ class Issuer:
 
     def _discovered(self, http: httpx2.Client) -> str:
         """Return where the issuer says its keys are; raise ValueError if that is not its own host."""
-        facts = _document(http, self.url.rstrip("/") + _DISCOVERY)
-        place = str(facts["jwks_uri"])
-        if facts["issuer"] != self.url or _host(place) != _host(self.url):
-            raise ValueError(place)
-        return place
+        document = _document(http, self.url.rstrip("/") + _DISCOVERY)
+        address = str(document["jwks_uri"])
+        if document["issuer"] != self.url or _host(address) != _host(self.url):
+            raise ValueError(address)
+        return address
 
 
 def _host(url: str) -> tuple[str, str]:

@@ -139,7 +139,10 @@ class KeyFile:
         secret, key = _made(holder, life)
         rest = timedelta(0) if overlap == "0h" else _duration("overlap", overlap)
         end, left = _written(instant + rest), [entry for entry in old if rest and not entry.expired]
-        ending = [each if each.ends_within(rest, instant) else replace(each, expires=end) for each in left]
+        ending = [
+            access_key if access_key.ends_within(rest, instant) else replace(access_key, expires=end)
+            for access_key in left
+        ]
         self._write((*(entry for entry in known if entry.name != name), *ending, key))
         return secret
 
@@ -177,8 +180,8 @@ class KeyFile:
 def _made(holder: Holder, life: timedelta | None) -> tuple[str, AccessKey]:
     secret, instant = PREFIX + secrets.token_urlsafe(32), datetime.now(UTC)
     expires = None if life is None else _written(instant + life)
-    facts = vars(holder) | {"expires": expires}
-    return secret, AccessKey(**facts, sha256=digest_of(secret), created=_written(instant))
+    fields = vars(holder) | {"expires": expires}
+    return secret, AccessKey(**fields, sha256=digest_of(secret), created=_written(instant))
 
 
 def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:

@@ -63,10 +63,10 @@ class Keyring:
         stamp = self._stamp_now()
         if stamp != self._stamp:
             with self._lock:
-                self._read_again(stamp)
+                self._reload(stamp)
         return self._keys
 
-    def _read_again(self, stamp: _Stamp) -> None:
+    def _reload(self, stamp: _Stamp) -> None:
         """Take the file as it is now, unless it cannot be used."""
         try:
             self._keys = self._file.read()

@@ -72,7 +72,7 @@ class OidcSettings(BaseSettings):
         return names
 
     @model_validator(mode="after")
-    def _whole(self) -> OidcSettings:
+    def _complete(self) -> OidcSettings:
         """Refuse an issuer whose tokens cannot be checked."""
         if self.issuer is not None and not self.audience:
             raise ValueError("given with LOA_OIDC_AUDIENCE: tokens for other services are not for this one")
@@ -163,7 +163,7 @@ def _claim(claims: Json, path: str) -> Any:
     """Return a claim by its name, or by the names on the way to it; None if there is none."""
     if path in claims:
         return claims[path]
-    found: Any = claims
+    value: Any = claims
     for part in path.split("."):
-        found = found.get(part) if isinstance(found, dict) else None
-    return found
+        value = value.get(part) if isinstance(value, dict) else None
+    return value

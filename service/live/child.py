@@ -81,7 +81,7 @@ class _Stop:
     """Stops the work on one order in the main thread, and none that came after it."""
 
     def __init__(self) -> None:
-        self._begun, self._at_work, self._asked = 0, False, 0
+        self._begun, self._at_work, self._requested = 0, False, 0
 
     def stoppable(self, order: Frame) -> Frame:
         """Do the work on the next order."""
@@ -89,7 +89,7 @@ class _Stop:
         answer = Frame("stopped")
         try:
             self._at_work = True
-            if self._asked != self._begun:
+            if self._requested != self._begun:
                 answer = answer_of(LiveOrder.from_frame(order))
             self._at_work = False
         except _Stopped:
@@ -98,12 +98,12 @@ class _Stop:
 
     def ask_for(self, number: int) -> None:
         """Let the main thread stop the work on an order; from any thread."""
-        self._asked = number
+        self._requested = number
         _thread.interrupt_main()
 
     def heed(self, _signal: int, _frame: object) -> None:
         """Stop what is at work, if it is that order."""
-        if self._at_work and self._asked == self._begun:
+        if self._at_work and self._requested == self._begun:
             self._at_work = False
             raise _Stopped
 

@@ -16,7 +16,7 @@ from host.children.child import Child
 from host.children.frames import Frame
 from host.children.launcher import start_child
 from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
-from service.folders import own_folder, remove_left
+from service.folders import locked_folder, remove_left
 from service.live.answer import propagated
 from service.live.child import Share
 from service.live.question_pool import QuestionPool
@@ -31,7 +31,7 @@ _LOOK_S = 0.1
 logger = structlog.get_logger(__name__)
 WORKERS = 3
 """Processes at most: one for submissions that wait for a predicted cost, two for all others."""
-LIMITS = Limits(held=64, in_all=512)
+LIMITS = Limits(outstanding=64, in_all=512)
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class _LiveProcess:
     def __init__(self, log: Path, memory_limit_mb: int, home: Path) -> None:
         self._orders, self.has_answered = 0, False
         self._folder = ExitStack()
-        drafts = self._folder.enter_context(own_folder(home))
+        drafts = self._folder.enter_context(locked_folder(home))
         try:
             with log.open("ab") as stream:
                 self._child = Child(_LAUNCH, stream.fileno(), Path.cwd())
@@ -131,7 +131,7 @@ class LiveWorker:
     def answer(self, question: Question) -> bytes:
         """Return the JSON answer; see `QuestionWorker`."""
         try:
-            answer = self._asked(question)
+            answer = self._exchange(question)
         except _WorkerGone as gone:
             logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
             self._end_process()
@@ -178,7 +178,7 @@ class LiveWorker:
             return LiveUnavailable(f"{late}; repeat the request to continue the computation of a compliance.")
         return LiveUnavailable("The live worker ended. Repeat the request.")
 
-    def _asked(self, question: Question) -> Frame:
+    def _exchange(self, question: Question) -> Frame:
         """Return the answer; a process that ended after its last one is replaced once."""
         process = self._ready()
         try:

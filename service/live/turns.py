@@ -18,7 +18,7 @@ from lineofaction.gearbox.problems import QueueFull, Superseded, TooManyHeld
 from service.access.capacity import NOBODY
 from service.live.order import LiveOrder
 
-_AGAIN_S = 1
+_RETRY_S = 1
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Limits:
 
     answered: int = 1
     """Of a key, at the same time."""
-    held: int = 2
+    outstanding: int = 2
     """Of a key, answered and waiting."""
     submissions: int = 8
     """Of a key, answered and waiting, for which submissions wait."""
@@ -149,14 +149,14 @@ class Turns:
         return Counter(map(_line_of, self._answered.values()))
 
     def _refuse_beyond(self, line: _Line) -> None:
-        maximum = self._limits.submissions if line.submits else self._limits.held
-        held = self._busy()[line] + len(self._lines.get(line, ()))
-        if line.key != NOBODY and held >= maximum:
+        maximum = self._limits.submissions if line.submits else self._limits.outstanding
+        count = self._busy()[line] + len(self._lines.get(line, ()))
+        if line.key != NOBODY and count >= maximum:
             text = f"Key {line.key!r} has {maximum} {self._what} in work and waiting. Try again soon."
-            raise TooManyHeld.after(_AGAIN_S, text)
+            raise TooManyHeld.after(_RETRY_S, text)
         if sum(map(len, self._lines.values())) + len(self._answered) >= self._limits.in_all:
             text = f"{self._limits.in_all} {self._what} are in work and waiting. Try again soon."
-            raise QueueFull.after(_AGAIN_S, text)
+            raise QueueFull.after(_RETRY_S, text)
 
     def _make_obsolete(self, newer: Question) -> None:
         for question in self._answered.values():

@@ -17,7 +17,7 @@ from lineofaction.gearbox.schemas.live import LiveInput
 
 Json = dict[str, Any]
 
-KEPT_PAIRS = 4
+MAX_PAIRS = 4
 
 _cases: OrderedDict[str, CondensedCase] = OrderedDict()
 
@@ -45,6 +45,6 @@ def _condensed(key: str, file: Path, cache: Path, *, compute: bool) -> Condensed
     if key not in _cases:
         _cases[key] = condensed_of(file, cache, compute=compute)
     _cases.move_to_end(key)
-    while len(_cases) > KEPT_PAIRS:
+    while len(_cases) > MAX_PAIRS:
         _cases.popitem(last=False)
     return _cases[key]

@@ -50,8 +50,8 @@ class ManagementServer:
 
     def __init__(self, host: str, port: int, vitals: Vitals, metrics: Callable[[], bytes]) -> None:
         paths = {
-            "/health": lambda: _told(vitals.fault_of_health(), "ok"),
-            "/ready": lambda: _told(vitals.fault_of_readiness(), "ready"),
+            "/health": lambda: _status_answer(vitals.fault_of_health(), "ok"),
+            "/ready": lambda: _status_answer(vitals.fault_of_readiness(), "ready"),
             "/metrics": lambda: _Answer(HTTPStatus.OK, METRICS_TYPE, metrics()),
         }
         try:
@@ -141,11 +141,11 @@ class _Handler(BaseHTTPRequestHandler):
         """Log nothing: probes come every few seconds."""
 
 
-def _told(fault: str, well: str) -> _Answer:
+def _status_answer(fault: str, well: str) -> _Answer:
     if fault:
         return _document(HTTPStatus.SERVICE_UNAVAILABLE, {"status": f"not {well}", "detail": fault})
     return _document(HTTPStatus.OK, {"status": well})
 
 
-def _document(status: HTTPStatus, facts: dict[str, str]) -> _Answer:
-    return _Answer(status, "application/json", json.dumps(facts).encode())
+def _document(status: HTTPStatus, fields: dict[str, str]) -> _Answer:
+    return _Answer(status, "application/json", json.dumps(fields).encode())

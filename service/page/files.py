@@ -49,7 +49,7 @@ class PageFile:
 @lru_cache(maxsize=256)  # more than there are, which a page requests one after the other
 def page_file(name: str) -> PageFile | None:
     """Return the file of this name, None if the page has none."""
-    path = _own().get(name)
+    path = _packaged().get(name)
     if name in _FROM_PACKAGES:  # of a package that need not be imported for it
         package, folder = _FROM_PACKAGES[name]
         spec = importlib.util.find_spec(package)
@@ -59,6 +59,6 @@ def page_file(name: str) -> PageFile | None:
 
 
 @lru_cache(maxsize=1)
-def _own() -> dict[str, Path]:
+def _packaged() -> dict[str, Path]:
     """Return the files of this package by name: only those can be requested."""
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}

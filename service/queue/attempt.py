@@ -22,7 +22,7 @@ from service.queue.terms import LOWER_COST
 from service.queue.worker_figures import WorkerFigures
 from service.settings import Settings
 from service.store.results import ResultStore
-from service.tracing import Fact, begun_span, end_span, trace_facts, traceparent_of
+from service.tracing import Fact, begun_span, end_span, trace_fields, traceparent_of
 from service.worker.order import WorkOrder
 from service.worker.process import Process
 from service.worker.usage import Usage
@@ -42,15 +42,15 @@ class _AttemptTrace:
     """Spans that end as the attempt goes on; no stage begins before it was `launched`, s since 1970."""
 
     def __init__(self, claim: Claim, named: dict[str, Any], launched: float) -> None:
-        facts: dict[str, Fact] = {
+        attributes: dict[str, Fact] = {
             "loa.computation": claim.id,
             "loa.process": claim.process,
             "loa.attempt": claim.attempts,
         }
         begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
-        end_span(begun_span("queue", claim.traceparent, min(begun, launched), facts), launched)
-        facts |= {f"process.{name}": value for name, value in named.items()}
-        self._attempt = begun_span(f"attempt {claim.process}", claim.traceparent, launched, facts)
+        end_span(begun_span("queue", claim.traceparent, min(begun, launched), attributes), launched)
+        attributes |= {f"process.{name}": value for name, value in named.items()}
+        self._attempt = begun_span(f"attempt {claim.process}", claim.traceparent, launched, attributes)
         self._name, self._cpu_s, self._left = "", 0.0, _MAX_STAGES
         self._stage = self._begun(_START, launched, 0.0)
 
@@ -93,18 +93,18 @@ class Attempt:
         """Count and log how the worker ended and, if it has been reaped, what it took."""
         self.figures.ended(self.claim.process, how, self.worker)
         for reason in self.worker.warnings:
-            logger.warning("worker warns", **self.worker.facts, reason=reason)
+            logger.warning("worker warns", **self.worker.log_fields, reason=reason)
         self.trace.end(how, self.worker.usage)
         usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
             computation=self.claim.id,
             process=self.claim.process,
-            **self.worker.facts,
+            **self.worker.log_fields,
             attempt=self.claim.attempts,
             outcome=how,
             **usage,
-            **trace_facts(self.claim.traceparent),
+            **trace_fields(self.claim.traceparent),
         )
 
     def too_costly(self, claims: Claims) -> str | None:
@@ -141,8 +141,8 @@ def begun(
     )
     worker = crew.begin(order, f"{claim.id}-{claim.attempts}-{claim.lost_runs}", log)
     figures.started(claim.process)
-    facts = {"computation": claim.id, "process": claim.process, "key": claim.key}
-    facts |= trace_facts(claim.traceparent)
-    logger.info("worker started", **facts, **worker.facts, attempt=claim.attempts)
-    trace = _AttemptTrace(claim, worker.facts, launched)
+    fields = {"computation": claim.id, "process": claim.process, "key": claim.key}
+    fields |= trace_fields(claim.traceparent)
+    logger.info("worker started", **fields, **worker.log_fields, attempt=claim.attempts)
+    trace = _AttemptTrace(claim, worker.log_fields, launched)
     return Attempt(claim, worker, workspace, log, figures, trace, PacedFraction(process.stages))

@@ -51,10 +51,10 @@ NOBODY = Family({}, 1.0)
 
 def batch_steps(connection: Connection) -> list[Update]:
     """Return the changes of those batches that go on and whose jobs have moved."""
-    facts = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
-    held = (computations.c.state == "running") & of_batch
+    columns = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
+    running = (computations.c.state == "running") & of_batch
     rows = connection.execute(
-        select(jobs.c.id, *facts).select_from(jobs.join(computations)).where(held)
+        select(jobs.c.id, *columns).select_from(jobs.join(computations)).where(running)
     ).all()
     families = _families(connection, [row.id for row in rows]) if rows else {}
     steps = []
@@ -62,7 +62,7 @@ def batch_steps(connection: Connection) -> list[Update]:
         values = families.get(row.id, NOBODY).values()
         values["fraction"] = max(values["fraction"], row.fraction)
         if "state" in values or (values["message"], values["fraction"]) != (row.message, row.fraction):
-            mine = (computations.c.id == row.row) & held
+            mine = (computations.c.id == row.row) & running
             steps.append(update(computations).where(mine).values(updated=now(), **values))
     return steps
 
@@ -73,12 +73,12 @@ def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
     done = case((state.in_(ENDED), 1.0), else_=computations.c.fraction)
     sums = (func.count(), func.sum(jobs.c.weight), func.sum(jobs.c.weight * done))
     statement = select(jobs.c.parent, state, *sums).select_from(jobs.join(computations))
-    found: dict[str, list[Any]] = {}
+    by_parent: dict[str, list[Any]] = {}
     grouped = statement.where(jobs.c.parent.in_(parents)).group_by(jobs.c.parent, state)
     for row in connection.execute(grouped).all():
-        found.setdefault(row[0], []).append(row)
+        by_parent.setdefault(row[0], []).append(row)
     families = {}
-    for parent, rows in found.items():
+    for parent, rows in by_parent.items():
         weight = sum(row[3] for row in rows)
         fraction = sum(row[4] for row in rows) / weight if weight else 1.0
         families[parent] = Family({row[1]: row[2] for row in rows}, fraction)
@@ -92,8 +92,8 @@ def end_computations(connection: Connection, which: ColumnElement[bool], values:
     """
     instant = now()
     ended = update(computations).where(which).values(finished=instant, updated=instant, **values)
-    facts = [computations.c[name] for name in ("process", "state", "started", "finished", "attempts")]
-    for row in connection.execute(ended.returning(*facts)).all():
+    columns = [computations.c[name] for name in ("process", "state", "started", "finished", "attempts")]
+    for row in connection.execute(ended.returning(*columns)).all():
         if row.started is not None:
             _count(connection, row)
 

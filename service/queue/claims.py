@@ -70,9 +70,9 @@ class Reached:
 
     def columns(self) -> dict[str, Any]:
         """Return it as the job table has it."""
-        whole = {} if self.fraction is None else {"fraction": self.fraction}
+        fraction = {} if self.fraction is None else {"fraction": self.fraction}
         at = {"stage": self.stage, "stage_fraction": self.stage_fraction}
-        return at | whole | {"message": f"Runs: {self.stage}."}
+        return at | fraction | {"message": f"Runs: {self.stage}."}
 
 
 class Claims:
@@ -82,17 +82,17 @@ class Claims:
         self.engine = self._engine = engine
         self.program = program
 
-    def claim(self, *, beside: bool = False) -> Claim | None:
+    def claim(self, *, alongside: bool = False) -> Claim | None:
         """Take the oldest waiting computation of the highest priority; None: none is to run now.
 
         What another version entered is returned as it waits, for `service.queue.renewal`. A suspect is not
-        taken `beside` others, and nothing is taken before it.
+        taken `alongside` other computations, and nothing is taken before it.
         """
         while (row := self._first()) is not None:
             claim = _claimed(row)
             if row.program != self.program:
                 return claim
-            if beside and claim.suspect:
+            if alongside and claim.suspect:
                 return None
             if self._begin(row):
                 return replace(claim, attempts=row.attempts + 1, waited_from=row.updated)
@@ -121,7 +121,7 @@ class Claims:
         self._change([(claim, {"lost_runs": claim.lost_runs + 1}) for claim in claims])
 
     @retried
-    def held(self, claims: Collection[Claim]) -> set[str]:
+    def still_running(self, claims: Collection[Claim]) -> set[str]:
         """Return the computations that still run: that were not dismissed."""
         if not claims:
             return set()
@@ -150,8 +150,8 @@ class Claims:
         self, claim: Claim, message: str, faults: Sequence[dict[str, Any]] = (), reference: str = ""
     ) -> None:
         """End without a result."""
-        facts = {"faults": json.dumps(list(faults)), "reference": reference}
-        self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
+        details = {"faults": json.dumps(list(faults)), "reference": reference}
+        self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | details)
 
     def put_back(self, claim: Claim, message: str, *, counted: bool, lost_runs: int | None = None) -> None:
         """Let it wait again; an attempt that ended through no fault of its own is not counted.
@@ -221,5 +221,5 @@ def _waited_long_enough() -> ColumnElement[bool]:
 
 def _claimed(row: Row[Any]) -> Claim:
     inputs, (project, key) = json.loads(row.inputs), at_address(row.key)
-    facts = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
-    return Claim(*facts, project=project, program=row.program, lost_runs=row.lost_runs)
+    fields = (row.id, row.process, key, inputs, row.attempts, row.max_cost_s, row.traceparent)
+    return Claim(*fields, project=project, program=row.program, lost_runs=row.lost_runs)

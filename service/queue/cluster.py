@@ -56,7 +56,7 @@ class Task:
         self._outcome: Outcome | None = None
 
     @property
-    def facts(self) -> dict[str, Any]:
+    def log_fields(self) -> dict[str, Any]:
         """What names it in the log."""
         return {"task": self.name}
 
@@ -172,8 +172,8 @@ class Cluster:
         start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
         fault = "" if threads else "that of a scheduler with workers"
         fresh = sorted(threads.keys() - self._known)
-        found = await client.run(program, workers=fresh, on_error="return") if fresh else {}
-        for worker, versions in found.items():
+        answers = await client.run(program, workers=fresh, on_error="return") if fresh else {}
+        for worker, versions in answers.items():
             if versions == program():
                 self._known.add(worker)
             else:
@@ -181,9 +181,9 @@ class Cluster:
         self.maximum = 0 if fault else sum(threads.values())
         return fault, f"Start them: {start}, from an installation of this version with its extras."
 
-    def start(self, heard: Callable[[], None]) -> None:
-        """Connect, and stay connected; `heard` is called when a task ends, or when workers come."""
-        self._heard, self._stopping = heard, False
+    def start(self, notify: Callable[[], None]) -> None:
+        """Connect, and stay connected; `notify` is called when a task ends, or when workers come."""
+        self._notify, self._stopping = notify, False
         self._thread = threading.Thread(target=lambda: asyncio.run(self._main()), name="dask", daemon=True)
         self._thread.start()
 
@@ -281,7 +281,7 @@ class Cluster:
         except OSError as error:
             logger.exception("files of a task", task=task.name)
             task.end(Outcome(failure=no_space(error) or "unexpected", unexpected=not no_space(error)))
-        self._heard()
+        self._notify()
 
     async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | Outcome | None:
         """Submit a task, or join the one there is; return what was done, why nothing was, None: try anew."""
@@ -322,4 +322,4 @@ class Cluster:
                 "cluster away" if fault else "cluster back", reason=fault
             )
             self._away = fault
-            self._heard()
+            self._notify()

@@ -32,7 +32,7 @@ class Children:
         log = settings.data_directory / "log" / "warm.log"
         self._launcher = Launcher(WORK, modules, log, logger.warning)
 
-    def start(self, _heard: Callable[[], None]) -> None:
+    def start(self, _notify: Callable[[], None]) -> None:
         """Do nothing: the first child starts the warm process."""
 
     def begin(self, order: WorkOrder, _name: str, log: Path) -> Worker:

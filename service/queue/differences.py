@@ -37,9 +37,9 @@ def differences_column(differences: Differences) -> str:
 
 def differences_of(column: str) -> Differences:
     """Return what `differences_column` wrote; nothing of jobs from before differences were kept."""
-    facts = json.loads(column or "{}")
+    content = json.loads(column or "{}")
     return Differences.model_validate(
-        {"first": [], "number": 0, **facts, "since": facts.get("since") or None}
+        {"first": [], "number": 0, **content, "since": content.get("since") or None}
     )
 
 

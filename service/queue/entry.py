@@ -120,8 +120,8 @@ class Entry:
                 state = {"state": "successful", "message": "Taken from the store."}
                 state |= {"fraction": 1.0, "started": now(), "finished": now()}
             state |= {"priority": terms.priority, "max_cost_s": terms.max_cost_s}
-            given = {"traceparent": TRACEPARENT.get(), **state}
-            return _entered(connection, process, work.key, work.inputs, **given)
+            values = {"traceparent": TRACEPARENT.get(), **state}
+            return _entered(connection, process, work.key, work.inputs, **values)
         widen_terms(connection, shared, terms.priority, terms.max_cost_s)
         live = mine & table.state.in_(LIVE)
         connection.execute(update(computations).where(live).values(program=solver_version()))
@@ -167,18 +167,18 @@ class Entry:
         """Enter the batch and its jobs; the first of equal ones bears their cost."""
         common = {"created": now(), "caller": self._caller.name, "project": self._project, **USUAL.columns()}
         begun = {"state": "running", "stage": "jobs", "started": now()}
-        whole = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)
-        batch = {"id": identifier, "computation_id": whole, "parent": None, "place": 0, "weight": 0.0}
+        computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)
+        batch = {"id": identifier, "computation_id": computation, "parent": None, "place": 0, "weight": 0.0}
         rows = [common | batch | {"children": len(cases)} | self._terms.label.columns()]
         names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()
-        for place, (case, apart) in enumerate(zip(cases, _differences(cases, names), strict=True)):
+        for index, (case, differences) in enumerate(zip(cases, _differences(cases, names), strict=True)):
             if case.key not in counted:
                 shared[case.key] = self._joined(connection, process, case, shared[case.key])
             weight = 0.0 if case.stored or case.key in counted else case.cost
             counted.add(case.key)
-            row: dict[str, Any] = {"id": names[place], "computation_id": shared[case.key]}
-            row |= {"parent": identifier, "place": place, "children": 0}
-            row |= {"weight": weight, "differences": differences_column(apart)}
+            row: dict[str, Any] = {"id": names[index], "computation_id": shared[case.key]}
+            row |= {"parent": identifier, "place": index, "children": 0}
+            row |= {"weight": weight, "differences": differences_column(differences)}
             rows.append(common | row)
         connection.execute(insert(jobs), rows)
 

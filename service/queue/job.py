@@ -36,11 +36,11 @@ _OF_JOB = (
 @lru_cache(maxsize=1024)
 def subject_of(inputs: str) -> str:
     """Return words for normalized inputs, JSON: the pair with its highest load, the scene, or nothing."""
-    facts = json.loads(inputs)
-    if facts.get("scene") is not None:
-        meshes = len(facts["scene"]["meshes"])
+    document = json.loads(inputs)
+    if document.get("scene") is not None:
+        meshes = len(document["scene"]["meshes"])
         return f"scene of {meshes} mesh{'' if meshes == 1 else 'es'}"
-    return "" if facts.get("case") is None else _pair(facts["case"])
+    return "" if document.get("case") is None else _pair(document["case"])
 
 
 def _pair(case: Json) -> str:
@@ -116,14 +116,14 @@ def job_state() -> ColumnElement[Any]:
 
 def jobs_of_all_projects() -> Any:
     """Select jobs with their computations; callers find those of their project alone."""
-    own = (results.c.key == computations.c.key) & (results.c.headline != "")
+    of_computation = (results.c.key == computations.c.key) & (results.c.headline != "")
     return select(
         jobs.c.id.label("job_id"),
         jobs.c.created.label("job_created"),
         *(jobs.c[name] for name in _OF_JOB),
         computations,
         results.c.headline,
-    ).select_from(jobs.join(computations).outerjoin(results, own))
+    ).select_from(jobs.join(computations).outerjoin(results, of_computation))
 
 
 def job_of(row: Any) -> Job:

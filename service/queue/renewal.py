@@ -66,7 +66,7 @@ class Renewal:
         fewer. Raises what keeps both from being used, as the caller stated them.
         """
         refusal: ServiceError | None = None
-        for inputs in (claim.inputs, *self._stated(claim)):
+        for inputs in (claim.inputs, *self._specified_inputs(claim)):
             try:
                 store = self._store.within(claim.project)
                 return process.prepare(validated(process.inputs, inputs), store)
@@ -75,7 +75,7 @@ class Renewal:
         assert refusal is not None
         raise refusal
 
-    def _stated(self, claim: Claim) -> Iterator[Json]:
+    def _specified_inputs(self, claim: Claim) -> Iterator[Json]:
         """Yield the inputs as callers stated them, where they were kept."""
         for text in self._texts(claim):
             yield json.loads(text)
@@ -84,8 +84,8 @@ class Renewal:
     def _texts(self, claim: Claim) -> list[str]:
         mine = (jobs.c.computation_id == claim.id, jobs.c.stated != "", jobs.c.dismissed.is_(None))
         with writing(self._engine) as connection:
-            found = connection.execute(select(jobs.c.stated).where(*mine).order_by(jobs.c.created).limit(1))
-            return list(found.scalars())
+            rows = connection.execute(select(jobs.c.stated).where(*mine).order_by(jobs.c.created).limit(1))
+            return list(rows.scalars())
 
     @retried
     def _take(self, former: Claim, claim: Claim, *, stored: bool) -> None:
@@ -108,8 +108,8 @@ class Renewal:
             else:
                 widen_terms(connection, other, row.priority, row.max_cost_s)
                 _join(connection, claim.id, other)
-        facts = {"computation": claim.id, "former": former.key, "key": claim.key, "program": former.program}
-        logger.info("work renewed", **facts)
+        fields = {"computation": claim.id, "former": former.key, "key": claim.key, "program": former.program}
+        logger.info("work renewed", **fields)
 
     @retried
     def _end(self, claim: Claim, text: str, faults: str = "[]") -> None:

@@ -99,9 +99,9 @@ class Retention:
                 if not dry_run:
                     shutil.rmtree(path, ignore_errors=True)
                 yield Leftover("workspace", f"work/{path.name}", size)
-        kept = live | self._states("failed")
+        retained = live | self._states("failed")
         for path in self._old("log"):
-            if path.suffix == ".log" and len(path.stem) == _IDENTIFIER and path.stem not in kept:
+            if path.suffix == ".log" and len(path.stem) == _IDENTIFIER and path.stem not in retained:
                 size = path.stat().st_size
                 if not dry_run:
                     path.unlink(missing_ok=True)

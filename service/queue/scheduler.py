@@ -164,7 +164,7 @@ class Scheduler:
         for run in running:
             self._kill(run, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
         with contextlib.suppress(ServiceError):
-            self._own_table()
+            self._confirm_ownership()
             self._settle_all()
             for run in running:
                 self._claims.put_back(run.claim, "Waits: the service was stopped.", counted=False)
@@ -173,7 +173,7 @@ class Scheduler:
         """Do one round; what needs no database comes first."""
         self._listen_to_all()
         self._enforce_deadline()
-        self._own_table()
+        self._confirm_ownership()
         self._put_back_strays()
         self._settle_all()
         self._note_runs()
@@ -187,10 +187,10 @@ class Scheduler:
 
     def _next(self) -> Claim | None:
         """Claim whose turn it is; what another version entered is renewed before, or ends."""
-        beside = bool(self._running) and not self._crew.keeps
-        if beside and any(running.claim.suspect for running in self._running.values()):
+        alongside = bool(self._running) and not self._crew.keeps
+        if alongside and any(running.claim.suspect for running in self._running.values()):
             return None
-        while (claim := self._claims.claim(beside=beside)) is not None:
+        while (claim := self._claims.claim(alongside=alongside)) is not None:
             if claim.program == self._claims.program:
                 return claim
             self._renewal.renew(claim)
@@ -285,7 +285,7 @@ class Scheduler:
             if workspace.name not in waiting:
                 shutil.rmtree(workspace, ignore_errors=True)
 
-    def _own_table(self) -> None:
+    def _confirm_ownership(self) -> None:
         """See to it that the table is ours: what was lost with its connection is acquired again."""
         if not self._owner.lost():
             return
@@ -346,8 +346,8 @@ class Scheduler:
 
     def _enforce_dismissals(self) -> None:
         """End workers of computations that nobody wants."""
-        held = self._claims.held([running.claim for running in self._running.values()])
+        live = self._claims.still_running([running.claim for running in self._running.values()])
         for running in list(self._running.values()):
-            if running.claim.id not in held:
+            if running.claim.id not in live:
                 self._kill(running, "not wanted")
                 shutil.rmtree(running.workspace, ignore_errors=True)

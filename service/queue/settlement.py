@@ -56,7 +56,7 @@ class Settlement:
         if outcome.lost:
             return self.free_or_fail(claim, outcome.failure, claim.lost_runs + 1)
         if outcome.died:
-            return self.again_or_fail(claim, outcome.failure)
+            return self.retry_or_fail(claim, outcome.failure)
         if outcome.unexpected:
             self.fail_by_log(claim, "An unexpected failure occurred.", log=str(attempt.log))
         elif outcome.failure:
@@ -78,14 +78,14 @@ class Settlement:
         else:
             self.claims.succeed(claim)
 
-    def fail_by_log(self, claim: Claim, text: str, **facts: Any) -> None:
+    def fail_by_log(self, claim: Claim, text: str, **fields: Any) -> None:
         """End work without a result; the details are in the log, under a reference that the caller gets."""
         reference = uuid.uuid4().hex[:12]
-        logger.error("worker failed", computation=claim.id, reference=reference, reason=text, **facts)
-        told = f"{text} The log has the details under {reference}."
-        self.claims.fail(claim, told, reference=reference)
+        logger.error("worker failed", computation=claim.id, reference=reference, reason=text, **fields)
+        message = f"{text} The log has the details under {reference}."
+        self.claims.fail(claim, message, reference=reference)
 
-    def again_or_fail(self, claim: Claim, reason: str) -> bool:
+    def retry_or_fail(self, claim: Claim, reason: str) -> bool:
         """Give work that died another attempt, as long as there are any; return whether there is one."""
         maximum = self.most_attempts
         if claim.attempts < maximum:

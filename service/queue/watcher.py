@@ -24,7 +24,7 @@ NET_S = 5.0
 _RETRY_S = 1.0
 
 T = TypeVar("T")
-Told = Callable[[T | None], None]
+Follower = Callable[[T | None], None]
 logger = structlog.get_logger(__name__)
 
 
@@ -33,7 +33,7 @@ class _Followed(Generic[T]):
     """A job, when it changed last as far as is known, and who is told."""
 
     updated: str
-    followers: list[Told[T]] = field(default_factory=list)
+    followers: list[Follower[T]] = field(default_factory=list)
 
 
 class Watcher(Generic[T]):
@@ -50,15 +50,15 @@ class Watcher(Generic[T]):
         self._new = False
 
     @contextmanager
-    def following(self, job: Job, told: Told[T]) -> Iterator[None]:
-        """Call `told` with each state after that of `job`, and with None when there will be no more.
+    def following(self, job: Job, follower: Follower[T]) -> Iterator[None]:
+        """Call `follower` with each state after that of `job`, and with None when there will be no more.
 
         It is called in the watcher's thread. States that follow each other within `REST_S` may be one.
         """
         with self._lock:
             followed = self._jobs.setdefault(job.id, _Followed(job.updated))
             followed.updated = min(followed.updated, job.updated)  # someone may be told twice, nobody never
-            followed.followers.append(told)
+            followed.followers.append(follower)
             self._new = True
             if self._thread is None:
                 self._stopped.clear()
@@ -68,7 +68,7 @@ class Watcher(Generic[T]):
             yield
         finally:
             with self._lock:
-                followed.followers.remove(told)
+                followed.followers.remove(follower)
                 if not followed.followers and self._jobs.get(job.id) is followed:
                     del self._jobs[job.id]
 
@@ -90,7 +90,7 @@ class Watcher(Generic[T]):
                     self._look()  # what was committed before anything could be heard
                     looked = time.monotonic()
                     while self._jobs and not self._stopped.is_set():
-                        if commits.heard() or self._new or time.monotonic() - looked > NET_S:
+                        if commits.received() or self._new or time.monotonic() - looked > NET_S:
                             self._look()
                             looked = time.monotonic()
                             self._stopped.wait(REST_S)
@@ -117,20 +117,20 @@ class Watcher(Generic[T]):
             updated: dict[str, str] = {row[0]: row[1] for row in connection.execute(statement)}
         changed = [identifier for identifier in updated if updated[identifier] != known[identifier]]
         for job in self._read(changed):
-            shown = self._show(job)
+            state = self._show(job)
             with self._lock:
                 if job.id in self._jobs:
                     self._jobs[job.id].updated = job.updated
-                self._tell([job.id], shown)
+                self._tell([job.id], state)
         with self._lock:
             self._tell(known.keys() - updated.keys(), None)
 
-    def _tell(self, identifiers: Collection[str], shown: T | None) -> None:
+    def _tell(self, identifiers: Collection[str], state: T | None) -> None:
         """Tell the followers of jobs; the lock is held."""
         for identifier in identifiers:
             if identifier in self._jobs:
-                for told in self._jobs[identifier].followers:
-                    told(shown)
+                for follower in self._jobs[identifier].followers:
+                    follower(state)
 
     def _read(self, identifiers: Collection[str]) -> list[Job]:
         if not identifiers:

@@ -81,9 +81,9 @@ def states_of(connection: Connection) -> dict[str, int]:
 
 
 def _queue(connection: Connection) -> dict[tuple[str, str], int]:
-    facts = (computations.c.state, computations.c.process)
+    columns = (computations.c.state, computations.c.process)
     live = computations.c.state.in_(("accepted", "running")) & ~of_batch
-    rows = connection.execute(select(*facts, func.count()).where(live).group_by(*facts))
+    rows = connection.execute(select(*columns, func.count()).where(live).group_by(*columns))
     return {(row[0], row[1]): row[2] for row in rows}
 
 

@@ -20,7 +20,7 @@ from host.children.frames import Frame
 from host.children.launcher import ChildProcess, Ends, Launcher
 from host.children.watch import Watch
 from lineofaction.gearbox.problems import BadInput, LiveUnavailable, ServiceError, Unexpected
-from service.folders import own_folder, remove_left
+from service.folders import locked_folder, remove_left
 from service.live.answer import propagated
 from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
@@ -44,7 +44,7 @@ _PATIENCE_S = 2.0
 
 logger = structlog.get_logger(__name__)
 AT_ONCE = 4
-LIMITS = Limits(held=2, in_all=20)
+LIMITS = Limits(outstanding=2, in_all=20)
 
 
 class _Children:
@@ -66,7 +66,7 @@ class _Children:
         Raises `ServiceError` as the child found it; `BadInput`: a file ends its reader, or takes more than a
         reader may; `LiveUnavailable`: what ended the reader is no file.
         """
-        with own_folder(self._home) as folder:
+        with locked_folder(self._home) as folder:
             child = self._started(folder)
             try:
                 child.send(order.frame())  # one that died before it has read the order shows by its answer

@@ -8,7 +8,7 @@ from typing import Any
 from lineofaction.gearbox.problems import BadInput
 
 _TEXTS = ("toml", "csv", "rexs_base64")
-_SHOWN = 20
+_MAX_LENGTH = 20
 _REMEDY = (
     "Export it again, or heal it in the program that wrote it; if it is large, leave out what is not needed."
 )
@@ -31,7 +31,7 @@ def _sources(value: object, path: str = "") -> Iterator[tuple[str, str]]:
         for key, part in value.items():
             inside = f"{path}.{key}" if path else str(key)
             if key in _TEXTS and isinstance(part, str):
-                yield inside, part[:_SHOWN]
+                yield inside, part[:_MAX_LENGTH]
             else:
                 yield from _sources(part, inside)
     elif isinstance(value, list):

@@ -18,5 +18,5 @@ def case_as_made(inputs: Json, _folder: Path, _announce: Announce) -> Json:
         drawn = drawn_case(case, inputs["tolerance_class"], inputs["seed"])
         return {"case": case_as_filed(drawn), "left_out": []}
     of = Inspected(sheet["gear"], sheet["loaded"], sheet["cutoff_mm"])
-    made, found = measured_case(case, sheet["csv"], "csv", of)
-    return {"case": case_as_filed(made), "left_out": found.left_out}
+    made, measured = measured_case(case, sheet["csv"], "csv", of)
+    return {"case": case_as_filed(made), "left_out": measured.left_out}

@@ -54,12 +54,12 @@ def _written(file: FileContentInput, folder: Path, field: str, maximum: int) -> 
         content = file.unpacked(maximum)
     except ValueError as error:
         raise BadInput.of(f"{field}.content", file.name, str(error)) from None
-    place = folder / base_name(file.name)
+    path = folder / base_name(file.name)
     try:
-        place.write_bytes(content)
+        path.write_bytes(content)
     except (OSError, ValueError):
         raise BadInput.of(f"{field}.name", file.name, "a name that a file can have") from None
-    return place
+    return path
 
 
 def case_of_toml(inputs: Json, folder: Path, announce: Announce) -> Json:

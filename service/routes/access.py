@@ -11,7 +11,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from lineofaction.gearbox.problems import KeyExpired, NotForUs, RateExceeded, ServiceError
-from service.access.capacity import NOBODY, Held, RateLimits
+from service.access.capacity import NOBODY, RateLimits, Usage
 from service.access.holder import Holder
 from service.access.identities import Identities
 from service.access.quotas import Quota
@@ -86,7 +86,7 @@ class Access:
 
     def __init__(self, app: ASGIApp, identities: Identities, *, always: bool, admission: Admission) -> None:
         self._app, self._identities, self._always = app, identities, always
-        self._admission, self._rates, self._streams = admission, RateLimits(), Held("event streams")
+        self._admission, self._rates, self._streams = admission, RateLimits(), Usage("event streams")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request of a known caller."""
@@ -126,9 +126,9 @@ class Access:
         if wait_s:
             text = f"Key {key.name!r} has {key.requests_per_minute} requests per minute."
             raise RateExceeded.after(wait_s, text)
-        with ExitStack() as held:
-            received = held.enter_context(self._admission.admitted(scope, receive, key.name, maximum))
-            scope["state"] |= {"caller": key, "held": held, "streams": self._streams}
+        with ExitStack() as stack:
+            received = stack.enter_context(self._admission.admitted(scope, receive, key.name, maximum))
+            scope["state"] |= {"caller": key, "exit_stack": stack, "streams": self._streams}
             await self._app(scope, received, for_one_caller(visit.send))
 
     def _quotas(self, key: Holder, maximum: int) -> list[Quota]:

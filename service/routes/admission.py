@@ -7,7 +7,7 @@ from contextlib import ExitStack, contextmanager
 
 from starlette.types import Message, Receive, Scope
 
-from service.access.capacity import Capacity, Held
+from service.access.capacity import Capacity, Usage
 from service.access.quotas import Quota
 
 
@@ -21,8 +21,8 @@ class Admission:
 
     def __init__(self, capacity: Capacity) -> None:
         self.share = capacity.share
-        self._answered = Held("requests under way", capacity.requests)
-        self._awaited = Held("bodies under way", capacity.requests)
+        self._answered = Usage("requests under way", capacity.requests)
+        self._awaited = Usage("bodies under way", capacity.requests)
 
     def quota(self, name: str, maximum: int) -> Quota:
         """Return what a caller has left of the requests that it may have answered at once."""
@@ -41,7 +41,7 @@ class Admission:
             Of the request.
         name : str
             Whose it is.
-        most : int or None
+        maximum : int or None
             Requests of this caller, and bodies; None: as many as of all.
 
         Yields
@@ -52,22 +52,22 @@ class Admission:
         self._answered.refuse_beyond(name, maximum)
         headers = dict(scope["headers"])  # whether a body follows the head: RFC 9112, section 6.3
         follows = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
-        with ExitStack() as place:
+        with ExitStack() as stack:
             if not follows:
-                place.enter_context(self._answered.one(name))
+                stack.enter_context(self._answered.one(name))
                 yield receive
                 return
             self._awaited.refuse_beyond(name, maximum)
-            place.enter_context(self._awaited.one(name))
-            whole = False
+            stack.enter_context(self._awaited.one(name))
+            is_complete = False
 
             async def received() -> Message:
-                nonlocal whole
+                nonlocal is_complete
                 message = await receive()
-                if not whole and not message.get("more_body", False):
-                    whole = True
-                    place.close()
-                    place.enter_context(self._answered.one(name))
+                if not is_complete and not message.get("more_body", False):
+                    is_complete = True
+                    stack.close()
+                    stack.enter_context(self._answered.one(name))
                 return message
 
             yield received

@@ -90,8 +90,8 @@ def example_cases(context: Ctx) -> list[ExampleBody]:
         case = case_json(validated(Case, example.content))
         key = ANALYZE.key({"case": case})
         stored = context.store.holds(key, ANALYZE.kind)
-        own = example._asdict() | {"case": case, "hash": key, "stored": stored}
-        bodies.append(ExampleBody.model_validate(own))
+        fields = example._asdict() | {"case": case, "hash": key, "stored": stored}
+        bodies.append(ExampleBody.model_validate(fields))
     return bodies
 
 
@@ -213,13 +213,13 @@ async def housing_surface(body: HousingsRequest, context: Ctx, request: Request)
     A process of its own reads the files. Equal files that stand alike are read once.
     """
     tag = f"surface-{program_tag()}-{body.shape}"
-    known = await run_in_threadpool(context.kept.find, tag)
+    known = await run_in_threadpool(context.cached_answers.find, tag)
     if known is not None:
         return Response(known, media_type=JSON)
     answer = await read_by(
         context, "lineofaction.gearbox.convert.drawn_housing:drawn_housings", body, request
     )
-    await run_in_threadpool(context.kept.keep, tag, bytes(answer.body))
+    await run_in_threadpool(context.cached_answers.keep, tag, bytes(answer.body))
     return answer
 
 

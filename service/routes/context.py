@@ -9,7 +9,7 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 
 from service.access.holder import Holder
-from service.live.kept_answers import KeptAnswers
+from service.live.cached_answers import KeptAnswers
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker
 from service.project import COMMON
@@ -74,7 +74,7 @@ class Context:
     store: ResultStore
     live: QuestionPool
     reader: QuestionPool
-    kept: KeptAnswers
+    cached_answers: KeptAnswers
     engine: Engine
     writes: WriteCheck
     watcher: Watcher[JobEvent]

@@ -64,8 +64,8 @@ class DraftRoute(ScopedRoute):
 def _faults_of(refusal: ServiceError) -> Response:
     """Return the answer of faults; raises the refusal of what is no draft, or of a busy service."""
     problem = refusal.as_json()
-    whole = "body" in (fault["field"] for fault in problem["errors"])
-    if whole or problem["type"] != BadInput.type:  # the type: a live worker sends problem details
+    of_body = "body" in (fault["field"] for fault in problem["errors"])
+    if of_body or problem["type"] != BadInput.type:  # the type: a live worker sends problem details
         raise refusal
     return JSONResponse({"detail": problem["detail"], "faults": problem["errors"]})
 
@@ -88,6 +88,6 @@ def _add(route: APIRoute) -> None:
     )
 
 
-for asked in (route for router in (*ROUTERS, queries.live_router) for route in router.routes):
-    if isinstance(asked, APIRoute) and asked.path in DRAFTS:
-        _add(asked)
+for offered in (route for router in (*ROUTERS, queries.live_router) for route in router.routes):
+    if isinstance(offered, APIRoute) and offered.path in DRAFTS:
+        _add(offered)

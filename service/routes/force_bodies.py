@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
 
 
-_WORDS = [validity_text(flags) for flags in range(16)]
+_VALIDITY_TEXTS = [validity_text(flags) for flags in range(16)]
 _FLOAT64_ARRAY = 86  # RFC 8746: little-endian float64, the one tag a query may have
 _DEEPEST = 2
 _EMPTY_LIST = b"\x80"  # also a byte of numbers, but hardly of every other one
@@ -101,7 +101,7 @@ def _plain(answer: ForceAnswer, table: SteDatabase, points: FloatArray) -> dict[
     return {
         "force_n": answer.force_n.tolist(),
         "stiffness_n_per_um": answer.stiffness_n_per_um.tolist(),
-        "validity": [_WORDS[flags] for flags in answer.validity.tolist()],
+        "validity": [_VALIDITY_TEXTS[flags] for flags in answer.validity.tolist()],
         "force_error_n": answer.error_n(table, points),
     }
 

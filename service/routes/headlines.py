@@ -27,7 +27,7 @@ def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:
     """Return jobs with the headlines of their tables; of a few that have none it is computed and kept."""
     lacking = {job.key for job in jobs if job.process == ANALYZE.id and _ended_without(job)}
     lines = context.store.without_headline(lacking, ANALYZE.kind, MAX_AT_ONCE) if lacking else []
-    made = {line.key: _kept(line.key, line.size, context) for line in lines}
+    made = {line.key: _headline_of(line.key, line.size, context) for line in lines}
     return [replace(job, headline=made.get(job.key) or job.headline) for job in jobs]
 
 
@@ -35,7 +35,7 @@ def _ended_without(job: Job) -> bool:
     return job.status == "successful" and job.headline is None
 
 
-def _kept(key: str, size: int, context: Context) -> dict[str, Any]:
+def _headline_of(key: str, size: int, context: Context) -> dict[str, Any]:
     """Compute and keep the headline of a table; that there is none is kept, too: it is read once."""
     made: dict[str, Any] = {}
     try:

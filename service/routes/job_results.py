@@ -132,8 +132,8 @@ def job_results(
         return Response(status_code=204, headers={"Link": link, "Vary": "Accept"})
     if form.transmission == "reference":
         return JSONResponse({process.output: reference.model_dump()}, headers={"Vary": "Accept"})
-    place = {"Content-Location": reference.href}
-    return file_response(known_result(context, job.key, process.kind), request, place)
+    headers = {"Content-Location": reference.href}
+    return file_response(known_result(context, job.key, process.kind), request, headers)
 
 
 def _accepted(ordered: Delivery, accept: str) -> Delivery:

@@ -137,10 +137,10 @@ async def list_jobs(
     after = mark_of(cursor)
 
     def page() -> JobList:
-        found = context.submissions.page(limit + 1, job_filter, after)
-        shown = [status_info(job, context.registry) for job in with_headlines(found[:limit], context)]
-        last = Mark(found[limit - 1].created, found[limit - 1].id) if len(found) > limit else None
-        return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
+        matches = context.submissions.page(limit + 1, job_filter, after)
+        infos = [status_info(job, context.registry) for job in with_headlines(matches[:limit], context)]
+        last = Mark(matches[limit - 1].created, matches[limit - 1].id) if len(matches) > limit else None
+        return JobList(jobs=infos, links=page_links(request, "/v1/jobs", last))
 
     return await list_answer(request, page)
 
@@ -169,7 +169,7 @@ def relabel_job(job_id: str, change: LabelChange, request: Request, context: Ctx
 
     Jobs that others of the project submitted need the scope operate.
     """
-    _require_own(job_id, request, context)
+    _require_owner(job_id, request, context)
     return status_info(context.submissions.relabel(job_id, change.title, change.tags), context.registry)
 
 
@@ -180,13 +180,13 @@ def dismiss_job(job_id: str, request: Request, context: Ctx) -> StatusInfo:
 
     Jobs that others of the project submitted need the scope operate.
     """
-    _require_own(job_id, request, context)
+    _require_owner(job_id, request, context)
     job = context.submissions.dismiss(job_id)
     context.wake()
     return status_info(job, context.registry)
 
 
-def _require_own(job_id: str, request: Request, context: Context) -> None:
+def _require_owner(job_id: str, request: Request, context: Context) -> None:
     """Raise unless a job is the caller's own, or the caller may do that with others'."""
     if context.submissions.find(job_id).caller != caller_of(request).name:
         require(request, Scope.OPERATE)

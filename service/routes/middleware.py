@@ -25,7 +25,7 @@ from service.access.quotas import quota_fields
 from service.management.request_figures import Metrics
 from service.routes.media_types import CBOR, EVENT_STREAM, RAW, media_type
 from service.routes.problem_answers import problem_of
-from service.tracing import TRACEPARENT, current_traceparent, trace_facts, valid_traceparent
+from service.tracing import TRACEPARENT, current_traceparent, trace_fields, valid_traceparent
 
 _MAX = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
 """Largest number of what each sign begins, in JSON or in the TOML that it carries.
@@ -68,14 +68,14 @@ class _Extent:
     """The parts of one body, counted as its pieces come; of binary bodies nothing is counted."""
 
     def __init__(self, content_type: str) -> None:
-        self._found = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MAX, 0)
+        self._counts = {} if media_type(content_type) in (CBOR, RAW) else dict.fromkeys(_MAX, 0)
 
     def add(self, piece: bytes) -> None:
         """Count the parts of a piece; raises `TooLarge`."""
-        for sign in self._found:
-            self._found[sign] += piece.count(sign)
+        for sign in self._counts:
+            self._counts[sign] += piece.count(sign)
             maximum, parts = _MAX[sign]
-            if self._found[sign] > maximum:
+            if self._counts[sign] > maximum:
                 text = (
                     f"The body has more than {maximum} {parts}, the limit of this service. Send less at once."
                 )
@@ -98,7 +98,7 @@ class Guard:
         clear_contextvars()
         TRACEPARENT.set(exchange.traceparent)
         # both stand in every line that this request logs
-        bind_contextvars(request_id=exchange.identifier, **trace_facts(exchange.traceparent))
+        bind_contextvars(request_id=exchange.identifier, **trace_fields(exchange.traceparent))
         begin = time.perf_counter()
         try:
             exchange.refuse_announced()
@@ -124,12 +124,12 @@ class Guard:
         route = _template(scope)
         status = exchange.status or 0
         self._metrics.observe(scope["method"], route, status, None if exchange.stream.route else seconds)
-        facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
+        fields = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
         problem = scope.get("state", {}).get("problem")
         if problem is not None:
             self._metrics.refused(problem)
-            facts["problem"] = problem
-        logger.info("request", **facts)
+            fields["problem"] = problem
+        logger.info("request", **fields)
 
 
 def _template(scope: Scope) -> str:
@@ -149,7 +149,7 @@ class _Exchange:
     ) -> None:
         self.stream = stream
         self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
-        self._received, self._whole, self._begin = 0, False, time.perf_counter()
+        self._received, self._is_complete, self._begin = 0, False, time.perf_counter()
         self._headers = dict(scope["headers"])
         self._extent = _Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
@@ -172,7 +172,7 @@ class _Exchange:
 
     async def receive(self) -> Message:
         """Pass on a piece of the body, counting; once it is whole wait as long as it takes."""
-        if self._whole:
+        if self._is_complete:
             return await self._receive()
         left = PATIENCE_S + self._received / MIN_BYTES_PER_S - (time.perf_counter() - self._begin)
         try:
@@ -183,7 +183,7 @@ class _Exchange:
             self._refuse(TooSlow(f"The body did not arrive within {waited:.0f} s."))
         piece = message.get("body", b"")
         self._received += len(piece)
-        self._whole = not message.get("more_body", False)
+        self._is_complete = not message.get("more_body", False)
         if self._received > self._body_limit:
             self._refuse(self._too_large())
         try:

@@ -50,11 +50,11 @@ class OpenDatabases:
 
     def at_hand(self, store: ResultStore, key: str) -> _OpenDatabase | None:
         """Return the database `key` if it is open: no file is touched, nobody is waited for."""
-        place = store.project, key
+        address = store.project, key
         with self._lock:
-            if place in self._open:
-                self._open.move_to_end(place)
-            return self._open.get(place)
+            if address in self._open:
+                self._open.move_to_end(address)
+            return self._open.get(address)
 
     def get(self, store: ResultStore, key: str) -> _OpenDatabase:
         """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""

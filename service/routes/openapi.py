@@ -112,8 +112,8 @@ _LINKS = {
 }
 """From every status document, by name."""
 _REF = "#/components/schemas/{model}"
-_SHOWN = (JSON, CBOR, EVENT_STREAM)
-_BESIDE = (ProblemBody, QueryInput, InputWarning, ReportSection)
+_EXAMPLE_TYPES = (JSON, CBOR, EVENT_STREAM)
+_FURTHER_MODELS = (ProblemBody, QueryInput, InputWarning, ReportSection)
 """Models that no handler names."""
 
 
@@ -131,8 +131,8 @@ def _describe_refusals(document: Json) -> None:
     for path, operation in _operations(document):
         responses = operation["responses"]
         refused = {status: responses.pop(status) for status in list(responses) if int(status) >= 400}
-        own = {int(status): entry[_KINDS] for status, entry in refused.items() if _KINDS in entry}
-        for kinds in (own, _of_request(path, operation)):
+        of_route = {int(status): entry[_KINDS] for status, entry in refused.items() if _KINDS in entry}
+        for kinds in (of_route, _of_request(path, operation)):
             for status, named in kinds.items():
                 all_kinds.setdefault(status, {}).update(named)
                 responses[str(status)] = {"$ref": f"#/components/responses/{_name(status)}"}
@@ -197,8 +197,8 @@ def _complete(document: Json) -> None:
     """Add what holds for all operations: refusals, headers, links, keys; and an example of every body."""
     components = document["components"]
     schemas = components["schemas"] = with_named(components["schemas"])
-    beside: Any = [(model, "validation") for model in _BESIDE]
-    schemas.update(models_json_schema(beside, ref_template=_REF)[1]["$defs"])
+    further: Any = [(model, "validation") for model in _FURTHER_MODELS]
+    schemas.update(models_json_schema(further, ref_template=_REF)[1]["$defs"])
     for unused in ("HTTPValidationError", "ValidationError"):  # the framework's own
         schemas.pop(unused, None)
     components["headers"] = dict(HEADERS)
@@ -220,7 +220,7 @@ def _operations(document: Json) -> Iterator[tuple[str, Json]]:
 
 
 def _show(content: Json, example: Any) -> None:
-    for kind in _SHOWN:
+    for kind in _EXAMPLE_TYPES:
         if kind in content and example is not None:
             content[kind] = {**content[kind], "example": example}
 

@@ -19,11 +19,11 @@ from lineofaction.gearbox.schemas.faults import fault_of, innermost, model_in
 from service.routes.media_types import JSON, NO_STORE, PROBLEM, media_type
 
 
-def _problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+def _problem_response(problem: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
     """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
-    body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
+    body = json.dumps(problem, allow_nan=False, ensure_ascii=True).encode()
     fields = {"Cache-Control": NO_STORE, **(headers or {})}
-    return Response(body, int(facts["status"]), fields, media_type=PROBLEM)
+    return Response(body, int(problem["status"]), fields, media_type=PROBLEM)
 
 
 def problem_of(error: ServiceError) -> Response:
@@ -86,7 +86,7 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     phrase = HTTPStatus(error.status_code).phrase
     request.state.problem = phrase.lower().replace(" ", "-")
-    facts = {
+    problem = {
         "type": "about:blank",
         "title": phrase,
         "status": error.status_code,
@@ -99,4 +99,4 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
         paths = request.app.openapi()["paths"]
         matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
         headers["Allow"] = ", ".join(sorted({name.upper() for path in matching for name in paths[path]}))
-    return _problem_response(facts, headers)
+    return _problem_response(problem, headers)

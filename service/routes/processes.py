@@ -50,7 +50,7 @@ from service.worker.process import Process, Registry
 logger = structlog.get_logger(__name__)
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
-_LONGEST_STATED = 65_536
+_MAX_SPECIFIED = 65_536
 """Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
 IdempotencyKey = Annotated[
     str | None,
@@ -75,12 +75,12 @@ def processes_router(registry: Registry) -> APIRouter:
         """All that can be run."""
         passed = list(registry).index(registry[after].id) + 1 if after else 0
         behind = list(registry.values())[passed:]
-        shown = behind[:limit]
+        page = behind[:limit]
         links = [Link(href="/v1/processes", rel="self", title="Processes")]
         if len(behind) > limit:
-            following = f"/v1/processes?limit={limit}&after={shown[-1].id}"
+            following = f"/v1/processes?limit={limit}&after={page[-1].id}"
             links.append(Link(href=following, rel="next", title="Next page"))
-        return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in shown], links=links)
+        return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in page], links=links)
 
     @router.get("/{process_id}", summary="One process", responses=documented(NoSuchProcess))
     @needs(Scope.READ)
@@ -126,10 +126,10 @@ def _add_execution(router: APIRouter, process: Process) -> None:
             since = differences_between(former[1], inputs, former[0])
         check_priority(request.priority, caller)
         limit = cost_limit(request.max_cost_s, caller)
-        stated = json.dumps(request.inputs.model_dump(mode="json", exclude_unset=True))
-        kept = stated if len(stated) <= _LONGEST_STATED else ""
+        text = json.dumps(request.inputs.model_dump(mode="json", exclude_unset=True))
+        retained = text if len(text) <= _MAX_SPECIFIED else ""
         label = Label.of(request.title, request.tags)
-        terms = Terms(form, label, since, request.priority, limit, kept, request.reuse)
+        terms = Terms(form, label, since, request.priority, limit, retained, request.reuse)
         status = _submit(context, process, inputs, caller, terms, idempotency_key)
         enter_calls(context, status.jobID, uris)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
@@ -167,8 +167,8 @@ def _submit(
     job = context.submissions.submit(
         process.id, key, inputs, stored=stored, looked=looked, caller=caller, terms=terms, name=name
     )
-    facts = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
-    logger.info("job entered", **facts, stored=stored)
+    fields = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
+    logger.info("job entered", **fields, stored=stored)
     context.wake()
     return status_info(job, context.registry)
 

@@ -90,10 +90,10 @@ async def live_ste(key: Key, body: LiveInput, context: Ctx, request: Request) ->
     """
     stored = await run_in_threadpool(context.store.verified, key, "database")
     question = body.model_dump(mode="json", exclude_none=True)
-    place = address_of(context.project, key)
-    inputs = {"key": place, "file": str(stored.path), "cache": _cache(context), "question": question}
+    address = address_of(context.project, key)
+    inputs = {"key": address, "file": str(stored.path), "cache": _cache(context), "question": question}
     asker = asker_of(request, body.caller and f"curves {context.project} {body.caller}")
-    answer = context.live.ask(LiveOrder(STE, inputs), asker, subject=place, lasting=body.condense)
+    answer = context.live.ask(LiveOrder(STE, inputs), asker, subject=address, lasting=body.condense)
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
 
 

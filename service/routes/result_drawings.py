@@ -40,12 +40,12 @@ _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'un
 MOTION = "lineofaction.report.unit_motion:stored_motion"
 _MAX_MOTIONS = 1_000_000
 SOUND = "lineofaction.report.run.sound:stored_sound"
-HEARD = ("run", "recording")
+SOUND_KINDS = ("run", "recording")
 """Kinds of results that have a sound."""
 _NAME = 200  # characters
 
 
-async def _kept_answer(
+async def _cached_answer(
     request: Request,
     context: Context,
     tag: str,
@@ -57,10 +57,10 @@ async def _kept_answer(
     headers = {"ETag": tag, "Cache-Control": "no-cache"}
     if tag in request.headers.get("if-none-match", ""):
         return Response(status_code=304, headers=headers)
-    body = await run_in_threadpool(context.kept.find, tag)
+    body = await run_in_threadpool(context.cached_answers.find, tag)
     if body is None:
         body = body_of(await asyncio.wrap_future(context.live.ask(order, asker_of(request))))
-        await run_in_threadpool(context.kept.keep, tag, body)
+        await run_in_threadpool(context.cached_answers.keep, tag, body)
     return Response(body, media_type=media_type, headers=headers)
 
 
@@ -103,7 +103,7 @@ async def result_figures(
         tag, work, named = tag + other.sha256, COMPARISON, {"files": [str(stored.path), str(other.path)]}
     order = LiveOrder(work, {**named, "printed": printed})
     form, kind, body_of = ("page", HTML, _page) if printed else ("figures", JSON, bytes)
-    response = await _kept_answer(request, context, f'"{tag}-{form}-{program_tag()}"', order, kind, body_of)
+    response = await _cached_answer(request, context, f'"{tag}-{form}-{program_tag()}"', order, kind, body_of)
     response.headers.update({"Vary": "Accept"} | (_INERT if printed else {}))
     return response
 
@@ -137,7 +137,7 @@ async def result_motion(
     stored = await run_in_threadpool(known_result, context, key)
     order = LiveOrder(MOTION, {"kind": stored.kind, "file": str(stored.path), "number": number})
     tag = f'"{stored.sha256}-motion-{number}-{program_tag()}"'
-    return await _kept_answer(request, context, tag, order, JSON)
+    return await _cached_answer(request, context, tag, order, JSON)
 
 
 def _named(description: str) -> object:
@@ -177,13 +177,13 @@ async def result_sound(
 ) -> Response:
     """Return a recording of `listen`, or forces or motions of a run made audible: no sound pressure."""
     kind = (await run_in_threadpool(known_result, context, key)).kind
-    if kind not in HEARD:
+    if kind not in SOUND_KINDS:
         raise NotFound(f"Result {key!r} is no run and no recording, but of the kind {kind}.")
     stored = [await run_in_threadpool(known_result, context, one, kind) for one in (key, against) if one]
     view = {"quantity": quantity, "bearing": bearing, "mesh": mesh, "direction": direction}
     named = json.dumps([*(one.sha256 for one in stored), view, program_tag()])
     tag = f'"{hashlib.sha256(named.encode()).hexdigest()}-sound"'
     order = LiveOrder(SOUND, {"kind": kind, "files": [str(one.path) for one in stored], "view": view})
-    return await _kept_answer(
+    return await _cached_answer(
         request, context, tag, order, WAV, lambda made: base64.b64decode(json.loads(made)["wav"])
     )

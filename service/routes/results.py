@@ -62,10 +62,10 @@ async def list_databases(
     after = mark_of(cursor)
 
     def page() -> DatabaseList:
-        found = context.store.page("database", limit + 1, after)
-        shown = found[:limit]
-        last = shown[-1][0] if len(found) > limit else None
-        entries = [_entry(context.store, mark, line) for mark, line in shown]
+        lines = context.store.page("database", limit + 1, after)
+        page_lines = lines[:limit]
+        last = page_lines[-1][0] if len(lines) > limit else None
+        entries = [_entry(context.store, mark, line) for mark, line in page_lines]
         return DatabaseList(databases=entries, links=page_links(request, _PATH, last))
 
     return await list_answer(request, page)
@@ -140,12 +140,12 @@ def file_response(
     )
 
 
-def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> Response:
+def _metadata(stored: StoredResult, request: Request, fields: dict[str, Any]) -> Response:
     headers = _headers(stored, _FIGURES)
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    own = {"hash": stored.key, "sha256": stored.sha256, "size": stored.size}
-    response = JSONResponse(own | facts, headers=headers)
+    stored_fields = {"hash": stored.key, "sha256": stored.sha256, "size": stored.size}
+    response = JSONResponse(stored_fields | fields, headers=headers)
     response.headers.update(_digest(hashlib.sha256(response.body).digest()))
     return response
 

@@ -68,7 +68,7 @@ class ScopedRoute(APIRoute):
             key = key_of(request)
             if streams and key is not None:  # counted until the last byte is sent
                 request.state.streams.refuse_beyond(key.name, key.streams)
-                request.state.held.enter_context(request.state.streams.one(key.name))
+                request.state.exit_stack.enter_context(request.state.streams.one(key.name))
             response: Response = await answer(request)
             return response
 

@@ -139,10 +139,10 @@ def _prepare_schema(engine: Engine) -> None:
     _refuse_newer(numbers, engine)
     state = "it has no tables" if numbers.newest is None else f"it has {numbers.newest}"
     bound = f"of schema {REVISIONS[-1]}: {state}"
-    raise BadInput.of("database_url", shown(engine), bound, "Run loa database upgrade first.")
+    raise BadInput.of("database_url", redacted_url(engine), bound, "Run loa database upgrade first.")
 
 
-def shown(engine: Engine) -> str:
+def redacted_url(engine: Engine) -> str:
     """Return the URL without its password."""
     return engine.url.render_as_string(hide_password=True)
 
@@ -151,7 +151,7 @@ def _refuse_newer(numbers: _SchemaNumbers, engine: Engine) -> None:
     if numbers.unknown and not numbers.usable:
         bound = f"of schema {REVISIONS[-1]} or older: it has {numbers.newest}"
         tip = "A newer lineofaction made it. Use that one, or another database."
-        raise BadInput.of("database_url", shown(engine), bound, tip)
+        raise BadInput.of("database_url", redacted_url(engine), bound, tip)
 
 
 def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
@@ -204,11 +204,11 @@ def writing(
     `PATIENCE_MS`. With `ahead` it is the next one of this process.
     """
     dialect = dialect_of(engine)
-    with ExitStack() as held:
-        connection = held.enter_context(engine.connect())  # before the turn: opening it takes a while
-        left_ms = held.enter_context(dialect.turn(engine, patience_ms, ahead=ahead))
+    with ExitStack() as stack:
+        connection = stack.enter_context(engine.connect())  # before the turn: opening it takes a while
+        left_ms = stack.enter_context(dialect.turn(engine, patience_ms, ahead=ahead))
         connection.execution_options(immediate=True, patience_ms=left_ms)
-        held.enter_context(connection.begin())
+        stack.enter_context(connection.begin())
         if in_turn:
             dialect.take_turn(connection)
         yield connection

@@ -16,7 +16,7 @@ from sqlalchemy import Column, Engine, String, Table, insert, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from lineofaction.gearbox.problems import BadInput, NoSpace
-from service.store.database import metadata, now, reading, shown, writing
+from service.store.database import metadata, now, reading, redacted_url, writing
 from service.store.dialects import dialect_of
 from service.store.files import ResultName
 from service.store.results import ResultStore
@@ -62,8 +62,8 @@ class _Owner:
     def of(cls, text: str) -> _Owner:
         """Read a note; one that cannot be read names nobody we are."""
         try:
-            facts = json.loads(text)
-            return cls(str(facts["deployment"]), str(facts["database"]))
+            document = json.loads(text)
+            return cls(str(document["deployment"]), str(document["database"]))
         except (ValueError, TypeError, KeyError):
             return cls("unknown", f"{NOTE} cannot be read")
 
@@ -100,7 +100,7 @@ class Deployment:
                 connection.execute(insert(deployments).values(id=known, created=now()))
             return known
 
-    def open_place(self) -> None:
+    def confirm_files(self) -> None:
         """See to it that the files are those of the database; mark a new place, or one of older versions.
 
         Raises `BadInput`: the files are another deployment's; or there are files and the index is empty, or
@@ -135,7 +135,7 @@ class Deployment:
         except SQLAlchemyError as error:
             raise outage_of(error, self._engine) or error from error
 
-    def write_place(self) -> None:
+    def write_results(self) -> None:
         """Write to the place of results: to see that this is possible.
 
         Raises
@@ -166,8 +166,8 @@ class Deployment:
 
     def _mark(self, *, replace: bool = False) -> None:
         """Leave the note; of several deployments that do so at the same time one is heeded."""
-        facts = {"deployment": self._named(), "database": shown(self._engine), "since": now()}
-        self._put(NOTE, json.dumps(facts, indent=1) + "\n", replace=replace)
+        note = {"deployment": self._named(), "database": redacted_url(self._engine), "since": now()}
+        self._put(NOTE, json.dumps(note, indent=1) + "\n", replace=replace)
 
     def _put(self, name: str, text: str, *, replace: bool) -> None:
         """Leave a note; raises `BadInput` if the place cannot be written."""
@@ -187,7 +187,7 @@ class Deployment:
         return _Comparison(len(named), first, known=False)
 
     def _refusal(self, bound: str, tip: str) -> BadInput:
-        ours = f"the place of deployment {self._named()} (database {shown(self._engine)})"
+        ours = f"the place of deployment {self._named()} (database {redacted_url(self._engine)})"
         return BadInput.of("results", self._files.address, ours + bound, tip)
 
 

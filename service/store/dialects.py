@@ -90,7 +90,7 @@ _LOCKED = "55P03"  # by others, for longer than lock_timeout
 class _Commits(Protocol):
     """A connection of its own that hears of commits; of the thread that made it alone."""
 
-    def heard(self) -> bool:
+    def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""
 
     def close(self) -> None:
@@ -104,7 +104,7 @@ class _SqliteCommits:
         self._connection = engine.raw_connection()
         self._version = self._data_version()
 
-    def heard(self) -> bool:
+    def received(self) -> bool:
         """Compare the version after 50 ms; it is read in some microseconds."""
         time.sleep(_POLL_S)
         before, self._version = self._version, self._data_version()
@@ -131,7 +131,7 @@ class _PostgresCommits:
         self._connection.autocommit = True
         self._connection.execute(f"LISTEN {CHANNEL}")
 
-    def heard(self) -> bool:
+    def received(self) -> bool:
         """Wait for a notification, for at most 0.25 s."""
         return any(True for _ in self._connection.notifies(timeout=_SLICE_S, stop_after=1))
 
@@ -308,9 +308,9 @@ class _PostgreSQL:
         try:
             engine = create_engine(url, connect_args=arguments, **pool)
         except ModuleNotFoundError:
-            shown = url.render_as_string(hide_password=True)
+            redacted_url = url.render_as_string(hide_password=True)
             tip = "Install it: pip install 'lineofaction[postgres]'."
-            raise BadInput.of("database_url", shown, "one whose driver is installed", tip) from None
+            raise BadInput.of("database_url", redacted_url, "one whose driver is installed", tip) from None
         event.listen(engine, "begin", _begin_on_server)
         return engine
 

@@ -130,7 +130,7 @@ class DirectoryFiles:
         """Link the file to its name, or copy it where that cannot be."""
         target = self._directory / name
         target.parent.mkdir(parents=True, exist_ok=True)
-        place_whole(file, target)
+        install_file(file, target)
 
     def has(self, name: str) -> bool:
         """Whether there is a file of this name."""
@@ -186,9 +186,9 @@ class DirectoryFiles:
         for path in sorted(self._directory.rglob("*")):
             with contextlib.suppress(FileNotFoundError):  # removed meanwhile
                 if path.is_file():
-                    facts = path.stat()
+                    status = path.stat()
                     yield KeptFile(
-                        path.relative_to(self._directory).as_posix(), facts.st_size, facts.st_mtime
+                        path.relative_to(self._directory).as_posix(), status.st_size, status.st_mtime
                     )
 
 
@@ -203,7 +203,7 @@ def _name_if_free(draft: Path, target: Path) -> None:
             stream.write(draft.read_text(encoding="utf-8"))
 
 
-def place_whole(file: Path, target: Path) -> None:
+def install_file(file: Path, target: Path) -> None:
     """Give a file a second name, its bytes on disk first; on another file system a copy gets the name."""
     draft = target.with_name(f"{target.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
     try:

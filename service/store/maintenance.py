@@ -43,11 +43,11 @@ class Quarantine:
 
     def release(self) -> int:
         """Move every file back where it came from; return their number."""
-        held = [file for file in self._files.files() if is_quarantined(file.name)]
-        for file in held:
+        quarantined = [file for file in self._files.files() if is_quarantined(file.name)]
+        for file in quarantined:
             self.confirm()
             self._files.move(file.name, file.name.removeprefix(_FOLDER).rpartition(".")[0])
-        return len(held)
+        return len(quarantined)
 
     def purge(self, *, dry_run: bool) -> Iterator[KeptFile]:
         """Remove for good what has been here for long enough; what tells no date stays."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from fe_contact.cache_reads import CacheReads
 from lineofaction.gearbox.problems import BadInput, StoreUnavailable
 from service.folder_size import evict
-from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, place_whole
+from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, install_file
 
 if TYPE_CHECKING:
     from obstore.store import ClientConfig, RetryConfig, S3Store
@@ -57,7 +57,7 @@ class ObjectFiles:
             obstore.put(self._store, name, file)
         cached = self._cached(name, sha256)
         cached.parent.mkdir(parents=True, exist_ok=True)
-        place_whole(file, cached)
+        install_file(file, cached)
         evict(self._cache, self._cache_bytes)
 
     def has(self, name: str) -> bool:
@@ -150,8 +150,8 @@ class ObjectFiles:
 
         with _answering():
             for page in obstore.list(self._store):
-                for facts in page:
-                    yield KeptFile(facts["path"], facts["size"], facts["last_modified"].timestamp())
+                for entry in page:
+                    yield KeptFile(entry["path"], entry["size"], entry["last_modified"].timestamp())
 
 
 @contextmanager
@@ -180,9 +180,9 @@ def object_files(url: str, cache: Path, cache_bytes: int, keys: Keys | None = No
         raise BadInput.of("results_url", url, "one whose library is installed", tip) from None
     plain = any(os.environ.get(name, "").startswith("http://") for name in _ENDPOINTS)
     client: ClientConfig = {"allow_http": plain, "timeout": "60s"}
-    own = {} if keys is None else dict(zip(("access_key_id", "secret_access_key"), keys, strict=True))
+    credentials = {} if keys is None else dict(zip(("access_key_id", "secret_access_key"), keys, strict=True))
     try:
-        store = S3Store.from_url(url, client_options=client, retry_config=RETRIES, **own)  # type: ignore[arg-type]
+        store = S3Store.from_url(url, client_options=client, retry_config=RETRIES, **credentials)  # type: ignore[arg-type]
     except (BaseError, ValueError) as error:
         raise BadInput.of("results_url", url, f"of a bucket we can use ({error})") from None
     return ObjectFiles(store, url, cache, cache_bytes)

@@ -11,7 +11,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from lineofaction.gearbox.problems import BadInput
 from service.folders import locked
-from service.store.database import shown
+from service.store.database import redacted_url
 from service.store.dialects import dialect_of
 from service.store.retries import retried
 
@@ -43,7 +43,7 @@ class Ownership:
             return
         bound = "free: another server works on its jobs"
         tip = "One server owns a job table. Stop that server, or choose another database."
-        raise BadInput.of("database_url", shown(self._engine), bound, tip)
+        raise BadInput.of("database_url", redacted_url(self._engine), bound, tip)
 
     def lost(self) -> bool:
         """Whether the lock is not ours, or its session does not answer any more."""

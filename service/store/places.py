@@ -67,7 +67,7 @@ def result_store(
     not answer.
     """
     store = ResultStore(engine, result_files(data_directory, results_url, cache_mb, keys))
-    Deployment(engine, store).open_place()
+    Deployment(engine, store).confirm_files()
     return store
 
 

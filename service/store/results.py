@@ -148,7 +148,7 @@ class ResultStore:
 
     def put(self, key: str, kind: str, file: Path, headline: Mapping[str, Any] | None = None) -> IndexLine:
         """Take `file` into the store: first the bytes, then the index; may be repeated if it failed."""
-        known = self._whole(key, kind)
+        known = self._intact(key, kind)
         if known is None:
             known = self._put(key, kind, file, json.dumps(headline) if headline else "")
         else:
@@ -178,28 +178,28 @@ class ResultStore:
             before = _line(connection, line.address, line.kind)
             if before is not None and (before.file == line.file or self.files.has(before.file)):
                 return before
-            facts = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
-            facts["headline"] = line.headline
-            facts["reindexed"] = None if made is None else line.used
+            values = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
+            values["headline"] = line.headline
+            values["reindexed"] = None if made is None else line.used
             insert = dialect_of(connection).insert(results)
             named = {"key": line.address, "kind": line.kind, "project": line.project}
-            statement = insert.values(**named, created=made or line.used, **facts)
-            connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=facts))
+            statement = insert.values(**named, created=made or line.used, **values)
+            connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=values))
         return line
 
     def find(self, key: str, kind: str) -> IndexLine | None:
         """Return the index's line, None if there is none or its file is gone."""
         if not _is_key(key):
             return None
-        line = self._whole(key, kind)
+        line = self._intact(key, kind)
         self.lookups.note(hit=line is not None)
         return line
 
     def holds(self, key: str, kind: str) -> bool:
         """Return whether a result is there; nobody has asked for it."""
-        return self._whole(key, kind) is not None
+        return self._intact(key, kind) is not None
 
-    def _whole(self, key: str, kind: str) -> IndexLine | None:
+    def _intact(self, key: str, kind: str) -> IndexLine | None:
         line = self._find(key, kind)
         return line if line is not None and self.files.has(line.file) else None
 
@@ -319,5 +319,5 @@ def _line(connection: Connection, address: str, kind: str | None) -> IndexLine |
 
 def _read(row: Row[Any]) -> IndexLine:
     project, key = at_address(row.key)
-    facts = (row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)
-    return IndexLine(key, *facts, project=project, headline=row.headline)
+    fields = (row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)
+    return IndexLine(key, *fields, project=project, headline=row.headline)

@@ -17,7 +17,7 @@ from service.store.deployment import Deployment
 from service.store.integrity import IntegrityCheck
 
 logger = structlog.get_logger(__name__)
-KEPT_S = 1.0
+VALID_S = 1.0
 """For so long an outcome is good: what was written then need not be tried now."""
 PATIENCE_S = 0.8
 """Nobody waits for longer than this: supervisors ask for an answer within a second."""
@@ -44,7 +44,7 @@ class _Writable:
 
 
 class WriteCheck:
-    """Writes to database and place of results, at most once in `KEPT_S`, whoever asks.
+    """Writes to database and place of results, at most once in `VALID_S`, whoever asks.
 
     What a look through the database finds damaged counts as not written.
     """
@@ -59,7 +59,7 @@ class WriteCheck:
     def outcome(self) -> _Writable:
         """Return what can be written, within `PATIENCE_S`."""
         with self._lock:
-            old = time.monotonic() - self._begun > KEPT_S
+            old = time.monotonic() - self._begun > VALID_S
             if self._outcome is None or (old and self._outcome.done()):
                 self._begun, self._outcome = time.monotonic(), Future()
                 threading.Thread(target=self._try, args=(self._outcome,), daemon=True).start()
@@ -74,7 +74,7 @@ class WriteCheck:
 
     def _try(self, outcome: Future[_Writable]) -> None:
         begun = time.monotonic()
-        results, _ = self._fault("results", self._deployment.write_place)
+        results, _ = self._fault("results", self._deployment.write_results)
         database, late = self._fault("database", self._write_database)
         written = _Writable(database, results, late=late and not results)
         if not written.fault:

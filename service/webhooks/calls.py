@@ -64,9 +64,9 @@ class Calls:
     @retried
     def of(self, job: str) -> list[WebhookState]:
         """Return the calls about a job."""
-        facts = (webhooks.c.event, webhooks.c.state, webhooks.c.attempts, webhooks.c.message)
+        columns = (webhooks.c.event, webhooks.c.state, webhooks.c.attempts, webhooks.c.message)
         with reading(self._engine) as connection:
-            rows = connection.execute(select(*facts).where(webhooks.c.job == job).order_by(webhooks.c.id))
+            rows = connection.execute(select(*columns).where(webhooks.c.job == job).order_by(webhooks.c.id))
             return [WebhookState.model_validate(row, from_attributes=True) for row in rows]
 
     @retried

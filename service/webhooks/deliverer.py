@@ -47,22 +47,22 @@ class Outbox:
         return True
 
     def _make(self, call: Call) -> None:
-        facts = {"job": call.job, "call": call.event, "attempt": call.attempts}
+        fields = {"job": call.job, "call": call.event, "attempt": call.attempts}
         try:
             status = self._sent(call)
         except NotCalled as error:
-            logger.warning("webhook not delivered", **facts, reason=str(error))
+            logger.warning("webhook not delivered", **fields, reason=str(error))
             self.calls.fail(call, f"{error}.")
             return
         except Exception:
-            logger.exception("webhook not delivered", **facts)
+            logger.exception("webhook not delivered", **fields)
             self.calls.fail(call, "an unexpected failure; the log has the details.")
             return
         if 200 <= status < 300:
-            logger.info("webhook delivered", **facts, status=status)
+            logger.info("webhook delivered", **fields, status=status)
             self.calls.deliver(call, f"answered {status}.")
         else:
-            logger.warning("webhook refused", **facts, status=status)
+            logger.warning("webhook refused", **fields, status=status)
             text = "redirects are not followed" if 300 <= status < 400 else "not taken"
             self.calls.fail(call, f"answered {status}, {text}.", final=status == _GONE)
 

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 
 from service.origin import Origin
 
-CONNECTING_S, WHOLE_S = 5.0, 10.0
+CONNECTING_S, TOTAL_S = 5.0, 10.0
 """Time to connect, and for the whole exchange."""
 _TRANSLATED = ipaddress.ip_network("64:ff9b::/96")
 
@@ -31,7 +31,7 @@ def send(uri: str, body: bytes, headers: Mapping[str, str]) -> int:
     origin = Origin.of(uri)
     try:
         with closing(_connected(origin)) as connection:
-            watch = threading.Timer(WHOLE_S, _cut, (connection.sock,))
+            watch = threading.Timer(TOTAL_S, _cut, (connection.sock,))
             watch.start()
             try:
                 if isinstance(connection.sock, ssl.SSLSocket):
@@ -53,7 +53,7 @@ def _connected(origin: Origin) -> http.client.HTTPConnection:
     try:
         raw.settimeout(CONNECTING_S)
         raw.connect(address)
-        raw.settimeout(WHOLE_S)
+        raw.settimeout(TOTAL_S)
         if origin.scheme == "http":
             plain = http.client.HTTPConnection(origin.host, origin.port)
             plain.sock = raw
@@ -69,8 +69,8 @@ def _connected(origin: Origin) -> http.client.HTTPConnection:
 
 def _permitted(origin: Origin) -> tuple[socket.AddressFamily, Any]:
     """Return the first address of an origin that may be called."""
-    found = socket.getaddrinfo(origin.host, origin.port, type=socket.SOCK_STREAM)
-    for family, _, _, _, address in found:
+    addresses = socket.getaddrinfo(origin.host, origin.port, type=socket.SOCK_STREAM)
+    for family, _, _, _, address in addresses:
         if origin.is_address or is_public(str(address[0])):
             return family, address
     raise NotCalled("the name has no public address; a private one has to be listed as an address")

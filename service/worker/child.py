@@ -118,14 +118,14 @@ class _Reporter:
     def __init__(self, channel: _Channel) -> None:
         self._channel, self._stage, self._sent = channel, "", 0.0
 
-    def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
+    def __call__(self, stage: str, fraction: float, total: float | None = None, /) -> None:
         """Report the fraction done of a stage, and of the whole work if that is known."""
         instant = time.monotonic()
         recent = instant - self._sent < _SHORTEST_INTERVAL_S
         if stage == self._stage and recent and fraction < 1.0:
             return
         self._stage, self._sent = stage, instant
-        step = {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0), "whole": whole}
+        step = {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0), "whole": total}
         self._channel.send("step", step | {"at": time.time(), "cpu_s": cpu_seconds()})
 
 

@@ -30,11 +30,11 @@ async def dask_setup(worker: Worker) -> None:
     """Let SIGTERM drain a worker; Dask calls this when it has started, after it has set its handlers."""
     loop, draining = asyncio.get_running_loop(), list[asyncio.Task[None]]()
 
-    def told() -> None:
+    def drain() -> None:
         loop.remove_signal_handler(signal.SIGTERM)  # a second one ends the process
         draining.append(loop.create_task(_drain(worker)))
 
-    loop.add_signal_handler(signal.SIGTERM, told)
+    loop.add_signal_handler(signal.SIGTERM, drain)
 
 
 async def _drain(worker: Worker) -> None:

@@ -27,11 +27,11 @@ def input_warnings(inputs: str) -> tuple[Json, ...]:
 
     There are none of what has neither case nor scene, and of an older job whose inputs are refused today.
     """
-    facts = json.loads(inputs)
+    document = json.loads(inputs)
     try:
-        if facts.get("scene") is not None:
-            return tuple(_of_scene(SceneInput.model_validate_json(json.dumps(facts["scene"]))))
-        return () if facts.get("case") is None else tuple(warnings_of_case(facts["case"]))
+        if document.get("scene") is not None:
+            return tuple(_of_scene(SceneInput.model_validate_json(json.dumps(document["scene"]))))
+        return () if document.get("case") is None else tuple(warnings_of_case(document["case"]))
     except (BadInput, ValidationError):
         return ()
 

@@ -14,8 +14,8 @@ PARTS = "parts"
 class Progress(Protocol):
     """Reports the fraction done of a stage, and of the whole work where its cost was predicted."""
 
-    def __call__(self, stage: str, fraction: float, whole: float | None = None, /) -> None:
-        """Report both, from 0 to 1; without `whole` it follows from the shares that the process declares."""
+    def __call__(self, stage: str, fraction: float, total: float | None = None, /) -> None:
+        """Report both, from 0 to 1; without `total` it follows from the shares that the process declares."""
 
 
 @dataclass(frozen=True)
@@ -43,10 +43,13 @@ class WorkOrder:
     @classmethod
     def from_line(cls, line: bytes) -> WorkOrder:
         """Read the line of an order."""
-        facts = json.loads(line)
-        facts["workspace"], facts["data_directory"] = Path(facts["workspace"]), Path(facts["data_directory"])
-        facts["stored"] = {key: Path(file) for key, file in facts["stored"].items()}
-        return cls(**facts)
+        fields = json.loads(line)
+        fields["workspace"], fields["data_directory"] = (
+            Path(fields["workspace"]),
+            Path(fields["data_directory"]),
+        )
+        fields["stored"] = {key: Path(file) for key, file in fields["stored"].items()}
+        return cls(**fields)
 
 
 @dataclass(frozen=True)

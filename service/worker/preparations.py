@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from fe_contact.solver_version import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
@@ -31,10 +31,12 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     for index, housing in enumerate(scene.housings):
         if housing.modes_file is not None:
             _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")
-    check_scene(scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database})
+    check_scene(
+        scene, {mesh.name: _pair_data(f"meshes[{i}]", mesh, store) for i, mesh in scene.with_database}
+    )
 
 
-def _facts(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+def _pair_data(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:

@@ -31,13 +31,13 @@ _HOUSING = Stage("housing", 0.3)
 
 def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
     """Return the SHA-256 of the RFC 8785 form of the normalized inputs and the versions, hexadecimal."""
-    facts: dict[str, Any] = {
+    content: dict[str, Any] = {
         "process": process,
         "process_version": process_version,
         "solver_version": solver_version(),
         "inputs": inputs,
     }
-    return hashlib.sha256(rfc8785.dumps(facts)).hexdigest()
+    return hashlib.sha256(rfc8785.dumps(content)).hexdigest()
 
 
 @dataclass(frozen=True)

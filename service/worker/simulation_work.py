@@ -166,8 +166,8 @@ def _table(
         products.append(_product(key, database, file))
         return database
 
-    def part(_stage: str, _fraction: float, whole: float | None = None, /) -> None:
-        report(whole or 0.0)
+    def part(_stage: str, _fraction: float, total: float | None = None, /) -> None:
+        report(total or 0.0)
 
     try:
         database = database_of(CASES.of(mesh.case), order, part)

@@ -35,8 +35,8 @@ def prepare(study: Study, inputs: Any, store: ResultStore) -> Json:
     name = "case" if getattr(inputs, "case", None) is not None else "scene"
     fields = study.inputs.model_fields
     varied = study.inputs.model_construct(**{field: getattr(inputs, field) for field in fields})
-    stated = CASES.of(inputs.case) if name == "case" else inputs.scene
-    subject = study.run.narrowed(stated, varied)
+    specified = CASES.of(inputs.case) if name == "case" else inputs.scene
+    subject = study.run.narrowed(specified, varied)
     if name == "scene":
         check_scene_inputs(subject, store)
     check_run(getattr(varied, "run", None), store)
@@ -53,14 +53,14 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
         key = getattr(inputs, "run", None)
         run = None if key is None else RunResult.from_netcdf(order.stored[key])
         means = Means(order.data_directory, progress, workers, folder=order.workspace / "runs", run=run)
-        found = study.run.compute(subject, inputs, means)
+        result = study.run.compute(subject, inputs, means)
     file = order.workspace / f"{study.kind}{SUFFIX}"
-    study.run.file.write(found, file)
-    own = study.run.warnings(found) if warnings is None else warnings
+    study.run.file.write(result, file)
+    result_warnings = study.run.warnings(result) if warnings is None else warnings
     if isinstance(subject, HousedScene):
-        own = [*left_out_warnings(subject.inputs.left_out), *(own or ())]
-    runs = (Product(key, "run", run) for key, run in study.run.stored_runs(found, means).items())
-    return (*products, *runs, Product(order.key, study.kind, file, own))
+        result_warnings = [*left_out_warnings(subject.inputs.left_out), *(result_warnings or ())]
+    runs = (Product(key, "run", run) for key, run in study.run.stored_runs(result, means).items())
+    return (*products, *runs, Product(order.key, study.kind, file, result_warnings))
 
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:

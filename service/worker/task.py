@@ -72,7 +72,7 @@ def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> 
     worker = get_worker()
     with TemporaryDirectory(prefix="job-", dir=worker.local_directory) as name:
         folder = Path(name)
-        order = _order_here(WorkOrder.from_line(line), files, folder, worker)
+        order = _local_order(WorkOrder.from_line(line), files, folder, worker)
         launch = partial(_launch, order.entry.partition(":")[0], Path(worker.local_directory) / "warm.log")
         child = Worker(order, folder / "log", launch)
         try:
@@ -86,7 +86,7 @@ def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> 
         return Done(outcome, child.usage, child.compliance_reads, tuple(child.warnings), contents, log)
 
 
-def _order_here(
+def _local_order(
     order: WorkOrder, files: Mapping[str, bytes], folder: Path, worker: distributed.Worker
 ) -> WorkOrder:
     """Return an order with folders of this machine, and its share of the memory of the worker."""
@@ -147,13 +147,13 @@ class _Telling:
 
     def __init__(self, worker: distributed.Worker, topic: str, child: Worker) -> None:
         self._tell: Callable[[Any], None] = partial(worker.log_event, topic)
-        self._child, self._steps, self._told = child, list[Step](), 0.0
+        self._child, self._steps, self._reported = child, list[Step](), 0.0
         self._begin = f"{child.pid} {time.time()} {worker.address}"
 
     def __call__(self, steps: list[Step], key: Any) -> None:
         self._steps += steps
-        if time.monotonic() - self._told < _TELL_S:
+        if time.monotonic() - self._reported < _TELL_S:
             return
-        facts = {"task": key, "begin": self._begin, "age": self._child.age, "spent": self._child.spent()}
-        self._tell(facts | {"steps": [list(step) for step in self._steps]})
-        self._steps, self._told = [], time.monotonic()
+        message = {"task": key, "begin": self._begin, "age": self._child.age, "spent": self._child.spent()}
+        self._tell(message | {"steps": [list(step) for step in self._steps]})
+        self._steps, self._reported = [], time.monotonic()

@@ -67,7 +67,7 @@ class Worker:
         return time.monotonic() - self.started
 
     @property
-    def facts(self) -> dict[str, Any]:
+    def log_fields(self) -> dict[str, Any]:
         """What names it in the log."""
         return {"pid": self.pid}
 

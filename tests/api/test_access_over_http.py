@@ -19,7 +19,7 @@ from service_fakes import EXECUTION, REGISTRY, bearing
 
 from lineofaction.client import LineOfActionClient
 from lineofaction.gearbox.problems import RateExceeded, TooManyHeld, TooManyRequests, Unauthorised
-from service.access.capacity import Held
+from service.access.capacity import Usage
 from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
@@ -152,7 +152,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
 
 
 def test_what_is_held_is_counted_by_name_and_given_back() -> None:
-    held = Held("streams", in_all=4)
+    held = Usage("streams", in_all=4)
     with held.one("a"), held.one("a"), held.one("b"):
         with pytest.raises(TooManyHeld, match="'a' holds 2 streams, the limit"):
             held.refuse_beyond("a", 2)
@@ -161,7 +161,7 @@ def test_what_is_held_is_counted_by_name_and_given_back() -> None:
         with held.one("c"), pytest.raises(TooManyRequests, match="4 streams in all"):
             held.refuse_beyond("b", None)
     held.refuse_beyond("a", 1)
-    assert not held._held, "nothing is kept of who holds nothing"
+    assert not held._counts, "nothing is kept of who holds nothing"
 
 
 @pytest.fixture

@@ -118,7 +118,7 @@ def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(calls, "FIRST_PAUSE_S", 0.05)
     monkeypatch.setattr(calls, "MAX_ATTEMPTS", 3)
     monkeypatch.setattr(deliverer, "LOOK_S", 0.1)
-    monkeypatch.setattr(requests, "WHOLE_S", 1.0)
+    monkeypatch.setattr(requests, "TOTAL_S", 1.0)
 
 
 @pytest.fixture

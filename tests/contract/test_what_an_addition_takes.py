@@ -68,7 +68,7 @@ class AxialSpring(SceneBearingLaw):
     def typical(self, duty):
         return np.array([self.stiffness])
 
-    def missed(self, duty):
+    def tangent_error(self, duty):
         return 0.0
 
     def scaled(self, factor):

@@ -204,9 +204,9 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
         **{f"sources/{file}": text for file, text in sources.items() if file.endswith((".c", ".h"))},
         f"resources/{TABLE_FILE}": MAGIC + _identity_of(table).encode("ascii") + table,
     }
-    digest, whole = hashlib.sha256(), {**content, **described("")}
-    for member in sorted(whole):
-        digest.update(member.encode() + b"\0" + hashlib.sha256(whole[member]).digest())
+    digest, members = hashlib.sha256(), {**content, **described("")}
+    for member in sorted(members):
+        digest.update(member.encode() + b"\0" + hashlib.sha256(members[member]).digest())
     text = digest.hexdigest()
     guid = "{" + "-".join((text[:8], text[8:12], text[12:16], text[16:20], text[20:32])) + "}"
     return {**content, **described(guid)}

@@ -18,7 +18,7 @@ def c_header(element: MeshElement, chosen: Sequence[Variable], guid: str, identi
     """Return variables.h; numbers are written as hexadecimal floats, which C99 reads without rounding."""
     parts = [_kind(_of_kind(chosen, kind), kind.upper()) for kind in (REAL, INTEGER, BOOLEAN)]
     names = ", ".join(f'"{variable.name}"' for variable in _of_kind(chosen, REAL))
-    facts = {
+    macros = {
         "GUID": f'"{guid}"',
         "TABLE_FILE": f'"{TABLE_FILE}"',
         "TABLE_IDENTITY": f'"{identity}"',
@@ -29,7 +29,7 @@ def c_header(element: MeshElement, chosen: Sequence[Variable], guid: str, identi
         "BASE_PITCH": _exact(element.base_pitch),
         "TAN_BASE_HELIX_ANGLE": _exact(math.tan(element.base_helix_angle)),
     }
-    lines = [f"#define {name} {value}" for name, value in facts.items()]
+    lines = [f"#define {name} {value}" for name, value in macros.items()]
     return "\n".join(
         [
             "/* Generated with the model description. */",

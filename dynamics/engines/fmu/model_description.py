@@ -90,11 +90,11 @@ def _add_variables(root: Xml.Element, chosen: Sequence[Variable]) -> None:
             variability=variable.variability,
         )
         count[variable.kind] += 1
-        facts = {"unit": variable.unit} if variable.unit else {}
+        attributes = {"unit": variable.unit} if variable.unit else {}
         if variable.start is not None:
             truth = "true" if variable.start else "false"
-            facts["start"] = truth if variable.kind == BOOLEAN else repr(variable.start)
-        Xml.SubElement(entry, variable.kind, facts)
+            attributes["start"] = truth if variable.kind == BOOLEAN else repr(variable.start)
+        Xml.SubElement(entry, variable.kind, attributes)
 
 
 def _add_structure(root: Xml.Element, chosen: Sequence[Variable]) -> None:

@@ -24,7 +24,7 @@ from fe_contact.planning.cost_model import log_name
 from fe_contact.plausibility import merged, table_findings
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from fe_contact.types import Json
 from model_studies.progress import by_cost
 from model_studies.run_log import record

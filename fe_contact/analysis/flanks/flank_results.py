@@ -22,7 +22,7 @@ from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.plausibility import flank_findings, merged, unexpected
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata
-from fe_contact.ste.facts import content_hash
+from fe_contact.ste.metadata import content_hash
 from fe_contact.types import Json
 from model_studies.stage_clock import StageClock
 

@@ -25,7 +25,7 @@ from fe_contact.analysis.table_fields import table_fields, table_support
 from fe_contact.planning.plan import Plan
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
-from fe_contact.ste.facts import SCHEMA_VERSION, content_hash
+from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from model_studies.stage_clock import StageClock
 
 POSITIONS = 64

@@ -143,7 +143,7 @@ def _by_geometry(part: Part) -> FloatArray | None:
     bearing = LoadedBearing(geometry.row, COPIES)
     load = geometry.rating * np.array([RADIAL_LOAD, 0.0, _axial_load(geometry.row), 0.0, 0.0])
     try:
-        return np.asarray(bearing.evaluate(bearing.displacement(load, held=_TILTS)).tangent)
+        return np.asarray(bearing.evaluate(bearing.displacement(load, fixed=_TILTS)).tangent)
     except DynamicsError as error:
         part.say("bearing_type", "refused", f"its geometry carries no load of a tenth of its rating: {error}")
         return None

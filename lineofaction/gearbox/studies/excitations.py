@@ -20,6 +20,7 @@ from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.complaint import Complaint, complaint_of
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.studies.bodies import UNIT
+from lineofaction.gearbox.studies.excitation import Excitation
 from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
@@ -27,15 +28,15 @@ OFF_MESH = 6
 """Orders beside the mesh orders that are listed of a mesh."""
 
 
-def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Json]:
-    """Return what excites in the harmonics of every mesh with a table, and in orders beside them, in SI.
+def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Excitation]:
+    """Return what excites in the harmonics of every mesh with a table, and in orders beside them.
 
-    Of the latter those largest in transmission error, where it is above its error; their `harmonic` is None.
-    Copies of a planet excite as the one that the scene names. An error that the table does not state is None.
+    Of the latter those largest in transmission error, where it is above its error. Copies of a planet excite
+    as the one that the scene names.
     """
     rate = mesh_frequencies(system, np.ones(1))[:, 0]
     step = rate / next((frequency for frequency in rate if frequency), 1.0)
-    rows: list[Json] = []
+    rows: list[Excitation] = []
     for mesh, table in subject.databases.items():
         index = response.mesh.index(mesh)
         if step[index]:
@@ -71,27 +72,30 @@ def complaint_at_loads(system: System, subject: TabledScene) -> Complaint:
 
 def _of_mesh(
     response: HarmonicResponse, mesh: int, table: SteDatabase, step: float, largest_friction: float
-) -> Iterator[Json]:
+) -> Iterator[Excitation]:
     """Yield the harmonics of a mesh, which are `step` apart in the orders of the response."""
     force = abs(float(response.mean_force[mesh]))
     torque = force * table.facts.base_radius[0]
     errors = excitation_errors(table, table.facts.normal_force(torque))
     slides = largest_friction * bool(np.any(response.friction_force[mesh]))
-    by_name = {
-        "transmission_error": (response.static_transmission_error, errors.transmission_error),
-        "load_moment": (response.load_moment, force * errors.load_arm),
-        "friction_force": (response.friction_force, slides * errors.friction),
-    }
-    unknown = dict.fromkeys(by_name, np.nan) | {"transmission_error": errors.off_mesh}
 
-    def row(at: int, harmonic: int | None) -> Json:
-        excites: Json = {"mesh": response.mesh[mesh], "torque": torque, "harmonic": harmonic}
-        excites["order"] = float(response.order[at])
-        for name, (values, error) in by_name.items():
-            known_error = unknown[name] if harmonic is None else float(error[harmonic - 1])
-            excites[name] = float(abs(values[mesh, at]))
-            excites[f"error_of_{name}"] = known_error if np.isfinite(known_error) else None
-        return excites
+    def error(by_harmonic: FloatArray, harmonic: int | None, off_mesh: float = np.nan) -> float | None:
+        value = off_mesh if harmonic is None else float(by_harmonic[harmonic - 1])
+        return value if np.isfinite(value) else None
+
+    def row(at: int, harmonic: int | None) -> Excitation:
+        return Excitation(
+            mesh=response.mesh[mesh],
+            torque=torque,
+            harmonic=harmonic,
+            order=float(response.order[at]),
+            transmission_error=float(abs(response.static_transmission_error[mesh, at])),
+            error_of_transmission_error=error(errors.transmission_error, harmonic, errors.off_mesh),
+            load_moment=float(abs(response.load_moment[mesh, at])),
+            error_of_load_moment=error(force * errors.load_arm, harmonic),
+            friction_force=float(abs(response.friction_force[mesh, at])),
+            error_of_friction_force=error(slides * errors.friction, harmonic),
+        )
 
     multiple = response.order / step
     is_harmonic = np.isclose(multiple, np.rint(multiple), rtol=1e-6)

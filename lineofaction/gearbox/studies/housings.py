@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import asdict, replace
 from functools import partial
 
 import numpy as np
@@ -15,11 +15,10 @@ from dynamics.errors import InputError, SolveError
 from dynamics.housings import ReducedHousing
 from dynamics.influence import decide_effects, response_influences, sized_ledger
 from dynamics.influence.neglected_check import response_cost
-from dynamics.joints import Housing
 from dynamics.linearize import ForcedResponse, forced_response
 from dynamics.noise import HousingRadiation, cached_radiation
 from dynamics.orders import BearingOrders, bearing_orders
-from dynamics.results import RunResult
+from dynamics.results.other_housings import other_housings
 from dynamics.scene import Scene
 from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.types import FloatArray
@@ -42,8 +41,6 @@ REMEDY = (
     "Give a housing by step_file, mesh_file or modes_file: matrices alone do not say what the air touches. "
     'In the scene, step_file = "housing.step" stands in place of its stiffness_matrix.'
 )
-SAME = 1e-6
-"""Largest difference between matrices of the same housing, of their largest entry."""
 
 
 def radiation_of(
@@ -102,8 +99,8 @@ def response_of(
     """
     scene = subject.scene if quantity is None else replace(subject.scene, quantity=quantity)
     response, system = sized_response(scene, inputs, means)
-    metadata = response.facts | {"excitations": excitations_of(response, system, subject)}
-    return replace(response, facts=metadata)
+    excitations = [asdict(excitation) for excitation in excitations_of(response, system, subject)]
+    return replace(response, facts=response.facts | {"excitations": excitations})
 
 
 def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[ForcedResponse, System]:
@@ -169,26 +166,3 @@ def require_surface(scene: SceneInput) -> None:
     """Refuse a scene of whose housings none can have a surface; raises `BadInput`."""
     if not any(part.has_surface for part in scene.housings):
         raise no_surface([part.name for part in scene.housings])
-
-
-def other_housings(housings: Iterable[Housing], run: RunResult) -> tuple[str, ...]:
-    """Return the names of housings with mass in which a run did not move."""
-    run_housings = {part["name"]: part for part in run.case.get("housings", ())}
-    massive = (housing for housing in housings if housing.mass is not None)
-    return tuple(housing.name for housing in massive if not _same(housing, run_housings.get(housing.name)))
-
-
-def _same(housing: Housing, part: Json | None) -> bool:
-    """Whether a part of a stored scene has a housing's matrices at the seats: signs of modes are free."""
-    if part is None or part["mass"] is None:
-        return False
-    seats = slice(len(housing.stiffness) - housing.modal_coordinates)
-    for name in ("stiffness", "mass", "damping"):
-        both = (
-            np.zeros((0, 0)) if of[name] is None else np.array(of[name], float)
-            for of in (vars(housing), part)
-        )
-        mine, other = (matrix[seats, seats] for matrix in both)
-        if mine.shape != other.shape or np.any(np.abs(mine - other) > SAME * np.abs(mine).max(initial=0.0)):
-            return False
-    return True

@@ -9,7 +9,6 @@ import numpy as np
 
 from bounds.types import FloatArray
 from dynamics.vibration import vibration_level
-from dynamics.vibration.vibration_analysis import Shares
 from lineofaction.gearbox.studies.vibration.measured import MeasuredHousingVibration
 from lineofaction.gearbox.studies.vibration.run import MM_PER_S
 from lineofaction.gearbox.units import RPM
@@ -91,15 +90,10 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
     return Table("Largest velocity of every point", _LARGEST_HEAD, tuple(rows))
 
 
-def _shares(result: MeasuredHousingVibration) -> Shares:
-    nothing = np.full(len(result.bearing), np.nan)
-    return Shares(result.bearing, nothing, result.share.T, nothing)
-
-
 def _contribution_table(result: MeasuredHousingVibration) -> Table:
     head = ("part", "frequency, Hz", *(f"{point}, %" for point in result.vibration.point))
     caption = f"Contributions to the mean square velocity at {_where(result)}"
-    return Table(caption, head, tuple(share_rows(_shares(result), with_surface=False)))
+    return Table(caption, head, tuple(share_rows(result.bearing_shares, with_surface=False)))
 
 
 def _fastest(result: MeasuredHousingVibration) -> int:
@@ -108,7 +102,7 @@ def _fastest(result: MeasuredHousingVibration) -> int:
 
 def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
     """Draw what bearings contribute to the point that moves fastest; None where all are at rest."""
-    point, shares = _fastest(result), _shares(result)
+    point, shares = _fastest(result), result.bearing_shares
     part = shares.point[point]
     if not np.all(np.isfinite(part)):
         return None

@@ -2,26 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bounds import engineering
+from lineofaction.gearbox.studies.excitation import Excitation, stored_excitations
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
 from lineofaction.report.drawing.marks import order_label
 
-Row = Mapping[str, Any]
 MAX_HARMONIC = 6
 """Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
-_QUANTITIES = {
-    "transmission_error": ("transmission error, nm", 1e9),
-    "load_moment": ("moment of the load F z_c, N m", 1.0),
-    "friction_force": ("friction, N", 1.0),
-}
 _WIDTH = 0.8
 """Of all bars of a harmonic together."""
+
+
+class _Quantity(NamedTuple):
+    """An amplitude of an excitation with its error, drawn as `scale` times its value in SI."""
+
+    label: str
+    scale: float
+    amplitude: Callable[[Excitation], tuple[float, float | None]]
+
+    def cell(self, row: Excitation) -> str:
+        value, error = self.amplitude(row)
+        text = number(self.scale * value, 3)
+        return text if error is None else f"{text} ± {number(self.scale * error, 2)}"
+
+
+_QUANTITIES = (
+    _Quantity(
+        "transmission error, nm", 1e9, lambda row: (row.transmission_error, row.error_of_transmission_error)
+    ),
+    _Quantity("moment of the load F z_c, N m", 1.0, lambda row: (row.load_moment, row.error_of_load_moment)),
+    _Quantity("friction, N", 1.0, lambda row: (row.friction_force, row.error_of_friction_force)),
+)
 
 
 def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
@@ -29,14 +46,14 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     rows = _low_harmonics(metadata)
     if not rows:
         return None
-    head = "mesh", "load, N m", "harmonic", "order", *(label for label, _ in _QUANTITIES.values())
+    head = "mesh", "load, N m", "harmonic", "order", *(quantity.label for quantity in _QUANTITIES)
     cells = tuple(
         (
-            row["mesh"],
-            number(row["torque"], 4),
-            "" if row["harmonic"] is None else str(row["harmonic"]),
-            order_label(row["order"], metadata),
-            *(_with_error(row, name, scale) for name, (_, scale) in _QUANTITIES.items()),
+            row.mesh,
+            number(row.torque, 4),
+            "" if row.harmonic is None else str(row.harmonic),
+            order_label(row.order, metadata),
+            *(quantity.cell(row) for quantity in _QUANTITIES),
         )
         for row in rows
     )
@@ -59,44 +76,39 @@ def excitation_figures(metadata: Mapping[str, Any]) -> tuple[Figure, ...]:
     rows, table = _low_harmonics(metadata), excitation_table(metadata)
     if table is None:
         return ()
-    meshes = list(dict.fromkeys(row["mesh"] for row in rows))
-    acting = [name for name in _QUANTITIES if any(row[name] for row in rows)]
-    largest = max(rows, key=lambda row: float(row["transmission_error"]))
-    size = number(1e9 * largest["transmission_error"], 3)
+    meshes = list(dict.fromkeys(row.mesh for row in rows))
+    acting = [quantity for quantity in _QUANTITIES if any(quantity.amplitude(row)[0] for row in rows)]
+    largest = max(rows, key=lambda row: row.transmission_error)
+    size = number(1e9 * largest.transmission_error, 3)
     figure = Figure(
         key="excitations",
         title="What excites",
         caption="Amplitudes of the harmonics at the static mesh forces; from bottom to top of the pale bars "
         "they lie within the errors of the table.",
         alternative=f"The largest transmission error is {size} nm in order "
-        f"{order_label(largest['order'], metadata)} of {largest['mesh']}.",
-        content=tuple(_panel(rows, name, meshes) for name in acting),
+        f"{order_label(largest.order, metadata)} of {largest.mesh}.",
+        content=tuple(_panel(rows, quantity, meshes) for quantity in acting),
         table=table,
     )
     return (figure,) if acting else ()
 
 
-def _low_harmonics(metadata: Mapping[str, Any]) -> list[Row]:
-    return [row for row in metadata.get("excitations", ()) if (row["harmonic"] or 0) <= MAX_HARMONIC]
+def _low_harmonics(metadata: Mapping[str, Any]) -> list[Excitation]:
+    return [row for row in stored_excitations(metadata) if (row.harmonic or 0) <= MAX_HARMONIC]
 
 
-def _with_error(row: Row, name: str, scale: float) -> str:
-    error, value = row[f"error_of_{name}"], number(scale * row[name], 3)
-    return value if error is None else f"{value} ± {number(scale * error, 2)}"
-
-
-def _panel(rows: list[Row], name: str, meshes: list[str]) -> Panel:
-    label, scale = _QUANTITIES[name]
+def _panel(rows: list[Excitation], quantity: _Quantity, meshes: list[str]) -> Panel:
     width, bars = _WIDTH / len(meshes), []
     for index, mesh in enumerate(meshes):
-        mesh_rows = [row for row in rows if row["mesh"] == mesh and row["harmonic"]]
-        at = np.array([row["harmonic"] for row in mesh_rows]) + (index - 0.5 * (len(meshes) - 1)) * width
-        size = scale * np.array([row[name] for row in mesh_rows])
-        error = scale * np.array([row[f"error_of_{name}"] or 0.0 for row in mesh_rows])
+        mesh_rows = [row for row in rows if row.mesh == mesh and row.harmonic]
+        at = np.array([row.harmonic for row in mesh_rows]) + (index - 0.5 * (len(meshes) - 1)) * width
+        amplitudes = [quantity.amplitude(row) for row in mesh_rows]
+        size = quantity.scale * np.array([value for value, _ in amplitudes])
+        error = quantity.scale * np.array([error or 0.0 for _, error in amplitudes])
         bars.append(Bars(mesh, at, size, 0.0, width, palette.category(index)))
         bars.append(
             Bars("error", at, size + error, np.maximum(size - error, 0.0), 0.4 * width, palette.INK, True)
         )
     names = tuple((float(k), str(k)) for k in range(1, MAX_HARMONIC + 1))
     x = Axis("harmonic of the mesh", limits=(0.4, MAX_HARMONIC + 0.6), names=names)
-    return Panel(x, Axis(label), bars=tuple(bars))
+    return Panel(x, Axis(quantity.label), bars=tuple(bars))

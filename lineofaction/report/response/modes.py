@@ -134,8 +134,8 @@ def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
     """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
     lowest = np.flatnonzero(modes.natural_frequency > 0.0)[:MAX_MODES]
     names = [f"{number(modes.natural_frequency[mode], 4)} Hz" for mode in lowest]
-    strain = [modes.held_by(modes.natural_strain_energy[mode]) for mode in lowest]
-    kinetic = [modes.moved(modes.natural_kinetic_energy[mode]) for mode in lowest]
+    strain = [modes.strain_shares(modes.natural_strain_energy[mode]) for mode in lowest]
+    kinetic = [modes.kinetic_shares(modes.natural_kinetic_energy[mode]) for mode in lowest]
     alike = f"At most the {MAX_MODES} lowest modes; those of one frequency are any combination of each other."
     return (
         Figure(
@@ -171,8 +171,8 @@ def _modes_table(modes: ModalAnalysis, maximum: int | None = None) -> Table:
         "frequency, Hz": lambda mode: number(float(modes.natural_frequency[mode]), 5),
         "damping ratio, %": lambda mode: number(100.0 * float(modes.natural_damping_ratio[mode]), 3),
         "kind": lambda mode: modes.kind(strain[mode], kinetic[mode]),
-        "strain energy in": lambda mode: _shares(modes.held_by(strain[mode])),
-        "kinetic energy in": lambda mode: _shares(modes.moved(kinetic[mode])),
+        "strain energy in": lambda mode: _shares(modes.strain_shares(strain[mode])),
+        "kinetic energy in": lambda mode: _shares(modes.kinetic_shares(kinetic[mode])),
     }
     caption = "Natural modes about the static equilibrium, at rest"
     return Table.of(caption, range(modes.natural_frequency.size)[:maximum], columns)

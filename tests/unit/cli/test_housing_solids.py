@@ -29,7 +29,7 @@ from dynamics.housings import (
     mesh_step,
     reduced_housing,
 )
-from dynamics.housings import kept_reduction as kept
+from dynamics.housings import cached_reduction as kept
 from dynamics.work_cost import WorkCost
 from lineofaction.cli.cached_tables import tabled_scene
 from lineofaction.gearbox.convert import solid_housings

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from dynamics.identity_cache import KEPT, cached_by, identity_cached
+from dynamics.identity_cache import MAX_CACHED, cached_by, identity_cached
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def test_only_the_last_results_are_kept() -> None:
     del first
     gc.collect()
     assert gone() is not None
-    for k in range(KEPT):
+    for k in range(MAX_CACHED):
         total(Frozen([float(k)]))
     gc.collect()
     assert gone() is None

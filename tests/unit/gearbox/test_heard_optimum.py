@@ -91,7 +91,7 @@ def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew() -> None:
 
 
 def place(own: HeardProblem) -> FloatArray:
-    return own.place(tuple(DESIGN[name] for name in own.names))
+    return own.unit_point(tuple(DESIGN[name] for name in own.names))
 
 
 def level(own: HeardProblem, values: dict[str, float]) -> float:

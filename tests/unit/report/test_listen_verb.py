@@ -21,13 +21,10 @@ from dynamics.acoustics import Recording, SoundFigures, loudness_over_time, soun
 from dynamics.acoustics.sound_quality import is_steady
 from dynamics.housings import ReducedHousing, scene_housing
 from dynamics.housings.reduced_housing import PointMotion
-from dynamics.joints import Housing
 from dynamics.noise import pressure_recording, recording_estimate, sound_limit, velocity_recording
 from dynamics.orders import driving_speed
 from dynamics.results import RunResult
-from dynamics.types import FloatArray
 from lineofaction.gearbox import workbench
-from lineofaction.gearbox.studies.housings import other_housings
 from lineofaction.gearbox.studies.listen.run import HeardRun
 
 
@@ -237,26 +234,6 @@ def test_a_run_that_moved_in_no_or_another_housing_is_warned_of(
         )
         (warning,) = json.loads(done.stdout)["warnings"]
         assert 'did not move in housing "case"' in warning["message"]
-
-
-def test_housings_are_compared_by_what_they_state(run: RunResult) -> None:
-    """Matrices without damping are the same again, and not those with another mass; without mass none is."""
-    unit = np.eye(10)
-    damped, bare, heavy = (
-        Housing("case", ("left", "right"), _rows(1e8 * unit), mass=_rows(mass * unit), **further)
-        for mass, further in ((1.0, {"damping": _rows(10.0 * unit)}), (1.0, {}), (1.1, {}))
-    )
-    massless = Housing("case", ("left", "right"), _rows(1e8 * unit))
-    part = json.loads(json.dumps(vars(bare), default=list))
-    moved = replace(run, case=run.case | {"housings": [part]})
-    assert other_housings([bare, massless], moved) == ()
-    for other in (damped, heavy):
-        assert other_housings([other], moved) == ("case",)
-    assert other_housings([bare], run) == ("case",)
-
-
-def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
-    return tuple(map(tuple, matrix.tolist()))
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ def directory(tmp_path: Path, sound: Path) -> Path:
 @pytest.fixture
 def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
     """A client of an app on it, which tries at each question whether it can write."""
-    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
+    monkeypatch.setattr("service.store.write_check.VALID_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
         yield found
 
@@ -116,7 +116,7 @@ def test_a_start_does_not_wait_for_a_long_look_and_what_it_finds_makes_unready(
 
     monkeypatch.setattr(Schema, "check", late)
     monkeypatch.setattr("service.store.integrity.PATIENCE_S", 0.01)
-    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
+    monkeypatch.setattr("service.store.write_check.VALID_S", 0.0)
     with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
         assert client.get("/ready").status_code == 200
         found.set()
@@ -258,7 +258,7 @@ class Place:
     def write_database(self) -> None:
         self.database()
 
-    def write_place(self) -> None:
+    def write_results(self) -> None:
         pass
 
 
@@ -271,7 +271,7 @@ def failing(error: Exception) -> Callable[[], None]:
 
 @pytest.fixture
 def place(monkeypatch: pytest.MonkeyPatch) -> Place:
-    monkeypatch.setattr(write_check, "KEPT_S", -1.0)
+    monkeypatch.setattr(write_check, "VALID_S", -1.0)
     return Place()
 
 

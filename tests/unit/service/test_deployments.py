@@ -120,7 +120,7 @@ def test_an_empty_database_beside_results_removes_none_of_them(
                 list(remove(DAYS))
         wrong.close()
         assert held(first) == before
-    Deployment(first.engine, first.store).open_place()
+    Deployment(first.engine, first.store).confirm_files()
     assert [read(first.store, key) for key in KEYS] == KEYS
 
 
@@ -297,9 +297,9 @@ def test_a_database_from_before_the_files_were_marked_takes_them_back(first: Ben
     with writing(first.engine) as connection:
         connection.execute(delete(deployments))
     with pytest.raises(BadInput, match="loa store reindex"):
-        Deployment(first.engine, first.store).open_place()
+        Deployment(first.engine, first.store).confirm_files()
     assert reindex(first.store, Deployment(first.engine, first.store)).known == 3
-    Deployment(first.engine, first.store).open_place()
+    Deployment(first.engine, first.store).confirm_files()
 
 
 def test_the_verbs_refuse_and_rebuild(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

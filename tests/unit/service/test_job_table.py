@@ -143,7 +143,7 @@ def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
     machine.reach(claim, 1.0, 1.0)
     machine.claims.succeed(claim)
     machine.claims.put_back(claim, "again", counted=True)
-    assert machine.claims.held([claim]) == set()
+    assert machine.claims.still_running([claim]) == set()
     assert machine.submissions.find(job.id).status == "dismissed"
     assert machine.claims.claim() is None
 

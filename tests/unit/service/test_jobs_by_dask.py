@@ -328,7 +328,7 @@ def follow(task: cluster.Task, ends: Done | Exception, status: str = "finished")
 
     client: Any = SimpleNamespace(submit=lambda *_, **__: Future(ends, status), publish_dataset=publish)
     of_tasks = cluster.Cluster("tcp://127.0.0.1:1", "d")
-    of_tasks._heard = lambda: None
+    of_tasks._notify = lambda: None
     asyncio.run(of_tasks._follow(client, task))
     return task.finish() if task.ended else None
 

@@ -20,7 +20,7 @@ from structlog.testing import capture_logs
 from host.children.frames import Frame
 from lineofaction.gearbox.problems import LiveUnavailable, ServiceError, Superseded, Unexpected
 from service.live.answer import answer_of
-from service.live.kept_answers import KeptAnswers
+from service.live.cached_answers import KeptAnswers
 from service.live.live_worker import AnswerTimes, LiveWorker
 from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool

@@ -29,7 +29,7 @@ from lineofaction.gearbox.problems import (
     Unexpected,
 )
 from service.app import create_app
-from service.folders import own_folder, remove_left
+from service.folders import locked_folder, remove_left
 from service.live.order import LiveOrder
 from service.live.question_pool import QuestionPool
 from service.live.turns import Asker
@@ -195,7 +195,7 @@ def test_a_killed_reader_leaves_nothing(pool: QuestionPool) -> None:
 def test_folders_of_a_killed_service_are_removed_and_no_others(tmp_path: Path) -> None:
     (tmp_path / "orphan").mkdir()
     (tmp_path / "orphan" / "file").touch()
-    with own_folder(tmp_path) as used:
+    with locked_folder(tmp_path) as used:
         remove_left(tmp_path)
         assert list(tmp_path.iterdir()) == [used]
     assert not list(tmp_path.iterdir())

@@ -17,7 +17,7 @@ def question(key: str = "", slider: str | None = None, *, word: str = "", submit
 
 
 def turns(**limits: int) -> Turns:
-    return Turns(Limits(**{"held": 100, "in_all": 1000} | limits), "questions")
+    return Turns(Limits(**{"outstanding": 100, "in_all": 1000} | limits), "questions")
 
 
 def asked_next(line: Turns) -> str:
@@ -101,7 +101,7 @@ def test_submissions_come_first_and_hold_their_own_number() -> None:
 
 
 def test_a_key_is_refused_for_its_own_sake_alone() -> None:
-    line = turns(held=64)
+    line = turns(outstanding=64)
     for number in range(64):
         line.enter(question("flood", f"slider {number}"))
     with pytest.raises(TooManyHeld) as refused:

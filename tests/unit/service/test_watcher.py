@@ -106,7 +106,7 @@ def test_what_is_not_heard_is_seen(
     machine: Bench, watcher: Watcher[Job], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     deaf = type(
-        "Deaf", (), {"heard": lambda self: bool(threading.Event().wait(0.02)), "close": lambda self: None}
+        "Deaf", (), {"received": lambda self: bool(threading.Event().wait(0.02)), "close": lambda self: None}
     )
     monkeypatch.setattr(watching, "NET_S", 0.1)
     monkeypatch.setattr(

@@ -14,7 +14,7 @@ from dynamics.integrators.method_choice import choose_method
 from dynamics.results import RunResult
 from dynamics.scene import Integration, Outputs
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file
-from dynamics.simulation.whole_run_error import RunPair, blind_windows, finer_run, level_error
+from dynamics.simulation.long_run_error import RunPair, blind_windows, finer_run, level_error
 from dynamics.types import RunStatus
 from lineofaction.hardcases.dynamics.bouncing_mass import bounce, cycle
 from lineofaction.hardcases.dynamics.oscillators import BASE_RADIUS, NATURAL, coast, torsional

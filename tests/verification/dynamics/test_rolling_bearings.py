@@ -272,7 +272,7 @@ def test_half_of_a_row_carries_at_the_thrust_it_induces():
         profile="straight",
     )
     loaded = LoadedBearing(row, MANY)
-    d = loaded.displacement([5000.0, 0.0, 1.2596 * 5000.0 * math.tan(0.25), 0.0, 0.0], held=(3, 4))
+    d = loaded.displacement([5000.0, 0.0, 1.2596 * 5000.0 * math.tan(0.25), 0.0, 0.0], fixed=(3, 4))
     carried = loaded.evaluate(d).load.sum(axis=-1) > 0.0
     assert carried.mean() == pytest.approx(0.5, abs=0.005)
     assert list(d[3:]) == [0.0, 0.0]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from dynamics.deflection import (
 )
 from dynamics.settings.load_case import COAST
 from lineofaction.gearbox.schemas.toml import toml_text
+from lineofaction.gearbox.studies.deflect import DeflectFigures, RatingLife
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.units import RPM, UM
 
@@ -68,34 +69,41 @@ def _at_least(values: FloatArray, minimum: float) -> FloatArray:
     return np.asarray(np.where(np.abs(values) < minimum, 0.0, values))
 
 
-def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
+def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> DeflectFigures.BearingOverCases:
     """Return a bearing over the load cases by their shares."""
     speed = [load.speed for load in loads]
-    radial, axial = [load.radial for load in loads], [abs(load.axial) for load in loads]
-    return {
-        "name": loads[0].name,
-        "mean_speed_rpm": float(np.dot(weights, speed)) / RPM,
-        "largest_radial_force": max(load.largest_radial for load in loads),
-        **{
-            f"equivalent_{direction}_force": {
-                "ball": equivalent_load(size, speed, weights, 3.0),
-                "roller": equivalent_load(size, speed, weights),
-            }
-            for direction, size in (("radial", radial), ("axial", axial))
-        },
-        **_life(loads, weights),
-    }
+
+    def equivalent(sizes: Sequence[float]) -> dict[str, float]:
+        return {
+            "ball": equivalent_load(sizes, speed, weights, 3.0),
+            "roller": equivalent_load(sizes, speed, weights),
+        }
+
+    life = _Life.of(loads, weights)
+    return DeflectFigures.BearingOverCases(
+        name=loads[0].name,
+        mean_speed_rpm=float(np.dot(weights, speed)) / RPM,
+        largest_radial_force_n=max(load.largest_radial for load in loads),
+        equivalent_radial_force_n=equivalent([load.radial for load in loads]),
+        equivalent_axial_force_n=equivalent([abs(load.axial) for load in loads]),
+        rating_life_hours=life.rating_life_hours,
+        rating_life=life.rating_life,
+    )
 
 
-def _life(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Json:
-    """Return the life over load cases in h, and why there is no number."""
-    revolutions = [load.rating_life for load in loads]
-    seconds = life_duration(revolutions, [load.speed for load in loads], weights)
-    if math.isnan(seconds):
-        status = "none: no capacity"
-    else:
-        status = "limited" if math.isfinite(seconds) else "unlimited"
-    return {"rating_life_hours": seconds / HOUR, "rating_life": status}
+class _Life(NamedTuple):
+    """The life of a bearing over load cases in h, not finite without a number; `rating_life` says why."""
+
+    rating_life_hours: float
+    rating_life: RatingLife
+
+    @classmethod
+    def of(cls, loads: Sequence[BearingLoad], weights: Sequence[float]) -> _Life:
+        revolutions = [load.rating_life for load in loads]
+        seconds = life_duration(revolutions, [load.speed for load in loads], weights)
+        if math.isnan(seconds):
+            return cls(math.nan, "none: no capacity")
+        return cls(seconds / HOUR, "limited" if math.isfinite(seconds) else "unlimited")
 
 
 def figures_by_case(result: GearboxDeflection) -> Json:
@@ -129,10 +137,10 @@ def _case(
     for mesh in case.meshes:
         causes = dict(zip(CAUSES, mesh.causes, strict=True))
         meshes.append((mesh, {"causes": causes, "flanks": flanks.get((case.name, mesh.name))}))
-    return case, {"meshes": meshes, "bearings": [(load, _life([load], [1.0])) for load in loads]}
+    return case, {"meshes": meshes, "bearings": [(load, _Life.of([load], [1.0])._asdict()) for load in loads]}
 
 
-def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
+def _mesh_over_cases(result: GearboxDeflection, name: str) -> DeflectFigures.MeshOverCases:
     """Return the means of a mesh over the load cases by their shares, and its worst case."""
     weights, cases = _shares(result), result.deflection.cases
     alignments = [next(mesh for mesh in case.meshes if mesh.name == name) for case in cases]
@@ -140,14 +148,14 @@ def _mesh_over_cases(result: GearboxDeflection, name: str) -> Json:
     flanks = [part for part in result.flanks if part.mesh == name]
     ripple = [part.peak_to_peak / UM for part in flanks]
     factors = [part.face_load_factor for part in flanks if math.isfinite(part.face_load_factor)]
-    return {
-        "name": name,
-        "mean_misalignment_um": float(np.dot(weights, [mesh.misalignment for mesh in alignments])) / UM,
-        "largest_misalignment_um": alignments[worst].misalignment / UM,
-        "largest_in": cases[worst].name,
-        "mean_peak_to_peak_um": float(np.dot(weights, ripple)) if len(ripple) == len(weights) else None,
-        "largest_k_h_beta": max(factors, default=None),
-    }
+    return DeflectFigures.MeshOverCases(
+        name=name,
+        mean_misalignment_um=float(np.dot(weights, [mesh.misalignment for mesh in alignments])) / UM,
+        largest_misalignment_um=alignments[worst].misalignment / UM,
+        largest_in=cases[worst].name,
+        mean_peak_to_peak_um=float(np.dot(weights, ripple)) if len(ripple) == len(weights) else None,
+        largest_k_h_beta=max(factors, default=None),
+    )
 
 
 def optimization_inputs(result: GearboxDeflection, mesh: str) -> Json:

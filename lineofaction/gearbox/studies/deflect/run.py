@@ -190,23 +190,26 @@ def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment
     }
     mean, ripple = table.mean(**at), table.peak_to_peak(**at)
     harmonics = table.harmonics(**at)[:HARMONICS]
-    roll, pressure = pressure_map(flanks, flanks.roll_length_1)
+    face, load = _along_face(flanks)
+    roll, pattern = _pattern(flanks, *pressure_map(flanks, flanks.roll_length_1))
     arm = float(np.mean(table.load_arm))
     return MeshFlanks(
-        mesh.name,
-        case,
-        torque,
-        mean.value,
-        mean.error,
-        ripple.value,
-        ripple.error,
-        np.array([harmonic.value for harmonic in harmonics]),
-        np.array([harmonic.error for harmonic in harmonics]),
-        flanks.mean_face_load_factor if across else float("nan"),
-        arm - mesh.load_arm if across else float("nan"),
-        float(flanks.clear_pressure.max()),
-        *_along_face(flanks),
-        *_pattern(flanks, roll, pressure),
+        mesh=mesh.name,
+        case=case,
+        torque=torque,
+        mean=mean.value,
+        mean_error=mean.error,
+        peak_to_peak=ripple.value,
+        peak_to_peak_error=ripple.error,
+        harmonics=np.array([harmonic.value for harmonic in harmonics]),
+        harmonics_error=np.array([harmonic.error for harmonic in harmonics]),
+        face_load_factor=flanks.mean_face_load_factor if across else float("nan"),
+        load_arm_difference=arm - mesh.load_arm if across else float("nan"),
+        largest_pressure=float(flanks.clear_pressure.max()),
+        face_position=face,
+        face_load=load,
+        roll_length=roll,
+        pattern=pattern,
     )
 
 

@@ -16,13 +16,14 @@ from dynamics.housings.reduced_housing import SurfaceHousing
 from dynamics.noise import scene_pressure, velocity_recording
 from dynamics.orders import driving_speed
 from dynamics.results import RunResult
+from dynamics.results.other_housings import other_housings
 from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER, HousedScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Computation, Means, record_file
-from lineofaction.gearbox.studies.housings import no_surface, other_housings, require_surface
+from lineofaction.gearbox.studies.housings import no_surface, require_surface
 from lineofaction.gearbox.studies.listen import ONE_RECEIVER, REMEDY, Inputs, ListenFigures
 from lineofaction.gearbox.units import MM
 

@@ -132,8 +132,8 @@ def surface_shape(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
 def _energies(modes: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
     return {
         "kind": modes.kind(strain, kinetic),
-        "strain_energy": {name: s for name, s in modes.held_by(strain).items() if s >= MIN_SHARE},
-        "kinetic_energy": {name: s for name, s in modes.moved(kinetic).items() if s >= MIN_SHARE},
+        "strain_energy": {name: s for name, s in modes.strain_shares(strain).items() if s >= MIN_SHARE},
+        "kinetic_energy": {name: s for name, s in modes.kinetic_shares(kinetic).items() if s >= MIN_SHARE},
     }
 
 

@@ -16,6 +16,7 @@ from dynamics.vibration import (
     measured_vibration,
     vibration_level,
 )
+from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.measured_housings import housing_mobility
@@ -27,6 +28,12 @@ from lineofaction.gearbox.studies.excitations import order_names, with_scene_met
 from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
+from lineofaction.gearbox.studies.vibration.figures import (
+    Contributions,
+    PointVelocity,
+    contributions_of,
+    root_mean_square,
+)
 from lineofaction.gearbox.units import RPM
 
 _NO_SHAPE = "Responses from seats to points hold no shapes of modes; a housing by its solid has them."
@@ -66,6 +73,27 @@ class MeasuredHousingVibration:
         }
 
     @property
+    def bearing_shares(self) -> Shares:
+        """Return the shares of the bearings; there is no surface."""
+        nothing = np.full(len(self.bearing), np.nan)
+        return Shares(self.bearing, nothing, self.share.T, nothing)
+
+    @property
+    def omitted_forces(self) -> list[str]:
+        """Return the names of the forces that no function carries."""
+        return [str(part) for part in self.vibration.omitted]
+
+    @property
+    def omitted_part(self) -> FloatArray:
+        """Return their part of the sum of the squared forces, by order, then by speed."""
+        return self.vibration.omitted_force.T
+
+    @property
+    def omits_moments(self) -> bool:
+        """Whether the bearings press moments on their seats."""
+        return self.vibration.moments
+
+    @property
     def orders_beyond(self) -> FloatArray:
         """Return the orders that leave the measured band at one speed or more."""
         return np.asarray(self.vibration.order[~np.all(self.vibration.covered, axis=0)])
@@ -94,7 +122,7 @@ class MeasuredHousingVibration:
         ]
         if vibration.omitted:
             maximum = engineering(100.0 * float(np.max(vibration.omitted_force)), 3)
-            forces = ", ".join(map(str, vibration.omitted))
+            forces = ", ".join(self.omitted_forces)
             sentences.append(
                 f"Forces without a measured function do not move the points: {forces}, up to {maximum} % of "
                 "the sum of the squared forces."
@@ -184,15 +212,6 @@ def _point_indices(
 def measured_figures(result: MeasuredHousingVibration) -> Json:
     """Return the figures of a measured housing; None stands for what lies outside the measured band."""
     vibration, at = result.vibration, (result.at_speed, result.at_order)
-    shares = [
-        {
-            "name": name,
-            "frequency": None,
-            "points": dict(zip(vibration.point, result.share[number], strict=True)),
-            "surface": None,
-        }
-        for number, name in enumerate(result.bearing)
-    ]
     return figures_of(
         VibrationFigures,
         result,
@@ -203,40 +222,27 @@ def measured_figures(result: MeasuredHousingVibration) -> Json:
         highest_valid_frequency=result.highest_frequency,
         points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},
         surface=None,
-        contributions={
-            "speed": vibration.speed[at[0]],
-            "order": vibration.order[at[1]],
-            "frequency": vibration.frequency[at],
-            "bearings": shares,
-            "modes": [],
-        },
-        measured=_measurement(result),
+        contributions=Contributions(
+            float(vibration.speed[at[0]]),
+            float(vibration.order[at[1]]),
+            float(vibration.frequency[at]),
+            bearings=contributions_of(result.bearing_shares, vibration.point),
+            modes=[],
+        ),
+        measured=result,
     )
 
 
-def _measurement(result: MeasuredHousingVibration) -> Json:
-    vibration = result.vibration
-    return {
-        "file": result.file,
-        "lowest_frequency": result.lowest_frequency,
-        "axes": result.axes,
-        "omitted_forces": [str(part) for part in vibration.omitted],
-        "omitted_part": vibration.omitted_force.T,
-        "omits_moments": vibration.moments,
-    }
-
-
-def _point(vibration: MeasuredVibration, point: int) -> Json:
-    """Return the velocities of a point as root mean squares; NaN where and along what nobody measured."""
+def _point(vibration: MeasuredVibration, point: int) -> PointVelocity:
+    """Return the velocity of a point; NaN where and along what nobody measured."""
     rms = vibration.rms[point]
-    xyz = np.abs(vibration.velocity[point]) / np.sqrt(2.0)
     unlisted = np.full(vibration.speed.size, np.nan if vibration.floor else 0.0)
     level = np.where(vibration.covered, vibration_level(np.nan_to_num(rms)), np.nan)
-    return {
-        "velocity": rms.T,
-        "velocity_xyz": np.swapaxes(xyz, 1, 2),
-        "overall": vibration.overall[point],
-        "left_out": unlisted,
-        "overall_error": unlisted,
-        "level": level.T,
-    }
+    return PointVelocity(
+        velocity=rms.T,
+        velocity_xyz=np.swapaxes(root_mean_square(vibration.velocity[point]), 1, 2),
+        overall=vibration.overall[point],
+        left_out=unlisted,
+        overall_error=unlisted,
+        level=level.T,
+    )

@@ -23,7 +23,6 @@ from dynamics.vibration import (
     vibration_level,
 )
 from dynamics.vibration.housing_vibration import HousingVibration
-from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
@@ -38,6 +37,12 @@ from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.housings import bearing_forces, predicted_forces
 from lineofaction.gearbox.studies.motion import OfferedMotion, UnitMotion
 from lineofaction.gearbox.studies.vibration import Inputs, VibrationFigures
+from lineofaction.gearbox.studies.vibration.figures import (
+    Contributions,
+    PointVelocity,
+    contributions_of,
+    root_mean_square,
+)
 from lineofaction.gearbox.studies.vibration.measured import (
     MeasuredHousingVibration,
     chosen_measurement,
@@ -170,13 +175,13 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],
             points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},
             surface=None if analysis.deflection is None else np.sqrt(vibration.mean_square_velocity).T,
-            contributions={
-                "speed": vibration.speed[analysis.at_speed],
-                "order": vibration.order[analysis.at_order],
-                "frequency": vibration.frequency[analysis.at_speed, analysis.at_order],
-                "bearings": _contributions(analysis.bearings, vibration.point),
-                "modes": _contributions(analysis.modes, vibration.point),
-            },
+            contributions=Contributions(
+                float(vibration.speed[analysis.at_speed]),
+                float(vibration.order[analysis.at_order]),
+                float(vibration.frequency[analysis.at_speed, analysis.at_order]),
+                bearings=contributions_of(analysis.bearings, vibration.point),
+                modes=contributions_of(analysis.modes, vibration.point),
+            ),
         )
 
 
@@ -196,31 +201,18 @@ def _chosen(tabled: TabledScene, name: str | None) -> tuple[str, ReducedHousing]
     raise BadInput.of("housings", len(tabled.housings), "a housing with a surface or points", _REMEDY)
 
 
-def _point(vibration: HousingVibration, point: int) -> Json:
-    """Return the velocities of a point as root mean squares."""
-    xyz = np.abs(vibration.velocity[point]) / np.sqrt(2.0)
+def _point(vibration: HousingVibration, point: int) -> PointVelocity:
+    xyz = root_mean_square(vibration.velocity[point])
     rms = np.sqrt(np.sum(xyz**2, axis=0))
     floor = np.zeros(vibration.speed.size) if vibration.floor is None else vibration.floor[point]
-    return {
-        "velocity": rms.T,
-        "velocity_xyz": np.swapaxes(xyz, 1, 2),
-        "overall": overall(rms) if vibration.floor is None else vibration.overall[point],
-        "left_out": np.sqrt(floor),
-        "overall_error": vibration.overall_error[point],
-        "level": vibration_level(rms.T),
-    }
-
-
-def _contributions(shares: Shares, points: tuple[str, ...]) -> list[Json]:
-    return [
-        {
-            "name": name,
-            "frequency": shares.frequency[p],
-            "points": dict(zip(points, shares.point[:, p], strict=True)),
-            "surface": shares.surface[p],
-        }
-        for p, name in enumerate(shares.name)
-    ]
+    return PointVelocity(
+        velocity=rms.T,
+        velocity_xyz=np.swapaxes(xyz, 1, 2),
+        overall=overall(rms) if vibration.floor is None else vibration.overall[point],
+        left_out=np.sqrt(floor),
+        overall_error=vibration.overall_error[point],
+        level=vibration_level(rms.T),
+    )
 
 
 RUN = _VibrationStudy()

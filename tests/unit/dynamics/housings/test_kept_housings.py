@@ -34,7 +34,7 @@ from dynamics.housings import (
     reduction_cost,
 )
 from dynamics.housings import reduction as kept_module
-from dynamics.housings.kept_reduction import content_key
+from dynamics.housings.cached_reduction import content_key
 from dynamics.housings.reduction import reduce_housing
 
 WITHIN = 1.3

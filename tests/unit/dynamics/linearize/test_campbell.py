@@ -116,10 +116,10 @@ def test_shares_of_energy_add_up_and_name_their_parts(disc):
     np.testing.assert_allclose(disc.kinetic_energy.sum(axis=-1), 1.0, rtol=1e-9)
     mode = tilting(disc)[0]
     strain, kinetic = disc.strain_energy[-1, mode], disc.kinetic_energy[-1, mode]
-    held = disc.held_by(strain)
+    held = disc.strain_shares(strain)
     assert list(held)[:2] == ["disc.0.0", "disc.0.2"] or list(held)[:2] == ["disc.0.2", "disc.0.0"]
     assert held["disc.0.0"] == pytest.approx(0.5, rel=1e-6)
-    assert disc.moved(kinetic)["disc tilting"] == pytest.approx(1.0, rel=1e-6)
+    assert disc.kinetic_shares(kinetic)["disc tilting"] == pytest.approx(1.0, rel=1e-6)
     assert disc.kind(strain, kinetic) == "tilting on bearing"
     kinds = dict(zip(disc.spring_part, disc.spring_kind, strict=True))
     assert (kinds["mesh"], kinds["joint"], kinds["disc.0.0"]) == ("mesh", "coupling", "bearing")

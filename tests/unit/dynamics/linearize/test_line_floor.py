@@ -37,7 +37,7 @@ def every(name: str) -> ForcedResponse:
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
     """A hundred lines, as a much longer table would have of its own."""
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     monkeypatch.setattr("dynamics.linearize.strongest_lines.ALWAYS", 100)
 
 

@@ -33,7 +33,7 @@ def response(table, orders=10, speed=SPEED):
 @pytest.fixture
 def few(monkeypatch):
     """As many lines as every response has."""
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
 
 
 def test_a_long_table_that_repeats_a_short_one_has_its_response(few):
@@ -65,7 +65,7 @@ def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_wh
 def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
     every = response(table)
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     some = response(table)
     assert every.order.size > ALWAYS and "lines_left_out" not in every.facts
     own = np.isin(np.round(every.order * LONG), np.round(some.order * LONG))
@@ -82,7 +82,7 @@ def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
 def test_fewer_speeds_hold_more_lines(monkeypatch):
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
     freedoms = len(response(table, speed=SPEED[:2]).freedom)
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 12.0 * freedoms * ALWAYS)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 12.0 * freedoms * ALWAYS)
     lines, left = zip(*(_held(response(table, speed=SPEED[:count])) for count in (50, 10, 5)), strict=True)
     assert lines[0] < lines[1] < lines[2] and left[0] > left[1] > left[2] == 0.0
 
@@ -121,7 +121,7 @@ def test_transfer_functions_are_those_of_the_strongest_lines(monkeypatch):
     table = repeated(ripple(), LONG, 1e-6 * np.random.default_rng(1).normal(size=LONG))
     system = assemble(with_mesh(gear_pair_scene(table), damping_ratio=0.05, damping=None))
     every = flank_transfer(system, SPEED)
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     some = flank_transfer(system, SPEED)
     assert every.harmonics.size > ALWAYS >= some.harmonics.size
     assert np.all(np.isin(LONG * np.arange(1, 11), some.harmonics))

@@ -316,5 +316,5 @@ def test_a_tilt_curve_is_the_same_beside_a_curve_along_the_axis():
         q[system.freedoms.name.index("input.tilt_x")] = 5e-4
         local = local_state(system.arrays, 0.0, q, 0.0 * q)
         extra = system.arrays.elements.first[len(system.elements) - len(curves)]
-        moment = local.force[extra] * system.bearings[0].own[0, 3]
+        moment = local.force[extra] * system.bearings[0].local_rows[0, 3]
         assert moment == pytest.approx(30.0, rel=1e-9)

@@ -219,8 +219,8 @@ def test_a_carrier_carries_and_planets_grow_into_the_sun_and_the_ring(carrier, p
         radii = {gear.shaft in on_pins: gear.base_radius for gear in pair}
         acting = abs(radii[False] + sign * radii[True])
         growth = sign * radii[True] * distance / acting * strain(STEEL, planets)
-        assert change.apart == pytest.approx(distance * strain(STEEL, carrier) - growth, **EXACT)
-        yielded = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * change.apart
+        assert change.distance_change == pytest.approx(distance * strain(STEEL, carrier) - growth, **EXACT)
+        yielded = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * change.distance_change
         assert change.backlash == pytest.approx(sign * yielded, **EXACT)
 
 
@@ -232,7 +232,7 @@ def test_seats_of_unlike_temperature_misalign() -> None:
     expected = -0.025 * tilt * math.sin(math.radians(20.0))  # the face position runs against z
     assert warmed_meshes(scene).meshes[0].misalignment == pytest.approx(expected, **EXACT)
     middle = 0.08 * (strain(ALUMINUM, 60.0) - strain(STEEL, 80.0))
-    assert warmed_meshes(scene).temperatures.meshes[0].apart == pytest.approx(middle, **EXACT)
+    assert warmed_meshes(scene).temperatures.meshes[0].distance_change == pytest.approx(middle, **EXACT)
 
 
 # Scenes.

@@ -36,7 +36,7 @@ def every(model: SoundModel) -> tuple[HarmonicResponse, OrderPower]:
 
 @pytest.fixture
 def few(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("dynamics.linearize.strongest_lines.HELD", 0.0)
+    monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     monkeypatch.setattr("dynamics.linearize.strongest_lines.ALWAYS", 60)
 
 

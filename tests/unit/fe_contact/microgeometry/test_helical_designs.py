@@ -59,7 +59,7 @@ def searched(
     """Search with a simplex, whose moves are those of a mirrored problem mirrored."""
     problem = DesignProblem(assessed, variables, limits, 1e-6, objective=WeightedMean())
     search = Search(NelderMead(), evaluations=60, positions=POSITIONS)
-    run = search_from(problem, search, problem.place(begin), 0)
+    run = search_from(problem, search, problem.unit_point(begin), 0)
     return problem.values(run.place), run
 
 

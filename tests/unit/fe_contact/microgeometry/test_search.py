@@ -74,7 +74,7 @@ class Bowl:
         self.roughened = Bowl(self.bottom + 0.02)
         return self.roughened
 
-    def place(self, own: Any) -> FloatArray:
+    def unit_point(self, own: Any) -> FloatArray:
         return np.asarray(own)
 
     def keep(self, place: FloatArray, assessed: Assessed) -> None:

@@ -10,8 +10,8 @@ from held_out import held_out_error
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
 from fe_contact.ste import Metadata, PairFacts
-from fe_contact.ste.facts import content_hash
 from fe_contact.ste.fields import DIMENSIONS
+from fe_contact.ste.metadata import content_hash
 from fe_contact.ste.table_repair import without_failed_rows
 from fe_contact.types import Status
 

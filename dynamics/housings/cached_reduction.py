@@ -55,15 +55,15 @@ def meshed_step(
     """
     file = None
     if cache is not None and Path(path).is_file():
-        facts = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
-        content = hashlib.sha256(Path(path).read_bytes() + facts.encode()).hexdigest()
+        settings = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
+        content = hashlib.sha256(Path(path).read_bytes() + settings.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
     return cached_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
 
 
 def _read_mesh(file: Path) -> TetrahedralMesh:
-    kept = read_record(file, {MESH_SCHEMA: _KeptMesh})
-    return TetrahedralMesh(kept.points, kept.tetrahedra)
+    record = read_record(file, {MESH_SCHEMA: _KeptMesh})
+    return TetrahedralMesh(record.points, record.tetrahedra)
 
 
 def _write_mesh(mesh: TetrahedralMesh, file: Path) -> None:
@@ -97,8 +97,8 @@ def reduced_housing(
         motions = sum(seat.motions for seat in housing.seats)
         reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
         predicted = on_this_host(WORK, reference, cache)
-        maximum, own = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
-        remedy = f"{own}: use a coarser mesh or fewer modes."
+        maximum, size = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
+        remedy = f"{size}: use a coarser mesh or fewer modes."
         if predicted.seconds > maximum.seconds:
             raise InputError("predicted_seconds", predicted.seconds, at_most(maximum.seconds, "s"), remedy)
         if predicted.bytes > maximum.bytes:
@@ -118,7 +118,7 @@ def content_key(housing: MeshedHousing) -> str:
         values = np.ascontiguousarray(array)
         digest.update(f"{values.dtype.str} {values.shape}".encode())
         digest.update(values.tobytes())
-    facts = [
+    settings = [
         REDUCTION_VERSION,
         *(version(name) for name in ("scipy", "scikit-fem")),
         sorted(mesh.groups),
@@ -129,5 +129,5 @@ def content_key(housing: MeshedHousing) -> str:
         housing.modes,
         housing.damping,
     ]
-    digest.update(repr(facts).encode())
+    digest.update(repr(settings).encode())
     return digest.hexdigest()

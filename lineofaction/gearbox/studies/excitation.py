@@ -1,0 +1,33 @@
+"""What excites a linear response in one harmonic of a mesh, each amplitude with its error."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Excitation:
+    """A harmonic of a mesh at its torque, or an order beside its harmonics: amplitudes in SI.
+
+    An error is None where the table states none.
+    """
+
+    mesh: str
+    torque: float
+    """On the driving gear, N m."""
+    harmonic: int | None
+    """None: an order beside the harmonics of the mesh."""
+    order: float
+    transmission_error: float
+    error_of_transmission_error: float | None
+    load_moment: float
+    error_of_load_moment: float | None
+    friction_force: float
+    error_of_friction_force: float | None
+
+
+def stored_excitations(facts: Mapping[str, Any]) -> list[Excitation]:
+    """Return the excitations among the facts of a result; none of forces of a run."""
+    return [Excitation(**row) for row in facts.get("excitations", ())]

@@ -1,0 +1,71 @@
+"""What a vibration tells of each point, and of what contributes at one speed and order, in SI."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds.types import ComplexArray, FloatArray
+from dynamics.vibration.vibration_analysis import Shares
+
+
+@dataclass(frozen=True)
+class PointVelocity:
+    """Velocity of a point at S speeds in H orders, root mean square, m/s."""
+
+    velocity: FloatArray
+    """Shape (H, S)."""
+    velocity_xyz: FloatArray
+    """Along x, y, z. Shape (3, H, S)."""
+    overall: FloatArray
+    """All orders together. Shape (S,)."""
+    left_out: FloatArray
+    overall_error: FloatArray
+    """`left_out`, `overall_error`: The part of `overall` in orders that are not listed, and what it may be
+    off for them. Shape (S,) each.
+    """
+    level: FloatArray
+    """dB. Shape (H, S)."""
+
+
+def root_mean_square(velocity: ComplexArray) -> FloatArray:
+    """Return root mean squares (3, S, H) of peak amplitudes along x, y, z."""
+    return np.asarray(np.abs(velocity) / np.sqrt(2.0))
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+
+    name: str
+    frequency: float
+    """Natural frequency, Hz; NaN of what is no mode."""
+    points: dict[str, float]
+    surface: float
+    """NaN without a surface."""
+
+
+@dataclass(frozen=True)
+class Contributions:
+    """What contributes at one speed, rad/s, and order, of a frequency, Hz."""
+
+    speed: float
+    order: float
+    frequency: float
+    bearings: list[Contribution]
+    modes: list[Contribution]
+
+
+def contributions_of(shares: Shares, points: Sequence[str]) -> list[Contribution]:
+    """Return the parts of shares, each by the names of points."""
+    return [
+        Contribution(
+            name,
+            float(shares.frequency[part]),
+            dict(zip(points, shares.point[:, part].tolist(), strict=True)),
+            float(shares.surface[part]),
+        )
+        for part, name in enumerate(shares.name)
+    ]
