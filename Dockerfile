@@ -58,7 +58,7 @@ RUN apt-get update \
     && install -d -o lineofaction -g lineofaction /data /data/cache /data/service /data/service/compliance /results
 COPY --from=build /opt/lineofaction /opt/lineofaction
 
-# The compiled loops are cached beside the data, so that they survive the container, by version: they name modules.
+# What else is compiled is cached beside the data, so that it survives the container.
 ENV PATH=/opt/lineofaction/bin:$PATH \
     PYTHONUNBUFFERED=1 \
     LOA_HOST=127.0.0.1 \
@@ -71,6 +71,11 @@ ENV PATH=/opt/lineofaction/bin:$PATH \
     OMP_NUM_THREADS=1
 RUN --mount=type=bind,source=scripts/sbom.py,target=/tmp/sbom.py \
     PYTHONDONTWRITEBYTECODE=1 python /tmp/sbom.py /usr/share/sbom/lineofaction.cdx.json
+# Loops of first tables and of a run-up, for families of processors; a builder without AVX-512 leaves those of v4 out.
+RUN --mount=type=bind,source=scripts/build_loops.py,target=/tmp/build/scripts/build_loops.py \
+    --mount=type=bind,source=examples,target=/tmp/build/examples \
+    PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR=/tmp/matplotlib XDG_CACHE_HOME=/tmp/cache \
+    python /tmp/build/scripts/build_loops.py x86-64-v3 x86-64-v4 && rm -rf /tmp/matplotlib /tmp/cache
 USER lineofaction
 WORKDIR /data
 VOLUME /data

@@ -16,7 +16,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from host.directories import whole_file
+from host.directories import atomic_file
 
 PROJECT = Path(__file__).resolve().parents[1]
 """The folder of the packages, in a clone as installed."""
@@ -129,7 +129,7 @@ class Sources:
         content = {"states": self._states, "keys": self._keys}
         with suppress(OSError):
             manifest.parent.mkdir(parents=True, exist_ok=True)
-            with whole_file(manifest) as draft:
+            with atomic_file(manifest) as draft:
                 draft.write_text(json.dumps(content), encoding="utf-8")
 
 
