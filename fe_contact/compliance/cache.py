@@ -152,7 +152,7 @@ def write_compliance(
         return
     try:
         with os.fdopen(handle, "wb") as stream:
-            np.savez(stream, allow_pickle=False, header=header, checksum=_checksum(arrays, header), **arrays)
+            np.savez(stream, allow_pickle=False, facts=header, checksum=_checksum(arrays, header), **arrays)
         Path(name).replace(_file(directory, key))
     except OSError:
         Path(name).unlink(missing_ok=True)
