@@ -126,9 +126,9 @@ class MeshAlignment:
     """Transverse, N."""
     misalignment: float = field(metadata=in_unit("m"))
     """m."""
-    minimum: float = field(metadata=in_unit("m"))
+    least: float = field(metadata=in_unit("m"))
     largest: float = field(metadata=in_unit("m"))
-    """`minimum`, `largest`: Misalignment over the cycle, m."""
+    """`least`, `largest`: Misalignment over the cycle, m."""
     causes: FloatArray = field(metadata=in_unit("m", "cause"))
     """Parts of the misalignment by `CAUSES`, m. Shape (6,)."""
     center_distance_change: float = field(metadata=in_unit("m"))
@@ -161,7 +161,7 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
         name=mesh.name,
         force=float(rest.mesh_force[:, index].mean()),
         misalignment=float(course.mean()),
-        minimum=float(course.min()),
+        least=float(course.min()),
         largest=float(course.max()),
         causes=causes,
         center_distance_change=mesh.center_distance_change + distance_change,

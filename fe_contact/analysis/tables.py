@@ -76,7 +76,7 @@ def solve_table(
     ----------
     before : SolvedTable, optional
         The same pair with other effects: its compliance is taken if the bodies are the same.
-    decided : Decided, optional
+    decision : Decision, optional
         Model and discretization; default: those that the accuracy asks for.
     """
     full = checked.request.options.receipt == "full"

@@ -51,7 +51,7 @@ class CountedMerit:
 
     Parameters
     ----------
-    most : int
+    maximum : int
         It raises `BudgetUsed` when so many designs of the budget are used.
     workers : Workers
         Who assesses designs, and walks, that do not wait for each other.

@@ -61,7 +61,7 @@ def compute_pass(
     ----------
     case : dict
         Echoed into the result and hashed.
-    decided : Decided, optional
+    decision : Decision, optional
         Model and discretization; default: those that the accuracy asks for.
     clock : StageClock, optional
         That of the workers' cost, with what was spent on this pass before it began; default: a new one.

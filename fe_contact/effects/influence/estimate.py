@@ -53,7 +53,7 @@ def estimate_influence(
     ----------
     choices : mapping of str to str
         Every effect "on" or "off"; all but `name` stay so.
-    least : float
+    minimum : float
         Size in m that smaller means and ripples count as where a change is a part of them.
 
     Returns

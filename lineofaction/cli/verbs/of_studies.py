@@ -45,8 +45,11 @@ class StudyGroup(TyperGroup):
         """List the verbs by groups, each with its whole sentence."""
         groups: dict[str, list[tuple[str, str]]] = {group: [] for group in GROUPS}
         for name in self.list_commands(ctx):
-            verb = self.get_command(ctx, name)
-            groups[verb.rich_help_panel].append((name, verb.short_help or verb.help))
+            verb: Any = super().get_command(ctx, name)
+            if verb is not None:
+                groups[verb.rich_help_panel].append((name, verb.short_help or verb.help))
+            else:  # from its row: the models of its inputs are not loaded
+                groups[STUDIES[name].group].append((name, STUDIES[name].description))
         for group, verbs in groups.items():
             with formatter.section(group.capitalize()):
                 formatter.write_dl(verbs)

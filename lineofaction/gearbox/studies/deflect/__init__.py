@@ -137,7 +137,7 @@ class DeflectFigures(Figures):
             force_n: float
             misalignment_um: float
             misalignment_over_cycle_um: Annotated[
-                tuple[float, float], Source(lambda mesh: (mesh.minimum, mesh.largest))
+                tuple[float, float], Source(lambda mesh: (mesh.least, mesh.largest))
             ]
             causes_um: dict[str, float]
             center_distance_change_um: float
