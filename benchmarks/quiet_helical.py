@@ -45,7 +45,7 @@ class AssessedInfluence:
         """Whether mean and peak-to-peak are within a factor 2; below 1 % and 20 nm both are nothing."""
         found = []
         for name in ("mean", "peak_to_peak"):
-            scale = max(getattr(self.computed, f"whole_{name}"), RIPPLE_FLOOR / FLOOR)
+            scale = max(getattr(self.computed, f"full_{name}"), RIPPLE_FLOOR / FLOOR)
             estimated, computed = (getattr(one, name) / scale for one in (self.estimated, self.computed))
             found.append(within_factor(estimated, computed))
         return found[0], found[1]

@@ -21,7 +21,7 @@ for the factor by which neighbors soften a cut. Three errors enter S by their sq
 - Directions that hold less than `MIN_ENERGY` of the solutions are left out of it.
 
 What the last two leave unbalanced is measured at every harmonic, and where a flank node is more than
-`LARGEST_MISSED` off, the worst harmonic is solved, too.
+`LARGEST_ERROR` off, the worst harmonic is solved, too.
 
 Thomas, D. L. (1979). Dynamics of rotationally periodic structures. Int. J. Numer. Meth. Engng 14, 81-102.
 Quarteroni, A., Manzoni, A., Negri, F. (2016). Reduced basis methods for partial differential equations.

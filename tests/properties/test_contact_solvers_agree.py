@@ -69,7 +69,7 @@ def random_gaps(rng: np.random.Generator, n: int) -> GapAbout:
         curvature=1.0 / rng.uniform(2e-3, 15e-3, n),
         low=low,
         high=rng.choice([np.inf, 1e-3, 1e-4], n),
-        place=place,
+        coordinate=place,
         jump=rng.choice([0.0, 3e-3, 0.02], (n, 2)),
         bend=rng.choice([0.0, -5.0, 20.0], (n, 2)),
     )
@@ -252,7 +252,7 @@ def test_lengths_scale_and_forces_scale_with_their_square(problem, load, scale):
         compliance=problem.compliance / scale,
         gap_about=GapAbout(
             here.slope, here.curvature / scale, here.low * scale, here.high * scale,
-            here.place * scale, here.jump, here.bend / scale,
+            here.coordinate * scale, here.jump, here.bend / scale,
         ),
         **{name: scale * getattr(problem, name) for name in names},
     )  # fmt: skip

@@ -84,7 +84,7 @@ def test_a_design_is_as_loud_as_its_table_in_a_scene_assembled_anew() -> None:
     own = problems()[0]
     tabled_at = own.tables_of(list(tabled_loads(own.evaluator, DESIGN, (0,))))
     subject = tabled(scene())
-    for at, each in zip(own.heard.at, tabled_at, strict=True):
+    for at, each in zip(own.sound.at, tabled_at, strict=True):
         whole = at.case.transfer.excitation(system_with(subject, "mesh", each.table, at.case.load))
         power = at.case.form.weighted(at.case.transfer.inputs(whole)) @ at.counted
         np.testing.assert_allclose(at.power(each.table), power, rtol=1e-7)
@@ -117,7 +117,7 @@ def test_moved_tables_made_at_once_are_those_made_one_by_one() -> None:
     own = problems()[0]
     tabled_at = list(tabled_loads(own.evaluator, DESIGN, (0,), own.names))[-1]
     steps = 1e-9 * np.eye(len(own.names))
-    for step, moved in zip(steps, tabled_at.moved(steps), strict=True):
+    for step, moved in zip(steps, tabled_at.force_tables(steps), strict=True):
         changes = {
             name: getattr(tabled_at.table, name) + np.tensordot(step, by, 1)[..., None, None]
             for name, by in tabled_at.by.items()

@@ -38,6 +38,12 @@ def scaled(x):
 """
 
 
+@pytest.fixture(autouse=True)
+def beside_the_source(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Keep entries beside the source, also where the whole run of tests has a folder for them."""
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+
+
 def project(folder: Path) -> Path:
     """Write a package of a loop, of the inner loop that it calls and of a constant."""
     package = folder / "gears"

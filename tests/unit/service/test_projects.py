@@ -187,7 +187,9 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
 
     def table(project: str) -> Any:
         orders: list[WorkOrder] = []
-        crew: Any = SimpleNamespace(begin=lambda order, *_: orders.append(order) or SimpleNamespace(facts={}))
+        crew: Any = SimpleNamespace(
+            begin=lambda order, *_: orders.append(order) or SimpleNamespace(log_fields={})
+        )
         mine = replace(claim, project=project)
         begun(machine.settings, SIMULATE, mine, crew, machine.store, WorkerFigures())
         return _table(WorkOrder.from_line(orders[0].line()), 0, mesh, [], lambda _fraction: None)

@@ -15,5 +15,5 @@ def condensed_once() -> None:
 @pytest.fixture
 def exact_ring(monkeypatch: pytest.MonkeyPatch) -> None:
     """Close rings to rounding; `test_closed_ring` holds what their limits leave."""
-    for limit in ("MIN_PASSED", "MIN_ENERGY", "LARGEST_MISSED"):
+    for limit in ("MIN_PASSED", "MIN_ENERGY", "LARGEST_ERROR"):
         monkeypatch.setattr(reduced_harmonics, limit, 1e-13)
