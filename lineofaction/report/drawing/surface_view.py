@@ -180,7 +180,7 @@ def surface_panels(
     triangles : (t, 3) int array
     value : (t,) array
         Where some is negative, colors are even about 0.
-    label, words : str
+    label, subtitle : str
         Of the colors, with the unit after the last comma, and in the titles of the panels, if any.
     """
     displaced = points + offset
