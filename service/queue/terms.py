@@ -120,34 +120,24 @@ def delivery(response: Response, transmission: Transmission | None, field: str) 
 
 @dataclass(frozen=True)
 class Terms:
-    """The terms of a job.
-
-    Attributes
-    ----------
-    delivery : Delivery
-        Form of the result.
-    label : Label
-        Title and tags.
-    differences : Differences
-        Inputs in which the job differs from the previous job of its caller.
-    priority : int
-        A computation has the highest priority of the jobs that share it.
-    max_cost_s : float or None
-        CPU seconds that the job may take; None: no limit.
-    stated : str
-        Inputs as the caller wrote them, JSON; empty if the service does not store them.
-    reuse : bool
-        Whether an equal job of the same caller, under way or done, may answer in place of this one.
-    """
+    """The terms of a job."""
 
     delivery: Delivery = AS_IT_IS
+    """Form of the result."""
     label: Label = NO_LABEL
-    # a factory, as dataclasses refuse a default without a hash
-    differences: Differences = field(default_factory=lambda: NOT_COMPARED)
+    """Title and tags."""
+    differences: Differences = field(
+        default_factory=lambda: NOT_COMPARED
+    )  # its class has no hash: no default
+    """Inputs in which the job differs from the previous job of its caller."""
     priority: int = 0
+    """Priority of the job; a computation has the highest one of the jobs that share it."""
     max_cost_s: float | None = None
+    """CPU seconds that the job may take; None: no limit."""
     stated: str = ""
+    """Inputs as the caller wrote them, JSON; empty if the service does not store them."""
     reuse: bool = False
+    """Whether an equal job of the same caller, under way or done, may answer in place of this one."""
 
     def columns(self) -> dict[str, str]:
         """Return the columns of the table of jobs; priority and cost are stored with the computation."""
