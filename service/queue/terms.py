@@ -126,9 +126,8 @@ class Terms:
     """Form of the result."""
     label: Label = NO_LABEL
     """Title and tags."""
-    differences: Differences = field(
-        default_factory=lambda: NOT_COMPARED
-    )  # its class has no hash: no default
+    # a factory: a dataclass refuses a default whose class has no hash
+    differences: Differences = field(default_factory=lambda: NOT_COMPARED)
     """Inputs in which the job differs from the previous job of its caller."""
     priority: int = 0
     """Priority of the job; a computation has the highest one of the jobs that share it."""
