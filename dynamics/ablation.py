@@ -1,4 +1,11 @@
-"""Toggle each effect of a scene and run again."""
+"""Ablation of a scene: toggle each of its effects by itself, run again, and compare the figures of the runs.
+
+Terms: an effect is a part of the model that can be on or off, such as friction. The ledger of a scene says of
+every part (mesh or bearing) which effects it has, which of them are on, and why. The influence of an effect
+is the estimate, by linear theory, of what toggling it changes. The level is what the scene is computed for,
+its `LevelQuantity`: the sound power of a housing, for example, or by default the forces on bearings; lines
+are its squares by order. m counts meshes, b bearings with stored forces, K lines.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +39,16 @@ __all__ = ["Ablation", "EffectAblation", "RunFigures", "ablate"]
 
 
 HIGHEST = COMPARED
-"""Mesh orders that are compared."""
+"""Highest mesh order that is compared; the mean, order 0, is compared by itself."""
 PITCHES = 16
+"""Base pitches in a block of the order analysis, unless the run is too short for four such blocks."""
 SETTLED = 0.5
 """Part of the run after which start-up transients are taken to have died out."""
 
 WARM_UP = 0.01
 """Part of the duration that a scene runs for before it is timed."""
 _FIGURE = 2e-6
-"""CPU seconds of the figures of a run by sample, and by mesh or bearing."""
+"""CPU seconds of the figures of a run, per sample and per mesh or bearing; for predictions of cost only."""
 
 
 def _no_lines() -> FloatArray:
@@ -54,58 +62,75 @@ class RunFigures(Figures):
     Attributes
     ----------
     mean, peak_to_peak : (m,) arrays
-        Of the dynamic transmission error of every mesh, m.
+        Mean and peak-to-peak of the dynamic transmission error of every mesh, m.
     cpu_seconds : float
-        Of the run.
+        CPU time of the run, s.
     """
 
     orders: FloatArray = field(metadata=in_unit("m", "curve", "order"))
-    """Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m. Shape (m, 5).
-    """
+    """Largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m. Shape (m, 5)."""
     bearing_orders: FloatArray = field(metadata=in_unit("n", "bearing", "order"))
-    """Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored. Shape
-    (b, 5).
+    """Largest amplitudes along the run of mesh orders 1 to 5 of the bearing forces, N: the root of the sum
+    of squares over the components. b = 0 if the run stores no forces. Shape (b, 5).
     """
     line_order: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
     line_square: FloatArray = field(default_factory=_no_lines, metadata=in_unit("1", "line"))
-    """`line_order`, `line_square`: Orders of the bearing forces and the largest squares along the run of what
-    the scene is computed for; K = 0 of a run too short to tell them. Shape (K,) each.
+    """`line_order`, `line_square`: Orders of the level, and its largest square along the run in each. K = 0
+    if the run is too short for bearing orders. Shape (K,) each.
     """
 
     @property
     def lines(self) -> Lines:
-        """The largest squares by order."""
+        """The largest squares of the level by order."""
         return dict(zip(self.line_order.tolist(), self.line_square.tolist(), strict=True))
 
 
 def _run_figures(result: RunResult, seconds: float, quantity: LevelQuantity) -> RunFigures:
-    """Return the figures of a run of so many CPU seconds; one shorter than a few base pitches is refused."""
+    """Return the figures of a run that took `seconds` of CPU time.
+
+    Raises `InputError`: the run is shorter than a few base pitches.
+    """
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
-    travel = float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))  # of the first mesh
-    pitches = max(1, min(PITCHES, int(travel / 4.0)))
+    position = np.unwrap(result.position[0], period=1.0)  # of the first mesh, in base pitches
+    travel = abs(float(np.sum(np.diff(position))))
+    pitches = max(1, min(PITCHES, int(travel / 4.0)))  # at least four blocks: two of them in the settled half
     transmission = _largest(result, "dynamic_transmission_error", pitches)
     bearings = np.empty((0, HIGHEST))
     if result.bearing_force.size:
-        bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
-    figures = np.mean(error, axis=1), np.ptp(error, axis=1), seconds
-    return RunFigures(*figures, transmission, bearings, *_lines_of(result, quantity))
+        components = _largest(result, "bearing_force", pitches)  # shape (b, components, 5)
+        bearings = np.sqrt(np.sum(components**2, axis=1))
+    line_order, line_square = _settled_lines(result, quantity)
+    return RunFigures(
+        mean=np.mean(error, axis=1),
+        peak_to_peak=np.ptp(error, axis=1),
+        cpu_seconds=seconds,
+        orders=transmission,
+        bearing_orders=bearings,
+        line_order=line_order,
+        line_square=line_square,
+    )
 
 
-def _lines_of(result: RunResult, quantity: LevelQuantity) -> tuple[FloatArray, FloatArray]:
-    """Return orders (K,) and largest squares (K,) over the settled windows; none of a run without any."""
+def _settled_lines(result: RunResult, quantity: LevelQuantity) -> tuple[FloatArray, FloatArray]:
+    """Return orders (K,) and largest squares (K,) of the level over the settled windows.
+
+    Both are empty if the run has no bearing orders, or no settled window.
+    """
     try:
         forces = bearing_orders(result)
     except InputError:
         return _no_lines(), _no_lines()
     settled = forces.time >= SETTLED * result.time[-1]
-    lines = loudest_lines(forces.order, quantity.squares(forces)[settled], {}) if settled.any() else {}
+    if not settled.any():
+        return _no_lines(), _no_lines()
+    lines = loudest_lines(forces.order, quantity.squares(forces)[settled], known={})
     return np.array(list(lines)), np.array(list(lines.values()))
 
 
 def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:
-    """Largest amplitudes (..., 5) of the orders 1 to 5 over the settled blocks."""
-    amplitude = order_track(result, series, pitches, HIGHEST).amplitude
+    """Return the largest amplitudes (..., 5) of mesh orders 1 to 5 over the settled blocks of a series."""
+    amplitude = order_track(result, series, pitches, HIGHEST).amplitude  # (..., blocks, orders 0 to 5)
     first = int(SETTLED * amplitude.shape[-2])
     return np.asarray(np.max(amplitude[..., first:, 1:], axis=-2))
 
@@ -117,27 +142,28 @@ class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     Attributes
     ----------
     name, on, reason, with_effect, without_effect, estimate
-        Of every ablation; on if any part has it on, the reason is that of the first such part. The estimate
-        is of the part of the run that is compared.
+        As in `model_studies.EffectAblation`. The effect is on if it is on in any part of the scene; the
+        reason is that of the first such part. The estimate covers the settled part of the run, as the figures
+        do.
     """
 
     level: LevelChange = field(default_factory=LevelChange)
-    """What the ledger of the run states, of all of it."""
+    """Change of the level by the effect, as the ledger estimates it for the whole run."""
 
     @property
     def level_change(self) -> LevelChange:
-        """Change of the level that is measured, of the part of the run that is compared."""
+        """Change of the level between the two runs, over their settled part."""
         level = self.level
         return level_change(self.with_effect.lines, self.without_effect.lines, level.quantity, level.unit)
 
     @property
     def order_change(self) -> FloatArray:
-        """Change (m, 5) of the mesh orders by leaving the effect out, m."""
+        """Change (m, 5) of the mesh orders of the transmission error by leaving the effect out, m."""
         return self.change("orders")
 
     @property
     def bearing_order_change(self) -> FloatArray:
-        """Change (b, 5) of the mesh orders of bearing forces, N."""
+        """Change (b, 5) of the mesh orders of the bearing forces by leaving the effect out, N."""
         return self.change("bearing_orders")
 
 
@@ -149,12 +175,12 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     Attributes
     ----------
     nominal, effects, left_out
-        Of every ablation.
+        As in `model_studies.Ablation`.
     """
 
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
-    """`mesh`, `bearing`: What the rows of the figures are."""
+    """`mesh`, `bearing`: Names of the meshes and bearings, in the order of the rows of the figures."""
 
 
 def ablate(
@@ -171,69 +197,81 @@ def ablate(
     Parameters
     ----------
     scene : Scene
-        Its ``on_violation`` is ignored: no run is repeated. Its tolerance decides once, for the scene itself.
+        Its ``on_violation`` is ignored: no run is repeated. Its tolerance decides once which effects are on,
+        for the scene itself; the runs with a toggled effect keep that choice.
     only : sequence of str, optional
         Effects to toggle; default all.
     progress : callable, optional
         Called with "ablation" and the fraction done.
     workers : Workers
-        They run an effect each.
+        Executor of the runs: each task is one effect.
 
     Returns
     -------
     Ablation
-        Figures of the second half of each run: of a run at constant speed the steady state, of a run-up the
-        largest order amplitudes along it.
+        Figures of the second half of each run. They are those of the steady state if the speed is constant;
+        in a run-up the amplitudes of orders are the largest ones along it.
     """
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     scene.require_meshes()
     scene = decide_effects(scene).scene
-    scene = assemble(scene).resolved(scene)  # one output grid for all runs
+    scene = assemble(scene).resolved(scene)  # all runs get the same times of output
+    # The choice of effects is made: without tolerances no run makes it again.
     scene = replace(scene, on_violation="report", tolerance=None, level_tolerance=None)
     result, seconds = _timed(scene)
     quantity = scene.quantity or BearingForces()
     nominal = _run_figures(result, seconds, quantity)
-    ledger = {name: influence.level for name, influence in estimate_influences(scene).items()}
-    estimates = estimate_influences(scene, SETTLED)
+    # Levels of the whole run, as its ledger states them; estimates of the settled part, as the figures.
+    levels = {name: influence.level for name, influence in estimate_influences(scene).items()}
+    estimates = estimate_influences(scene, settled=SETTLED)
     system = assemble(scene)
     states = {name: _EffectState.of(system, name) for name in names}
     effects, left_out = run_variants(
-        "ablation",
-        states,
-        partial(_toggled, scene, nominal),
-        (InputError, SolveError),
-        progress,
-        workers,
-        seconds * sum(state.possible for state in states.values()),
+        stage="ablation",
+        variants=states,
+        compute=partial(_toggled, scene, nominal),
+        failures=(InputError, SolveError),
+        progress=progress,
+        workers=workers,
+        seconds=seconds * sum(state.possible for state in states.values()),
     )
-    silence = LevelChange(quantity.name, quantity.unit)
+    no_change = LevelChange(quantity.name, quantity.unit)
     entries = (
-        replace(entry, estimate=estimates.get(name), level=ledger.get(name, silence))
+        replace(entry, estimate=estimates.get(name), level=levels.get(name, no_change))
         for name, entry in effects.items()
     )
     return Ablation(nominal, tuple(entries), left_out, result.mesh, result.bearing)
 
 
 def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[list[float], float]:
-    """Return the steps of all runs over those of the scene's own, and the CPU seconds of the figures of each.
+    """Return the cost of an ablation: relative lengths of its runs, and CPU seconds of the figures of one.
 
-    Of the scene and of every effect that it can have; one that is off brings its freedoms, in proportion.
+    The first entry of the list is the scene itself, the others are one for every effect that the scene can
+    have. An entry is a number of integration steps over the steps of the scene, warm-up included. A run with
+    an effect switched off takes as many steps as the scene; one with an effect switched on takes more, in
+    proportion to the degrees of freedom that the effect adds.
     """
     names = chosen("only", only, [effect.name for effect in EFFECTS])
     scene.require_meshes()
     system = assemble(scene)
-    states = [state for state in (_EffectState.of(system, name) for name in names) if state.possible]
-    scenes = [state.toggled(scene) for state in states if not state.on]
+    states = [_EffectState.of(system, name) for name in names]
+    possible = [state for state in states if state.possible]
     freedoms = max(system.freedoms.column.size, 1)
-    more = [assemble(other).freedoms.column.size / freedoms for other in scenes]
-    less = sum(state.on for state in states)
+    switched_off = [1.0 for state in possible if state.on]
+    switched_on = [
+        assemble(state.toggled(scene)).freedoms.column.size / freedoms for state in possible if not state.on
+    ]
+    steps = [(1.0 + WARM_UP) * ratio for ratio in (1.0, *switched_off, *switched_on)]
     parts = len(scene.meshes) + len(system.supports.name)
-    figures = _FIGURE * parts * scene.duration * system.sampling.rate
-    return [(1.0 + WARM_UP) * times for times in (1.0, *less * [1.0], *more)], figures
+    samples = scene.duration * system.sampling.rate
+    return steps, _FIGURE * parts * samples
 
 
 class _EffectState(NamedTuple):
-    """One effect over all parts of a scene: on if any part has it on."""
+    """The state of one effect over all parts of a scene.
+
+    The effect is `on` if it is on in any part, and `possible` if any part can have it.
+    """
 
     name: str
     on: bool
@@ -242,29 +280,46 @@ class _EffectState(NamedTuple):
 
     @classmethod
     def of(cls, system: System, name: str) -> _EffectState:
-        """Return what the ledger of a scene decided; the reason is that of the first such part."""
+        """Return the state that the ledger of a system holds; the reason is that of the first part with it.
+
+        If no part can have the effect, the reason is that of the first part.
+        """
         parts = system.ledger.of(name)
-        able = [part for part in parts if part.possible]
-        on = any(part.on for part in able)
-        reasons = [part.reason for part in able if part.on == on] or [part.reason for part in parts]
-        return cls(name, on, next(iter(reasons), "no part of the scene has it"), possible=bool(able))
+        capable = [part for part in parts if part.possible]
+        on = any(part.on for part in capable)
+        reasons = [part.reason for part in capable if part.on == on] or [part.reason for part in parts]
+        reason = reasons[0] if reasons else "no part of the scene has it"
+        return cls(name, on, reason, possible=bool(capable))
 
     def toggled(self, scene: Scene) -> Scene:
-        """Return the scene with the effect toggled: what is on anywhere goes off everywhere."""
+        """Return the scene with the effect toggled in all parts: off if it is on in any part, else on."""
         return replace(scene, effects={**scene.effects, self.name: "off" if self.on else "on"})
 
 
 def _toggled(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
-    """Run with one effect toggled."""
+    """Return the figures of a scene with and without one effect: `nominal`, and those of a run of its own.
+
+    Raises `LeftOut`: no part of the scene can have the effect.
+    """
     if not state.possible:
         raise LeftOut(state.reason)
-    other = _run_figures(*_timed(state.toggled(scene)), scene.quantity or BearingForces())
-    runs = (nominal, other) if state.on else (other, nominal)
-    return EffectAblation(state.name, state.on, state.reason, *runs, None)
+    result, seconds = _timed(state.toggled(scene))
+    toggled = _run_figures(result, seconds, scene.quantity or BearingForces())
+    return EffectAblation(
+        name=state.name,
+        on=state.on,
+        reason=state.reason,
+        with_effect=nominal if state.on else toggled,
+        without_effect=toggled if state.on else nominal,
+        estimate=None,  # `ablate` fills it in
+    )
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:
-    """Run a scene; the CPU time is that of a second run, the first loads what is compiled for its laws."""
+    """Run a scene; return the result and its CPU time in s.
+
+    A short run comes first: it compiles or loads the laws of the scene, which the time then does not contain.
+    """
     simulate(replace(scene, duration=WARM_UP * scene.duration))
     began = cpu_seconds()
     result = simulate(scene)

@@ -1,19 +1,26 @@
-"""Newton's method for one contact point problem: who carries what.
+"""Newton's method for one position of the contact: which contacts carry, and how much.
 
-The bodies move by n curves over the face, each over a few contacts; m contacts press on them by the parts
-N (m, n) of their forces. Find the forces on the curves h (n,) and the deflection d with
+Terms: a contact is a short length of a contact line; q counts the m of them. A curve is a shape of force over
+the face of a tooth pair; the bodies know n of them, and the force of a contact is spread over a few curves
+beside each other. The parts of that spreading are N (m, n). The strip is the width over which a contact is
+pressed flat; the local law takes what lies nearer to it than the reference length. The motion arm a_q is
+the normal approach of contact q per unit deflection, the torque arm b_q its share of the load per unit force.
 
-    h = N'F,    F_q = phi_q(m_q d - g_q - (N u(h))_q) >= 0,    sum_q n_q F_q = T,
+Find the forces on the curves h (n,) and the deflection d that satisfy
 
-u the motions of the bodies, the gradient of their energy W(h), and phi_q, the inverse of the local approach,
-convex and zero where flanks part. Which contacts carry needs no search: each follows from its own approach.
-With D the slopes of phi and K = du/dh, Newton's matrix is 1 + N'DN K, and only the curves over contacts that
-touch have rows in it. With m = n this is the search for the least energy
+    h = N'F,    F_q = phi_q(a_q d - g_q - (N u(h))_q) >= 0,    sum_q b_q F_q = T.
 
-    h'u - W(h) + sum_q Phi_q(m_q d - g_q - (N u)_q) - T d;
+Here u(h) are the motions of the bodies, the gradient of their energy W(h); g_q is the gap; T is the load; and
+phi_q is the inverse of the local approach, which is convex, and zero where the flanks part. No search for the
+carrying contacts is needed: each force follows from the approach of its contact.
 
-off the line of action m and n differ by a per cent. A whole step may go too far where contacts enter; it is
-then cut to where the energy along it is least (docs/theory/contact.md).
+With D = diag(dphi_q) and K = du/dh, Newton's matrix is 1 + N'DN K. Only the curves over contacts that touch
+have rows in it. If a = b, the equations are those of the least energy
+
+    h'u - W(h) + sum_q Phi_q(a_q d - g_q - (N u)_q) - T d,    dPhi_q = phi_q;
+
+off the line of action a and b differ by a per cent. A whole step may go too far where contacts begin to
+touch; it is then shortened to where the energy along it is least (docs/theory/contact.md).
 """
 
 from __future__ import annotations
@@ -43,41 +50,59 @@ CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 
 MAX_ITERATIONS = 100
 STEP_TOLERANCE = 1e-11
-"""Largest last change of the motions over the deflection; Newton squares it, so they are good to rounding."""
+"""Largest motion of the last step over the deflection, at which the iteration ends. The error after a Newton
+step goes with the square of the step, so the motions are then exact to rounding.
+"""
 STRAIGHT = 1e-8
-"""The same of a step over which the laws may be straight enough for the forces to follow without them."""
+"""Largest motion of a step over the deflection, below which `_settle` tries to follow the tangents of the
+local laws and to save their last evaluation.
+"""
 ROUNDING = 1e-7
-"""The same, below which steps that do not fall any more are rounding: of bodies that turn by much."""
-_CUTS = 30
+"""Largest motion of a step over the deflection, below which steps that no longer shrink count as rounding.
+Bodies with a large tilt reach no smaller steps.
+"""
+_CUTS = 30  # trials of a step's length; the last one is taken as it is
 _LEVEL = 0.3
-"""Slope of the energy at the end of a step over its fall at the beginning, from which on the step is cut."""
+"""Slope of the energy at the end of a step over its slope at the beginning, above which the step is cut."""
+_SHRINKS = 0.1  # a step above this part of the previous one does not shrink as Newton's do
 
 
 class NewtonSystem(NamedTuple):
-    """Newton's equations of the curves over touching contacts; filled up to their number."""
+    """Newton's equations of the curves over touching contacts, the members.
+
+    The arrays have room for all n curves. With k members, the first k entries of `member` and `right` and the
+    leading k x k blocks of `matrix` and `compliance` are filled in.
+    """
 
     member: IntArray
-    """Those curves. Shape (n,)."""
+    """Numbers of the members among all curves, rising. Shape (n,)."""
     touching: FloatArray
-    """N'DN of all curves with those up to w - 1 before them, N/m. Shape (n, w)."""
+    """The band of the symmetric N'DN: column c holds the entries of each curve with the one c before it, N/m.
+    A contact spreads over w curves, so that the band is w wide. Shape (n, w).
+    """
     matrix: FloatArray
     compliance: FloatArray
-    """`matrix`, `compliance`: 1 + N'DN K, and K of the members, m/N. Shape (n, n) each."""
+    """`matrix`, `compliance`: 1 + N'DN K, and K in m/N, of the members. Shape (n, n) each."""
     right: FloatArray
-    """N'D m in N/m, and what the forces on the curves miss in N. Shape (2, n)."""
+    """Right-hand sides, which the elimination turns into solutions. Row 0: N'D a, N/m. Row 1: the defect of
+    the forces on the curves, N'F - h, N. Shape (2, n).
+    """
     shares: FloatArray
-    """N'D n of all curves, N/m. Shape (n,)."""
+    """N'D b of all curves, N/m. Shape (n,)."""
     left: FloatArray
-    """Forces on curves whose contacts do not touch any more, N. Shape (n,)."""
+    """Forces h - N'F that remain on curves whose contacts have parted, N; zero of members. Shape (n,)."""
 
 
 @inner(error_model="numpy")
 def empty_system(problem: PointProblem) -> NewtonSystem:
-    """Return room for the equations of a problem."""
+    """Return the equations of a problem with all arrays allocated and none filled in."""
     n = problem.bodies.shape[0]
-    member, touching = np.empty(n, dtype=np.int64), np.empty((n, problem.curve.shape[1]))
-    square, right, line = np.empty((2, n, n)), np.empty((2, n)), np.empty((2, n))
-    return NewtonSystem(member, touching, square[0], square[1], right, line[0], line[1])
+    member = np.empty(n, dtype=np.int64)
+    touching = np.empty((n, problem.curve.shape[1]))
+    matrix, compliance = np.empty((n, n)), np.empty((n, n))
+    right = np.empty((2, n))
+    shares, left = np.empty(n), np.empty(n)
+    return NewtonSystem(member, touching, matrix, compliance, right, shares, left)
 
 
 @inner(error_model="numpy")
@@ -93,25 +118,26 @@ def solve_point(
     force : ndarray, shape (m,)
         In: starting forces, or zeros. Out: the solution.
     residual : ndarray, shape (4,)
-        Out: equilibrium, penetration, tension and complementarity, relative to the load and to the elastic
-        deflection.
+        Out: equilibrium, penetration, tension and complementarity, in this order. Forces are relative to the
+        load, lengths to the elastic deflection.
 
     Returns
     -------
     deflection, tangent : float
-        m, and its derivative in `total`, m/N.
+        Deflection in m, and its derivative with respect to `total`, m/N.
     status, iterations : int
         `CONVERGED`, `ITERATION_LIMIT`, `SINGULAR` (a compliance or a gap that is not finite, or no unique
         step), or `OUT_OF_MODEL` (no contact exists).
     beyond : bool
-        Whether the strip of any contact outgrew the reference length.
+        Whether the strip of any contact is wider than the reference length allows.
     """
     residual[:] = math.inf
     if force.size == 0:
         return math.nan, math.nan, OUT_OF_MODEL, 0, False
-    touch = np.min(problem.gap / problem.motion_arm)
-    gap = problem.gap - problem.motion_arm * touch  # from where the first contact touches
-    if math.isnan(touch) or not 0.0 < np.abs(problem.bodies).sum() < math.inf:
+    rigid = np.min(problem.gap / problem.motion_arm)  # deflection at which the first contact touches
+    gap = problem.gap - problem.motion_arm * rigid  # gaps at that deflection: the smallest one is zero
+    # Bodies that are all zero have no unique motion; a sum that is not finite comes from a bad compliance.
+    if math.isnan(rigid) or not 0.0 < np.abs(problem.bodies).sum() < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
     state = pressed_state(problem, force)
@@ -120,12 +146,16 @@ def solve_point(
     if status == SINGULAR:
         return math.nan, math.nan, status, iterations, False
     beyond = _residuals(problem, total, elastic, gap, state, residual)
-    return touch + elastic, tangent, status, iterations, beyond
+    return rigid + elastic, tangent, status, iterations, beyond
 
 
 @inner(error_model="numpy")
 def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -> float:
-    """Fill the state by the given forces, or a guess of them; return the elastic deflection they ask for."""
+    """Fill in the state from the starting forces, or from a guess if they are zero; return their deflection.
+
+    The elastic deflection is the mean over the contacts of (gap + local approach + motion) / motion arm,
+    weighted by force and arm: F'(g + approach + N u) / F'a. A guess needs no exact local law.
+    """
     state.force[:] = np.maximum(state.force, 0.0)
     guessed = not state.force.any()
     if guessed:
@@ -133,21 +163,25 @@ def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -
     press(problem, state.force, state.curve_load)
     move(problem, state)
     law, force, motion = problem.law, state.force, motions(problem, state.displacement)
-    needed, arm = 0.0, 0.0
+    work, arm = 0.0, 0.0  # F'(g + approach + N u) in N m, and F'a in N
     for q in range(gap.size):
         if force[q] > 0.0:
             value = plain_approach(law, q, force[q]) if guessed else approach(law, q, force[q])[0]
-            needed += force[q] * (gap[q] + value + motion[q])
+            work += force[q] * (gap[q] + value + motion[q])
             arm += force[q] * problem.motion_arm[q]
-    elastic = needed / arm
+    elastic = work / arm
     evaluate(problem, gap, elastic, state)
     return float(elastic)
 
 
 @inner(error_model="numpy")
 def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArray) -> None:
-    """Fill in forces as the gaps would take them if all contacts gave way as the first one to touch."""
-    depth, carried = total * _softness(problem, int(np.argmin(gap))), 0.0
+    """Fill in a guess of the forces: each contact carries in proportion to its width and its penetration.
+
+    The depth of penetration is that of the first contact to touch, if it alone carried the load.
+    """
+    depth = total * _softness(problem, int(np.argmin(gap)))
+    carried = 0.0  # the load that the forces carry before they are scaled to `total`
     for q in range(gap.size):
         force[q] = max(depth - gap[q], 0.0) * width_of(problem.law, q)
         carried += problem.torque_arm[q] * force[q]
@@ -156,8 +190,12 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
 
 @inner(error_model="numpy")
 def _softness(problem: PointProblem, q: int) -> float:
-    """Return how far the bodies move at most at a contact under a unit force on it, m/N."""
-    total, first, curve = 0.0, problem.first[q], problem.curve[q]
+    """Return the motion of the bodies at a contact per unit force on it, m/N, an upper bound.
+
+    The terms of the sum are taken by their size, as curves may have either sign.
+    """
+    first, curve = problem.first[q], problem.curve[q]
+    total = 0.0
     for a in range(curve.size):
         for b in range(curve.size):
             total += abs(curve[a] * curve[b] * problem.bodies[first + a, first + b])
@@ -168,12 +206,17 @@ def _softness(problem: PointProblem, q: int) -> float:
 def _iterate(
     problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State
 ) -> tuple[float, float, int, int]:
-    """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
+    """Iterate to the solution; return elastic deflection, tangent, status and iterations.
+
+    Every pass eliminates the forces on the curves, which leaves one equation for the deflection: its
+    stiffness times the step balances the excess of the load and the defect of the curves.
+    """
     system = empty_system(problem)
-    change, motion = np.empty((2, state.curve_load.size))
-    tangent, last = math.nan, math.inf
+    change, motion = np.empty((2, state.curve_load.size))  # of a step: forces on the curves, their motions
+    tangent = math.nan
+    last = math.inf  # largest motion of the last step, m
     for iteration in range(1, MAX_ITERATIONS + 1):
-        if not state.slope.any():  # a step too far has parted all flanks
+        if not state.slope.any():  # the last step went too far and has parted all flanks
             elastic = _start(problem, total, gap, state)
         size = newton_system(problem, state, system)
         if not eliminate(system.matrix, system.right, size):
@@ -184,15 +227,16 @@ def _iterate(
             return math.nan, math.nan, SINGULAR, iteration
         tangent = 1.0 / stiff
         step = -(excess + residual) * tangent
-        change[:] = state.pressed - state.curve_load  # where nothing touches the forces go
+        change[:] = state.pressed - state.curve_load  # moves h to N'F, also of curves that nothing touches
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         yield_to(state.yielding, change, motion)
-        before, last = last, max(abs(step), np.abs(motion).max())
+        before = last
+        last = max(abs(step), np.abs(motion).max())
         if last <= STRAIGHT * elastic and _settle(problem, gap, elastic, step, motion, state):
             return elastic + step, tangent, CONVERGED, iteration
         elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
-        rounding = before <= ROUNDING * elastic and last > 0.1 * before
+        rounding = before <= ROUNDING * elastic and last > _SHRINKS * before
         if last <= STEP_TOLERANCE * elastic or rounding:
             return elastic, tangent, CONVERGED, iteration
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
@@ -202,24 +246,37 @@ def _iterate(
 def _settle(
     problem: PointProblem, gap: FloatArray, elastic: float, step: float, motion: FloatArray, state: State
 ) -> bool:
-    """Add what a last step changes of the forces; not if a law is bent by more than the tolerance over it."""
+    """Take the last step along the tangents of the local laws; return False if a law bends too much for it.
+
+    A law bends over a scale of its own approach, so that the error of the tangent is about the change of the
+    approach squared, over the approach. It is compared with the step tolerance of the deflection. Nothing is
+    changed where False is returned.
+    """
     m, arm = gap.size, problem.motion_arm
-    nearer, motion_before = motions(problem, motion), motions(problem, state.displacement)
+    change = motions(problem, motion)  # motions of the bodies; the loop turns them into changes of approach
+    motion_before = motions(problem, state.displacement)
     for q in range(m):
-        nearer[q] = arm[q] * step - nearer[q]
-        closer = arm[q] * elastic - gap[q] - motion_before[q]
-        if not nearer[q] * nearer[q] <= STEP_TOLERANCE * elastic * abs(closer):
+        change[q] = arm[q] * step - change[q]
+        approached = arm[q] * elastic - gap[q] - motion_before[q]
+        # "not <=" is true of NaN, too
+        if not change[q] * change[q] <= STEP_TOLERANCE * elastic * abs(approached):
             return False
     for q in range(m):
-        state.force[q] += state.slope[q] * nearer[q]
+        state.force[q] += state.slope[q] * change[q]
     press(problem, state.force, state.pressed)
     return True
 
 
 @inner(error_model="numpy")
 def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
-    """Return the stiffness of the position in N/m, and what the curves miss of the load in N."""
-    stiff, residual = stiffness(problem, state), 0.0
+    """Return stiffness and defect of the load after the curves are eliminated, N/m and N.
+
+    The stiffness is that of contacts on rigid bodies, less b'D N K times the solution of the members for a
+    unit step (row 0). The defect is the change of the load by the solution of row 1 and by the forces left on
+    parted curves.
+    """
+    stiff = stiffness(problem, state)
+    residual = 0.0
     for r in range(state.curve_load.size):
         if system.shares[r] != 0.0:
             for s in range(size):
@@ -241,24 +298,33 @@ def _advance(
     motion: FloatArray,
     state: State,
 ) -> float:
-    """Take a step, or the part of it to where the energy is level; return the elastic deflection."""
-    pressed, before = state.curve_load.copy(), elastic
+    """Take a step, or a part of it that ends near the least energy along it; return the elastic deflection.
+
+    `fall` and `rise` are the slopes of the energy along the step, at its beginning and at the trial length.
+    """
+    load_before, elastic_before = state.curve_load.copy(), elastic
     fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
     fall += dot(motion, state.curve_load - state.pressed, motion.size)
-    low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
+    # The least energy lies between the lengths low and high; the slopes there are at_low < 0 and at_high > 0.
+    low, at_low = 0.0, fall
+    high, at_high = math.inf, math.inf
+    length = 1.0
     for _ in range(_CUTS):
-        elastic = before + length * step
-        state.curve_load[:] = pressed + length * change
+        elastic = elastic_before + length * step
+        state.curve_load[:] = load_before + length * change
         move(problem, state)
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
         rise += dot(motion, state.curve_load - state.pressed, motion.size)
+        # Accept the length if the energy does not fall along the step at all (rounding), if it is level
+        # enough there, or if it still falls at the whole step.
         if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
             break
         if rise > 0.0:
             high, at_high = length, rise
         else:
             low, at_low = length, rise
+        # Secant between the two slopes, at least a tenth of the interval away from either end.
         length = low + min(max(at_low / (at_low - at_high), 0.1), 0.9) * (high - low)
     return elastic
 
@@ -266,10 +332,12 @@ def _advance(
 @inner(error_model="numpy")
 def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of curves over contacts that touch."""
+    # By curve: N'D a in N/m, of all curves; motion in m by the forces left on parted curves, of members.
     pulled, pushed = np.zeros((2, state.curve_load.size))
     fill_yielding(problem, state)
     _touching(problem, state, system, pulled)
-    size, left, member = 0, system.left, system.member
+    left, member = system.left, system.member
+    size = 0
     left[:] = 0.0
     for k in range(left.size):
         if system.touching[k, 0] > 0.0:
@@ -282,24 +350,29 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
         i = member[r]
         for s in range(size):
             system.compliance[r, s] = state.yielding[i, member[s]]
-        system.right[0, r], system.right[1, r] = pulled[i], state.pressed[i] - state.curve_load[i]
+        system.right[0, r] = pulled[i]
+        system.right[1, r] = state.pressed[i] - state.curve_load[i]
         pushed[r] = dot(state.yielding[i], left, left.size) if any_left else 0.0
     for r in range(size):
         row = system.matrix[r, :size]
         row[:] = 0.0
         row[r] = 1.0
+        # Members r and s are at least |r - s| curves apart: those outside the range share no contact.
         for s in range(max(r - width + 1, 0), min(r + width, size)):
             distance = abs(member[r] - member[s])
             if distance < width:
                 part = system.touching[max(member[r], member[s]), distance]
-                subtract(row, system.compliance[s, :size], -part)
+                subtract(row, system.compliance[s, :size], -part)  # adds part times row s of K
                 system.right[1, r] += part * pushed[s]
     return size
 
 
 @inner(error_model="numpy")
 def _touching(problem: PointProblem, state: State, system: NewtonSystem, pulled: FloatArray) -> None:
-    """Fill in N'DN by its diagonals, N'D m and N'D n of all curves."""
+    """Fill in N'DN by its diagonals, `pulled` = N'D a and `shares` = N'D b, of all curves.
+
+    The axes of `touching` are curve and distance to an earlier curve: N'DN is symmetric, so b runs up to a.
+    """
     touching, shares = system.touching, system.shares
     touching[:], shares[:] = 0.0, 0.0
     for q in range(state.force.size):
@@ -322,7 +395,10 @@ def _residuals(
     state: State,
     residual: FloatArray,
 ) -> bool:
-    """Measure the four residuals of the forces found, and whether any strip outgrew the reference length."""
+    """Fill in the four residuals of the solution; return whether any strip outgrew the reference length.
+
+    In order: 0 equilibrium, 1 penetration, 2 tension, 3 complementarity.
+    """
     residual[:] = 0.0
     any_beyond = False
     state.curve_load[:] = state.pressed

@@ -1,4 +1,8 @@
-"""The basic rack tooth profile that generates a gear (ISO 53), in the normal plane."""
+"""The basic rack tooth profile that generates a gear (ISO 53), in the normal plane.
+
+A declaration holds kind, unit, bounds, description and example of a field. Coefficients are lengths in normal
+modules. The defaults of the fields are those of profile A of ISO 53.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +63,7 @@ class BasicRack:
             raise InfeasibleGeometry(
                 "root radius", "dedendum_coefficient", self.dedendum_coefficient, crossing, remedy
             )
-        if self.root_radius_coefficient > limit + 1e-12:
+        if self.root_radius_coefficient > limit + 1e-12:  # the full fillet itself is allowed, to rounding
             bound = at_most(limit, note=", the full fillet")
             remedy = "Lower the root radius, the dedendum or the pressure angle."
             raise InfeasibleGeometry(
@@ -68,9 +72,14 @@ class BasicRack:
 
     @property
     def full_fillet_coefficient(self) -> float:
-        """Largest rho_fP / m_n: one arc joins both flanks (negative: the flanks already cross)."""
-        space = math.pi / 4.0 - self.dedendum_coefficient * math.tan(self.normal_pressure_angle)
-        return space * math.cos(self.normal_pressure_angle) / (1.0 - math.sin(self.normal_pressure_angle))
+        """Largest rho_fP / m_n, with which one arc joins both flanks; negative if the flanks cross.
+
+        The arc touches the root line and both flanks. The flanks meet the root line at `half_space` from the
+        middle of the tooth space: half_space = rho_fP / m_n (1 - sin alpha_n) / cos alpha_n.
+        """
+        angle = self.normal_pressure_angle
+        half_space = math.pi / 4.0 - self.dedendum_coefficient * math.tan(angle)
+        return half_space * math.cos(angle) / (1.0 - math.sin(angle))
 
     @property
     def dedendum(self) -> float:

@@ -1,4 +1,10 @@
-"""The recipe of the mesh of one tooth sector over the face: element sizes, layers, winding."""
+"""The recipe of the mesh of one tooth sector over the face: element sizes, layers, winding.
+
+The sector is one tooth and the part of the body below it, from the middle of one tooth space to the next. Its
+transverse section is meshed in two parts, tooth and body, which meet at a point of the fillet on either side.
+The section is repeated in layers over the face; a helical gear winds them about its axis. In the body, whose
+strain varies less, layers are merged in pairs.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +22,10 @@ if TYPE_CHECKING:
 
 
 HELICAL_BODY_LAYERS = 6
-"""Layers that the body below a helical tooth wants at least."""
+"""Least number of layers of the body below a helical tooth."""
 
 _SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
+"""Fields that are lengths of elements."""
 
 WOUND = 0.1
 """Overlap ratio below which the teeth of a helical gear are meshed as those of a spur gear."""
@@ -32,17 +39,17 @@ class SectorRecipe:
     """
 
     flank_size: float
-    """Along the involute and the part of the fillet that belongs to the tooth, m."""
+    """Size along the involute and the part of the fillet that belongs to the tooth, m."""
     tip_size: float
-    """`tip_size`, `tip_growth`: At the tip edge, m, growing to `flank_size`."""
+    """Size along the flank at the tip edge, m; it grows with `tip_growth` to `flank_size`."""
     depth_size: float
-    """`depth_size`, `depth_limit`, `depth_growth`: Below the loaded flank, across the tooth, m; the unloaded
-    flank begins with 1.5 times the size.
+    """Size across the tooth below the loaded flank, m; it grows with `depth_growth` to `depth_limit`. Below
+    the unloaded flank it begins with 1.5 times this size.
     """
     depth_limit: float
     body_size: float
-    """`body_size`, `body_limit`, `body_growth`: Below the root, towards the bore, m. Deeper than four times
-    the limit elements keep a quarter of their depth.
+    """Size below the root, towards the bore, m; it grows with `body_growth` to `body_limit`. From a depth of
+    four times the limit on, an element is a quarter of its depth.
     """
     body_limit: float
     layers: int
@@ -50,19 +57,24 @@ class SectorRecipe:
     tip_growth: float = 0.5
     depth_growth: float = 0.6
     body_growth: float = 0.5
+    """`tip_growth`, `depth_growth`, `body_growth`: Increase of a size per distance, 0.05..2."""
     land_elements: int = 3
-    """Elements along half the tooth space, below the point where tooth and body part."""
+    """Elements along the fillet and root of the body: from the split point to the middle of the tooth space.
+    """
     split: float = 0.5
-    """Where on the fillet tooth and body part: 0 form point, 1 root. Undercut teeth part lower down."""
+    """Position on the fillet of the split point, at which the tooth meets the body: 0 form point, 1 root. For
+    undercut teeth it is moved towards the root.
+    """
     layer_growth: float = 1.5
     """Thickness of a middle layer over that of an end layer, >= 1."""
     merge_rows: tuple[int, ...] = (-2,)
-    """Rows of body elements (-1 the highest, decreasing) below which two layers become one. The number of
-    layers must be divisible by 2 for each entry.
+    """Rows of body elements below each of which two layers become one. Row -1 is the uppermost, -2 the next
+    below, and so on; the numbers decrease. The number of layers must be divisible by 2 for every entry, in
+    all by `layer_group`.
     """
     half_face: bool = False
-    """Only the half above mid-face, a plane of symmetry: for spur gears under loads that are even across the
-    face. The layers then thicken from the end to mid-face.
+    """Whether only the half above mid-face is meshed, with mid-face as a plane of symmetry. It is meant for
+    spur gears under loads that are even across the face. The layers then thicken from the end to mid-face.
     """
 
     def __post_init__(self) -> None:
@@ -77,7 +89,7 @@ class SectorRecipe:
         if self.tip_size > self.flank_size:
             raise InputError("tip_size", self.tip_size, at_most(self.flank_size, name="flank_size ="))
         rows = self.merge_rows
-        if any(row > -1 for row in rows) or any(b >= a for a, b in pairwise(rows)):
+        if any(row > -1 for row in rows) or any(lower >= upper for upper, lower in pairwise(rows)):
             raise InputError("merge_rows", rows, "negative and strictly decreasing", "(-2,) is usual.")
         if self.half_face and rows:
             raise InputError("merge_rows", rows, "() with half_face", "Layers of half a face differ all.")
@@ -95,7 +107,8 @@ class SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
         layers = _layers(gear, minimum=8, thickest=1.5, limit=16)
-        merge = () if wound(gear) and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
+        # Merged in pairs, few layers would leave the body of a helical gear too coarse.
+        merge_rows = () if wound(gear) and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
         return cls(
             flank_size=0.2 * m,
             tip_size=0.05 * m,
@@ -105,12 +118,15 @@ class SectorRecipe:
             body_limit=2.0 * m,
             body_growth=0.6,
             layers=layers,
-            merge_rows=merge,
+            merge_rows=merge_rows,
         )
 
     @classmethod
     def standard(cls, gear: Toothing) -> SectorRecipe:
-        """Return the recipe of everyday use: flank elements of 0.15 modules, 12 or (helical) 16 layers."""
+        """Return the recipe of everyday use: flank elements of 0.15 modules, 12 layers or more.
+
+        Helical gears get 16 layers or more.
+        """
         m = gear.normal_module
         return cls(
             flank_size=0.15 * m,
@@ -141,10 +157,10 @@ class SectorRecipe:
 
     @classmethod
     def even_load(cls, gear: Toothing) -> SectorRecipe:
-        """Return the recipe of a spur gear's response to even loads: flank elements of 0.4 modules, 3 layers.
+        """Return the recipe of a spur gear under even loads: flank elements of 0.4 modules, 3 layers.
 
-        For the difference to plane strain, which is smooth: within 1.5 % of a fine mesh's up to a face of 20
-        modules, 3 % at 40.
+        It serves the difference of the response to plane strain, which is smooth. The difference is within
+        1.5 % of that of a fine mesh for faces of up to 20 modules, within 3 % at 40 modules.
         """
         m = gear.normal_module
         return cls(
@@ -156,14 +172,19 @@ class SectorRecipe:
             body_limit=4.0 * m,
             body_growth=0.6,
             layers=3,
+            # Thin layers at the end of the face however wide it is; the bounds are those of the field.
             layer_growth=min(max(0.8 * gear.face_width / m, 1.0), 10.0),
             merge_rows=(),
             half_face=True,
         )
 
     def scaled(self, factor: float) -> SectorRecipe:
-        """Return the recipe with elements and layers `factor` > 0 times as large, layers in whole groups."""
+        """Return the recipe with elements `factor` > 0 times as long, and layers `factor` times as thick.
+
+        The number of layers is rounded up to a multiple of `layer_group`.
+        """
         group = self.layer_group
+        # 1e-9 keeps a whole number of groups from being rounded up by an error in its last digit.
         layers = group * max(math.ceil(self.layers / factor / group * (1.0 - 1e-9)), 1)
         return replace(self, layers=layers, **{name: factor * getattr(self, name) for name in _SIZES})
 
@@ -173,12 +194,15 @@ class SectorRecipe:
 
 
 def wound(gear: Toothing) -> bool:
-    """Whether the helix turns the layers of a gear enough for the layers of helical meshes."""
-    turn = gear.face_width * math.sin(abs(gear.helix_angle)) / (math.pi * gear.normal_module)
-    return turn >= WOUND
+    """Whether the overlap ratio of a gear is large enough to mesh its teeth as those of a helical gear."""
+    overlap_ratio = gear.face_width * math.sin(abs(gear.helix_angle)) / (math.pi * gear.normal_module)
+    return overlap_ratio >= WOUND
 
 
 def _layers(gear: Toothing, minimum: int, thickest: float, limit: int) -> int:
-    """Return an even number of layers no thicker than `thickest` modules, within its bounds."""
+    """Return the even number of layers whose thickness is at most `thickest` modules.
+
+    It is at least `minimum` and, even where that makes layers thicker, at most `limit`, an even number.
+    """
     needed = gear.face_width / (thickest * gear.normal_module)
     return 2 * math.ceil(min(max(minimum, needed), limit) / 2)

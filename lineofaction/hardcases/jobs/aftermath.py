@@ -49,10 +49,12 @@ def aftermath(
     settle: Settle = lambda _seconds: {},
     *,
     resubmit: bool = False,
+    overtaken: bool = False,
 ) -> Aftermath:
     """Run a job that is disturbed, another that is dismissed behind it, and the small one after both.
 
-    With `resubmit` the first is submitted once more at the end, undisturbed.
+    With `resubmit` the first is submitted once more at the end, undisturbed. `overtaken`: it waits before it
+    is begun again, and the others need not.
     """
     before = undisturbed()
     with fresh_service(**settle(before.seconds)) as service:
@@ -60,7 +62,7 @@ def aftermath(
         service.submissions.dismiss(jobs[1].id)
         jobs.append(service.submit(SMALL))
         ended = [service.ended(job, disturb if job is jobs[0] else None) for job in jobs]
-        figures = (*_left(service), *_others(service, ended, before.errors))
+        figures = (*_left(service), *_others(service, ended, before.errors, overtaken=overtaken))
         last = service.ended(service.submit(case)) if resubmit else ended[0]
         errors = service.errors(last) if last.status == "successful" else None
         service.end_processes()
@@ -122,12 +124,14 @@ def _left(service: JobService) -> tuple[Measured, ...]:
     )
 
 
-def _others(service: JobService, ended: list[Job], before: FloatArray) -> tuple[Measured, ...]:
+def _others(
+    service: JobService, ended: list[Job], before: FloatArray, *, overtaken: bool
+) -> tuple[Measured, ...]:
     """Return how the jobs behind the disturbed one fared, and whether the small one is as ever."""
     disturbed, dismissed, after = ended
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
     served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None
-    in_turn = str(after.started) >= str(disturbed.finished)
+    in_turn = (str(after.started) < str(disturbed.finished)) == overtaken
     off = largest_difference(service.errors(after), before) if after.status == "successful" else np.inf
     return (
         Measured("results served of a job that failed", float(served), maximum=0.0),
