@@ -1,4 +1,8 @@
-"""Bounds as data: the ends of a range in SI, or a choice of names."""
+"""Bounds as data: the ends of a range in SI, or a choice of names.
+
+A bound is put into words for a reader, who decides on the names of fields and on units. A field's static
+range is declared as an `Interval`; a `Bound` is that range, or one that is computed, with its words.
+"""
 
 from __future__ import annotations
 
@@ -10,51 +14,67 @@ from annotated_types import Interval
 from bounds.text import NOTHING, Reader, Text, Wording
 
 LIMIT_SLACK = 1e-12
-"""Relative rounding of a computed limit, which its printed form does not show."""
+"""Relative rounding of a computed limit: too small to be seen in the limit as printed."""
 MAX_BYTES = 8e9
-"""Of the arrays that a computation holds at once; what would take more is refused before it begins."""
+"""Bytes of the arrays that a computation may hold at once; a larger one is refused before it begins."""
 
 
 @dataclass(frozen=True)
 class Bound:
     """The range of values that a field accepts.
 
-    Its ends are written with seven digits, rounded to the side that is accepted, in the unit of the field;
-    where they are one, that value is written with twelve.
+    Its ends are written with seven digits in the unit of the field, rounded to the side that is accepted.
+    Where both ends are the same value, that value is written with twelve digits.
     """
 
     low: float | None = None
     high: float | None = None
-    """`low`, `high`: Ends in SI; None is no end."""
+    """`low`, `high`: Ends in SI; None: the range has no end on that side."""
     low_open: bool = False
     high_open: bool = False
     """`low_open`, `high_open`: Whether the end itself is refused."""
     integer: bool = False
     """Whether only integers are accepted."""
     unit: str = ""
-    """Symbol of the field's SI unit if it is to be written, e.g. ``"m"``."""
+    """Symbol of the field's SI unit, e.g. ``"m"``; empty: no unit is written."""
     low_name: str = ""
     high_name: str = ""
-    """`low_name`, `high_name`: What an end is, written before it, e.g. ``"the bore diameter"``."""
+    """`low_name`, `high_name`: Names of the ends, written before their values: ``"the bore diameter"``."""
     note: Text = NOTHING
-    """What follows, e.g. ``", where the fillet ends"``."""
+    """Text that is written after the range, e.g. ``", where the fillet ends"``."""
 
     @classmethod
     def of(cls, ends: Interval, *, integer: bool = False, unit: str = "") -> Bound:
-        """Return the bound of a static range."""
-        low, high = (ends.ge if ends.gt is None else ends.gt), (ends.le if ends.lt is None else ends.lt)
-        return cls(low, high, ends.gt is not None, ends.lt is not None, integer, unit)  # type: ignore[arg-type]
-
-    def holds(self, value: float) -> bool:
-        """Whether a finite number is accepted; an end that belongs to the range is so but for rounding."""
-        low, high = self.low, self.high
-        above = low is None or (value > low if self.low_open else value >= low - LIMIT_SLACK * abs(low))
-        return above and (
-            high is None or (value < high if self.high_open else value <= high + LIMIT_SLACK * abs(high))
+        """Return the bound of a static range; `gt` and `lt` are open ends, `ge` and `le` closed ones."""
+        low_open, high_open = ends.gt is not None, ends.lt is not None
+        return cls(
+            low=ends.gt if low_open else ends.ge,  # type: ignore[arg-type]
+            high=ends.lt if high_open else ends.le,  # type: ignore[arg-type]
+            low_open=low_open,
+            high_open=high_open,
+            integer=integer,
+            unit=unit,
         )
 
+    def holds(self, value: float) -> bool:
+        """Whether a finite number is accepted.
+
+        An open end is refused exactly. A closed end is accepted with a rounding of `LIMIT_SLACK` beyond it.
+        """
+        return self._above_low(value) and self._below_high(value)
+
+    def _above_low(self, value: float) -> bool:
+        if self.low is None:
+            return True
+        return value > self.low if self.low_open else value >= self.low - LIMIT_SLACK * abs(self.low)
+
+    def _below_high(self, value: float) -> bool:
+        if self.high is None:
+            return True
+        return value < self.high if self.high_open else value <= self.high + LIMIT_SLACK * abs(self.high)
+
     def worded(self, reader: Reader) -> str:
-        """Return the bound, to be read after "must be"."""
+        """Return the bound in words for a reader, to be read after "must be"."""
         unit = reader.field_unit(self.unit)
         if self.low is not None and self.low == self.high:
             return f"{unit.exact(self.low)}{self.note.worded(reader)}"
@@ -64,7 +84,7 @@ class Bound:
         return f"{kind}{self._range(low, high)}{self.note.worded(reader)}"
 
     def _range(self, low: str, high: str) -> str:
-        """Say between which ends."""
+        """Return the range in words; an end that is missing is an empty string."""
         if low and high and not self.low_open:
             return f"from {low} to {'below ' if self.high_open else ''}{high}"
         sides = (
@@ -84,7 +104,7 @@ class Choice:
     names: tuple[str, ...]
 
     def worded(self, reader: Reader) -> str:
-        """Return the names in quotes."""
+        """Return the names in quotes; a choice without names says that the field must be absent."""
         names = ", ".join(f'"{name}"' for name in self.names)
         return f"one of {names}" if names else "absent"
 
@@ -93,27 +113,27 @@ class Choice:
 
 
 def above(low: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
-    """Return the bound above `low`, which is the quantity called `name`."""
+    """Return the bound above `low`; `name` is written before the number, `note` after it."""
     return Bound(low=low, low_open=True, unit=unit, low_name=name, note=Text.of(note))
 
 
 def at_least(low: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
-    """Return the bound from `low`, which is the quantity called `name`."""
+    """Return the bound from `low` on; `name` is written before the number, `note` after it."""
     return Bound(low=low, unit=unit, low_name=name, note=Text.of(note))
 
 
 def below(high: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
-    """Return the bound below `high`, which is the quantity called `name`."""
+    """Return the bound below `high`; `name` is written before the number, `note` after it."""
     return Bound(high=high, high_open=True, unit=unit, high_name=name, note=Text.of(note))
 
 
 def at_most(high: float, unit: str = "", name: str = "", note: Wording = "") -> Bound:
-    """Return the bound up to `high`, which is the quantity called `name`."""
+    """Return the bound up to `high`; `name` is written before the number, `note` after it."""
     return Bound(high=high, unit=unit, high_name=name, note=Text.of(note))
 
 
 def from_to(low: float, high: float, unit: str = "", high_name: str = "", note: Wording = "") -> Bound:
-    """Return the bound from `low` to `high`, both accepted; `high` is the quantity called `high_name`."""
+    """Return the bound from `low` to `high`, both accepted; `high_name` is written before `high`."""
     return Bound(low=low, high=high, unit=unit, high_name=high_name, note=Text.of(note))
 
 
@@ -128,14 +148,14 @@ def one_of(names: Collection[str]) -> Choice:
 
 
 def between(low: float, high: float) -> Interval:
-    """Return the range from `low` to `high`, both accepted."""
+    """Return the static range from `low` to `high`, both accepted, for the declaration of a field."""
     return Interval(ge=low, le=high)
 
 
 def up_to(high: float) -> Interval:
-    """Return the range above 0 up to `high`."""
+    """Return the static range above 0 up to `high`, for the declaration of a field."""
     return Interval(gt=0.0, le=high)
 
 
 integers = between
-"""The range of a count."""
+"""The static range of a count: the same as `between`, named for the declaration of an integer field."""

@@ -12,7 +12,8 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource
 
 from lineofaction.gearbox.problems import BadInput
 
-_LARGEST = 65_536
+_MAX_CHARACTERS = 65_536
+"""A secret ends there at the latest; what follows in the file is not read."""
 
 
 def is_secret(field: FieldInfo) -> bool:
@@ -32,8 +33,9 @@ class SecretFiles(PydanticBaseSettingsSource):
         self._prefix = str(settings_class.model_config["env_prefix"])
 
     def get_field_value(self, field: FieldInfo, field_name: str) -> tuple[str | None, str, bool]:
-        """Return the secret of a field, None if no file is named.
+        """Return the secret of a field, None if no file is named; then the field's name and False.
 
+        pydantic asks for these three; the last says that the value is no JSON to be decoded.
         Raises `BadInput`: the secret itself is in the environment too; or the file cannot be read, is empty
         or no text.
         """
@@ -58,7 +60,7 @@ def _content(file: Path, variable: str, field: str) -> str:
     tip = f"It is named by {variable}; the user of the service must be able to read it."
     try:
         with file.open(encoding="utf-8") as stream:
-            content = stream.read(_LARGEST).rstrip("\r\n")
+            content = stream.read(_MAX_CHARACTERS).rstrip("\r\n")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no UTF-8"
         raise BadInput.of(field, str(file), f"a file with the secret: {reason}", tip) from None

@@ -1,4 +1,10 @@
-"""The plain arrays of a model, reduced to its free directions, which the compiled loops see."""
+"""The plain arrays of a model, reduced to its free directions, which the compiled loops read.
+
+All bodies have N freedoms: six of every rotor, elastic coordinates of shafts, amplitudes of housings. The n
+free ones among them are those of the model; `Freedoms.keep` takes rows over the former to rows over the
+latter. There are m meshes, and f phases of loads that repeat with the rotation of a shaft, frame or cage. The
+kinematic motion is that of rigid meshes and drives; the freedoms are deviations from it.
+"""
 
 from __future__ import annotations
 
@@ -27,30 +33,34 @@ from dynamics.scene.scene import MIN_RATE, Scene
 from dynamics.types import FloatArray
 
 MIN_SEAT = 0.1
-"""Least scale of a housing's amplitude, as a share of its largest."""
+"""Smallest scale of an amplitude of a housing, as a share of the largest scale of its amplitudes."""
 
 
 def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
-    """Return the arrays of a model, reduced from all freedoms of its rotors to the free directions."""
-    mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
+    """Return the arrays of a model, reduced from all freedoms of its bodies to the free ones."""
+    mechanism, freedoms, connections = model.mechanism, model.freedoms, model.connections
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     vectors = mechanism.vectors
-    stiffness, damping, constant = joined.matrices(freedoms)
+    stiffness, damping, constant = connections.matrices(freedoms)
     constant = constant + freedoms.keep(_gravity_force(scene, rotors))
     shaft_stiffness, shaft_damping = elastic_matrices(rotors, freedoms)
     stiffness, damping = stiffness + shaft_stiffness, damping + shaft_damping
-    for _, drive, row in drive_springs(scene, kinematics, rotors, freedoms):
+    for _law, drive, row in drive_springs(scene, kinematics, rotors, freedoms):
         stiffness += (drive.stiffness or 0.0) * np.outer(row, row)
         damping += drive.damping * np.outer(row, row)
+    # motion^T M motion; `times_mass` multiplies rows from the right, and M is symmetric
     mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
+    # Local coordinates of all elements, one below the other; without elements an array of no rows.
     gradient = np.concatenate(
         [np.empty((0, column_count(rotors))), *(element.gradient for element in elements)]
     )
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
     turn = freedoms.keep(_turns(mechanism))
     packed = Elements.packed(elements, laws, len(scene.references))
-    along = direction[packed.first[: len(scene.meshes)]]
-    total_stiffness = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
+    # The first elements are the driving flanks of the meshes; their first row is the transmission error.
+    transmission_error = direction[packed.first[: len(scene.meshes)]]
+    # Diagonal of the stiffness with the meshes at their mean and the bearings at their typical stiffness.
+    total_stiffness = np.diag(stiffness) + model.flanks.mean_stiffness @ transmission_error**2
     total_stiffness += packed.stiffness @ direction**2
     arrays = SystemArrays(
         mass=np.ascontiguousarray(mass),
@@ -58,11 +68,11 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         stiffness=stiffness,
         direction=direction,
         turn=turn,
-        sparse=NO_ENTRIES,
+        sparse=NO_ENTRIES,  # `with_matrices` fills them in
         constant=constant,
         inertial=freedoms.keep(-times_mass(rotors, vectors)),
         total_inertia=np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
-        drive=drive_torques(mechanism, freedoms, joined, gradient),
+        drive=drive_torques(mechanism, freedoms, connections, gradient),
         scale=scale,
         rate_scale=scale * _rate_duration(np.diag(mass), total_stiffness),
         elements=packed,
@@ -75,29 +85,30 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
 def _gravity_force(scene: Scene, rotors: Bodies) -> FloatArray:
     """Return the force of gravity per freedom of all rotors, (N,) in N.
 
-    It acts at the centers of mass: elastic coordinates share no momentum with the rigid motion, so gravity
-    does no work on them. Shafts sag by what their bearings do to them.
+    It acts at the centers of mass. An elastic coordinate does not move the center of mass of its body, so
+    gravity does no work on it; shafts sag by the forces of their bearings.
     """
     acceleration = np.zeros(column_count(rotors))
     for axis, value in enumerate(scene.gravity):
-        acceleration[axis : 6 * len(rotors) : 6] = value
+        acceleration[axis : 6 * len(rotors) : 6] = value  # x, y or z of every rotor
     return np.asarray(times_mass(rotors, acceleration[None])[0])
 
 
 def _turns(mechanism: Mechanism) -> FloatArray:
-    """Return the derivatives of all positions in the freedoms, (m + f, N).
+    """Return the derivatives of mesh positions and load phases by the freedoms, (m + f, N).
 
-    The position of a mesh follows the rotation of its driver against the carrier, the angle of a load its
-    shaft. Frames and cages turn with the kinematic motion alone.
+    The position of a mesh, in base pitches, follows the rotation of its driver against the carrier. The phase
+    of a load, in revolutions, follows its shaft. Phases of frames and cages follow the kinematic motion
+    alone: their rows are zero.
     """
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
-    frame_turns = phases(mechanism)
-    turn = np.zeros((len(scene.meshes) + len(frame_turns), column_count(rotors)))
-    for row, phase in enumerate(frame_turns, start=len(scene.meshes)):
+    load_phases = phases(mechanism)
+    turn = np.zeros((len(scene.meshes) + len(load_phases), column_count(rotors)))
+    for row, phase in enumerate(load_phases, start=len(scene.meshes)):  # below the rows of the meshes
         if phase.shaft is not None:
             turn[row] += turn_row(rotors, phase.shaft, phase.position) / (2.0 * math.pi)
     for row, mesh in enumerate(scene.meshes):
-        driver, _, carrier = mesh_shafts(scene, row)
+        driver, _driven, carrier = mesh_shafts(scene, row)
         gear = scene.gear(mesh.driver)
         rate = kinematics.mesh_sense[row] * gear.teeth / (2.0 * math.pi)
         turn[row] += rate * turn_row(rotors, driver, gear.position)
@@ -107,21 +118,23 @@ def _turns(mechanism: Mechanism) -> FloatArray:
 
 
 def _rate_duration(mass: FloatArray, stiffness: FloatArray) -> FloatArray:
-    """Return how long an error of a rate moves its freedom on, 1/natural circular frequency, (n,) s.
+    """Return 1/natural circular frequency of every freedom alone, (n,) in s, from diagonals (n,).
 
-    A freedom without stiffness, a rotor that torques alone turn, takes the longest of the others.
+    A rate times it is the displacement that the rate becomes. A freedom without stiffness, such as a rotor
+    that only torques rotate, has the longest duration of the others; without others it is 1/`MIN_RATE`.
     """
     elastic = stiffness > 0.0
-    duration = np.sqrt(mass / np.where(elastic, stiffness, 1.0))
+    duration = np.sqrt(mass / np.where(elastic, stiffness, 1.0))  # 1 in place of 0: not used below
     return np.where(elastic, duration, np.max(duration[elastic], initial=1.0 / MIN_RATE))
 
 
 def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
     """Return the meters per unit of each freedom, (n,).
 
-    A rotation has the largest base or pin radius on its shaft. An amplitude of a housing has the largest
-    displacement of a seat per unit, at least `MIN_SEAT` of the largest of all amplitudes: modes that hardly
-    move a seat do not matter to the shafts.
+    The scale of a rotation or twist is the largest base radius on its shaft, or the radius of its pins if
+    that is larger. The scale of an amplitude of a housing is the largest displacement of a seat per unit. It
+    is at least `MIN_SEAT` of the largest such scale of the housing: modes that hardly move a seat do not
+    matter to the shafts. Other freedoms are in meters already.
     """
     largest = tilt_lever(scene)
     radius = np.zeros(len(rotors))
@@ -133,14 +146,16 @@ def _scales(scene: Scene, rotors: Bodies, freedoms: Freedoms) -> FloatArray:
             arm = rotor.center - rotors[rotor.carrier].center
             radius[rotor.carrier] = max(radius[rotor.carrier], float(np.hypot(arm[0], arm[1])))
     scale = np.ones((len(rotors), len(FREEDOMS)))
-    # displacements come before rotations
+    # Displacements come before rotations.
     scale[:, 3:] = np.where(radius > 0.0, radius, largest)[:, None]
     elastic = [
-        np.where(rotor.elastic.twists, of_rotor[ROTATION], 1.0)
-        for rotor, of_rotor in zip(rotors, scale, strict=True)
+        np.where(rotor.elastic.twists, rotor_scale[ROTATION], 1.0)
+        for rotor, rotor_scale in zip(rotors, scale, strict=True)
         if rotor.elastic is not None
     ]
     per_strain = np.array([1.0, 1.0, 1.0, largest, largest])[:, None]  # x, y, z, two tilts of a seat
-    amplitudes = [np.max(np.abs(housing.shape) * per_strain, axis=(0, 1)) for housing in rotors.housings]
-    seats = [np.maximum(amplitude, MIN_SEAT * np.max(amplitude)) for amplitude in amplitudes]
-    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *seats])[freedoms.column])
+    # A shape has the axes seat, direction, mode: the largest over the first two is left for every mode.
+    seats = [np.max(np.abs(housing.shape) * per_strain, axis=(0, 1)) for housing in rotors.housings]
+    amplitudes = [np.maximum(seat, MIN_SEAT * np.max(seat)) for seat in seats]
+    # In the order of all freedoms; the free ones of them are kept.
+    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic, *amplitudes])[freedoms.column])

@@ -1,4 +1,9 @@
-"""A housing by the motion of its seats and a few modes: what it is, its response, its part in a scene."""
+"""A housing reduced to the motions of its seats and a few modes; its response, and its part in a scene.
+
+Its r reduced coordinates are the motions of its bearing seats (`ReducedHousing.motions` of them), then
+amplitudes of modes with the seats held. `frequency` belongs to other modes, m of them: those of the reduced
+housing with its seats free. In a scene the motions are along the scene's axes instead of the seats' own.
+"""
 
 from __future__ import annotations
 
@@ -25,22 +30,22 @@ from model_studies.record_file import read_record, write_record
 
 SCHEMA = "lineofaction reduced housing"
 SINGULAR = 1e-14
-"""Relative to the diagonal."""
+"""Smallest eigenvalue of a matrix with a diagonal of ones that counts as more than rounding."""
 VALID = 0.7
-"""Of the highest frequency kept: to it a reduction follows the whole mesh within 1 %."""
+"""Share of the highest natural frequency up to which a reduction follows the whole mesh within 1 %."""
 PARALLEL = 1e-3
-"""Sine of the angle to z from which a bore is no seat of a shaft along z."""
+"""Largest sine of the angle between a bore and z for which the bore can be the seat of a shaft along z."""
 
 
 @dataclass(frozen=True)
 class SurfaceMotion:
-    """Motion of the surface."""
+    """The surface of a housing, and its motion by the reduced coordinates."""
 
     points: FloatArray
-    """m. Shape (p, 3)."""
+    """Nodes of the surface, m. Shape (p, 3)."""
     triangles: IntArray
-    """Corners, counter-clockwise from outside, then mid-side nodes. Walls of inner cavities are among them.
-    Shape (t, 6).
+    """Points of every triangle: corners, counter-clockwise seen from outside, then mid-side nodes. Walls of
+    inner cavities belong to the surface. Shape (t, 6).
     """
     motion: FloatArray
     """Displacement of each point per reduced coordinate. Shape (p, 3, r)."""
@@ -48,7 +53,10 @@ class SurfaceMotion:
 
 @dataclass(frozen=True)
 class PointMotion:
-    """Motion of a named point: that of the node next to it, at `position` (m); `motion` is (3, r)."""
+    """A named point, and its displacement by the reduced coordinates: that of the node nearest to the point.
+
+    `position` (3,) in m is that of the node; `motion` is (3, r).
+    """
 
     name: str
     position: FloatArray
@@ -57,84 +65,90 @@ class PointMotion:
 
 @dataclass(frozen=True)
 class ReductionChecks:
-    """Residuals of a reduction, each to be small against one."""
+    """Relative residuals of a reduction; all are small against one if the reduction is sound."""
 
     volume: float
-    """Mass by the mass matrix against that by the volume inside the surface, relative."""
+    """Mass by the mass matrix less mass by the volume inside the surface, over the mass."""
     eigen: float
-    """Largest residual of a mode, relative."""
+    """Largest residual of the eigenvalue problem in a mode."""
     solve: float
-    """Largest work of unbalanced forces on a deflection under a force on a seat, relative to the force's."""
+    """Largest work of the forces left unbalanced under a force on a seat, over the work of that force."""
     rigid_frequency: float
-    """Highest frequency of a rigid motion over the first elastic mode; 0 if the housing is held."""
+    """Highest frequency of a rigid motion over that of the first elastic mode; 0 if the housing is held."""
     seat_rigid: float
-    """Largest deviation of the seats' motion from that of the body in a rigid motion, relative."""
+    """Largest deviation of the motion of a seat from that of the body in a rigid motion."""
 
 
 @dataclass(frozen=True)
 class ReducedHousing:
-    """M x'' + C x' + K x = (f, 0): motions of the seats, then amplitudes of modes with the seats held."""
+    """A housing by M x'' + C x' + K x = (f, 0), with the forces and moments f on its seats.
+
+    The coordinates x are the motions of the seats, then the amplitudes of modes with the seats held.
+    """
 
     mass: FloatArray
     stiffness: FloatArray
     damping: FloatArray
-    """`mass`, `stiffness`, `damping`: Symmetric; SI. Shape (r, r) each."""
+    """`mass`, `stiffness`, `damping`: Symmetric matrices M, K, C in SI units. Shape (r, r) each."""
     seats: tuple[SeatFrame, ...]
-    """In the order of the coordinates: those of a seat are its `motions`, along its own axes."""
+    """Seats in the order of their coordinates; those of a seat are its `motions`, along its own axes."""
     frequency: FloatArray
-    """Natural frequencies kept, with the seats free, Hz, rising; rigid motions first, as zeros. Shape (m,).
-    """
+    """Natural frequencies with the seats free, Hz, rising; rigid motions come first, as zeros. Shape (m,)."""
     damping_ratio: FloatArray
-    """Of these modes. Shape (m,)."""
+    """Damping ratios of the modes of `frequency`. Shape (m,)."""
     body: RigidBody | None = None
-    """Of the mesh."""
+    """Rigid body of the whole mesh; None: not known."""
     checks: ReductionChecks | None = None
     surface: SurfaceMotion | None = None
     points: tuple[PointMotion, ...] = ()
     mount_damping: FloatArray | None = None
-    """What of `damping` is that of the mounts; None: nothing, or not known apart. Shape (r, r)."""
+    """Part of `damping` from the elastic mounts; None: there is none, or it is not known. Shape (r, r)."""
     mount_stiffness: FloatArray | None = None
-    """What of `stiffness` is that of the mounts; the same. Shape (r, r)."""
+    """Part of `stiffness` from the elastic mounts; None: there is none, or it is not known. Shape (r, r)."""
     loss_factor: float | None = None
-    """Of the material, where the rest of `damping` follows from it (`MaterialDamping`)."""
+    """Loss factor of the material from which the rest of `damping` follows (`MaterialDamping`)."""
     cost: WorkCost | None = None
-    """Of the reduction, predicted and measured; None: nobody measured it."""
+    """Cost of the reduction, predicted and measured; None: it was not measured."""
 
     @property
     def motions(self) -> int:
-        """Motions of all seats: the first coordinates."""
+        """Number of the motions of all seats, which are the first coordinates."""
         return sum(len(seat.motions) for seat in self.seats)
 
     @property
     def valid_frequency(self) -> float:
-        """Return the frequency in Hz up to which the modes kept carry the motion; 0 without modes."""
+        """Frequency in Hz up to which the reduction follows the whole mesh; 0 without modes."""
         return VALID * float(np.max(self.frequency, initial=0.0))
 
     @cached_property
     def modes(self) -> tuple[FloatArray, FloatArray]:
         """Circular frequencies in rad/s and modes of unit modal mass, (r, m), with the seats free.
 
-        Motions without mass are left out. The first `len(frequency)` are modes of the housing; the rest carry
-        what its higher modes give statically.
+        Motions without mass are left out. The first `len(frequency)` are modes of the housing; the rest have
+        the static flexibility of those modes that the reduction has left out.
         """
         diagonal = np.diag(self.mass)
         scale = np.where(diagonal > 0.0, 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)), 0.0)
+        # Coordinates are meters, radians and amplitudes: only scaled to ones on the diagonal can eigenvalues
+        # tell whether the mass matrix is regular.
         if np.linalg.eigvalsh(scale[:, None] * self.mass * scale)[0] > SINGULAR:
             square, shape = eigh(self.stiffness, self.mass)
             return np.sqrt(np.maximum(square, 0.0)), shape
-        inverse, shape = eigh(self.mass, self.stiffness)  # massless motions are no modes
+        # A singular mass matrix: 1/omega^2 are the eigenvalues, and 0 for motions without mass. These are
+        # left out; the reversal makes the frequencies rise. `SINGULAR` in `max` is for a mass of zero.
+        inverse, shape = eigh(self.mass, self.stiffness)
         moving = np.flatnonzero(inverse > SINGULAR * max(inverse[-1], SINGULAR))[::-1]
         return 1.0 / np.sqrt(inverse[moving]), shape[:, moving] / np.sqrt(inverse[moving])
 
     def to_netcdf(self, path: str | Path) -> None:
-        """Write the housing; the file appears whole or not at all."""
+        """Write the housing to a netCDF file; the file appears whole or not at all."""
         write_record(self, Path(path), SCHEMA)
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> ReducedHousing:
-        """Read what `to_netcdf` wrote, bit by bit the same.
+        """Return the housing that `to_netcdf` wrote, the same to the last bit.
 
-        Raises `ResultError`: the file is missing, damaged, or no reduced housing.
+        Raises `ResultError` if the file is missing, damaged, or not that of a reduced housing.
         """
         try:
             housing = read_record(Path(path), {SCHEMA: cls})
@@ -147,38 +161,43 @@ class ReducedHousing:
 def receptance(
     housing: ReducedHousing, frequency: Sequence[float] | FloatArray, *, residual: bool = True
 ) -> FloatArray:
-    """Return the motion under unit harmonic forces on the seats.
+    """Return the complex motion under unit harmonic forces on the seats.
 
-    Raises `InputError`: a frequency is negative or no number.
+    Raises `InputError` if a frequency is negative or no number, or if the motion is infinite there.
 
     Parameters
     ----------
     frequency : (n,) array
         Hz.
     residual : bool
-        Whether the flexibility of the modes that are not kept is in it; without it, the sum over the kept
-        modes alone, for comparison: seats are too stiff then.
+        Whether the static flexibility of the modes left out is included. Without it the motion is the sum
+        over the modes of `frequency` alone, in which seats are too stiff; it is for comparison.
 
     Returns
     -------
     (n, r, s) complex array
-        Reduced coordinates per force (m/N) or moment on the seats; the first s rows are the seats' motions.
-        `SurfaceMotion.motion @` it and `PointMotion.motion @` it are displacements.
+        Reduced coordinates per force (m/N) or moment on the seats, in the s motions of the seats; the first s
+        rows are these motions. `SurfaceMotion.motion @ receptance` and `PointMotion.motion @ receptance` are
+        displacements per force.
     """
     hertz = np.asarray(frequency, dtype=float)
     for index, value in enumerate(hertz):
         not_negative(f"frequency[{index}]", float(value))
     omega = 2.0 * math.pi * hertz[:, None, None]
-    matrices = housing.mass, housing.damping, housing.stiffness
-    if residual:  # coordinates of like size: they are meters, radians and modal amplitudes
+    # The basis: all coordinates, scaled to like size since they are meters, radians and amplitudes; or modes.
+    if residual:
         diagonal = np.diag(housing.stiffness)
         basis = np.diag(1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0)))
     else:
-        basis = housing.modes[1][:, : len(housing.frequency)]
-    mass, damping, stiffness = (basis.T @ matrix @ basis for matrix in matrices)
+        _, shapes = housing.modes
+        basis = shapes[:, : len(housing.frequency)]
+    mass = basis.T @ housing.mass @ basis
+    damping = basis.T @ housing.damping @ basis
+    stiffness = basis.T @ housing.stiffness @ basis
     forces = basis[: housing.motions].T
+    dynamic_stiffness = stiffness + 1j * omega * damping - omega**2 * mass  # (n, basis, basis)
     try:
-        amplitude = np.linalg.solve(stiffness + 1j * omega * damping - omega**2 * mass, forces[None])
+        amplitude = np.linalg.solve(dynamic_stiffness, forces[None])  # the same forces at all frequencies
     except np.linalg.LinAlgError as error:
         remedy = "The housing moves freely there, or resonates without damping."
         raise InputError(
@@ -188,63 +207,68 @@ def receptance(
 
 
 def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] | None = None) -> Housing:
-    """Return a reduced housing for a scene; its mesh stands in the scene's frame, shafts along z.
+    """Return a reduced housing as the `Housing` of a scene, with its motions along the scene's axes.
 
-    Raises `InputError`: a bore is not along z, the seats have different numbers of motions, or what `Housing`
-    refuses.
+    The housing's mesh has to stand in the frame of the scene, with the shafts along z. Raises `InputError` if
+    a bore is not along z, if the seats have different numbers of motions, or if `Housing` refuses a value.
 
     Parameters
     ----------
     housing : ReducedHousing
-        Without mass it is one without modes.
+        A reduced housing without mass gives a housing without modes.
     name : str
-        Of the housing in the scene.
+        Name of the housing in the scene.
     bushings : tuple of str, optional
-        Names of the bearings, in the order of the seats; by default those of the seats.
+        Names of the bearings, in the order of the seats; by default the names of the seats.
     """
     counts = {len(seat.motions) for seat in housing.seats}
     if len(counts) > 1:
         bound = "of as many motions each: 3, 5 or 6"
         raise InputError("seats", sorted(counts), bound, "Reduce the housing with the same motions for all.")
-    turn = scene_axes(housing)
-    massive, positions = bool(np.any(housing.mass)), (seat.position for seat in housing.seats)
+    axes = scene_axes(housing)
+    has_mass = bool(np.any(housing.mass))
+    positions = [seat.position for seat in housing.seats]
     return Housing(
         name,
         tuple(seat.name for seat in housing.seats) if bushings is None else bushings,
-        _turned(housing.stiffness, turn),
-        _turned(housing.damping, turn) if massive or np.any(housing.damping) else None,
-        _turned(housing.mass, turn) if massive else None,
+        _along_scene_axes(housing.stiffness, axes),
+        _along_scene_axes(housing.damping, axes) if has_mass or np.any(housing.damping) else None,
+        _along_scene_axes(housing.mass, axes) if has_mass else None,
         modal_coordinates=len(housing.stiffness) - housing.motions,
         seat_positions=tuple((float(x), float(y), float(z)) for x, y, z in positions),
     )
 
 
 def scene_axes(housing: ReducedHousing) -> FloatArray:
-    """Return the reduced coordinates per row of the matrices of its `scene_housing`, (r, r)."""
-    coordinates = len(housing.stiffness) - housing.motions
-    return np.asarray(block_diag(*(_turn(seat) for seat in housing.seats), np.eye(coordinates)))
+    """Return the matrix T (r, r) with x = T y, x the reduced coordinates, y those of the `scene_housing`.
+
+    The motions of the seats in y are along the scene's axes; amplitudes of modes are the same in both.
+    """
+    amplitudes = len(housing.stiffness) - housing.motions
+    return np.asarray(block_diag(*(_seat_rotation(seat) for seat in housing.seats), np.eye(amplitudes)))
 
 
-def _turn(seat: SeatFrame) -> FloatArray:
-    """Return the motions along the seat's axes per those along the scene's, (p, p)."""
-    off = math.hypot(float(seat.axes[0, 2]), float(seat.axes[1, 2]))
-    if off > PARALLEL:
-        angle = Quantity(math.asin(min(off, 1.0)), "rad", digits=3)
+def _seat_rotation(seat: SeatFrame) -> FloatArray:
+    """Return the motions of a seat along its own axes per its motions along the scene's, square."""
+    sine = math.hypot(float(seat.axes[0, 2]), float(seat.axes[1, 2]))  # of the angle between bore and z
+    if sine > PARALLEL:
+        angle = Quantity(math.asin(min(sine, 1.0)), "rad", digits=3)
         bound = Text.of("along z, as the shafts of a scene; its bore is off by ", angle)
         raise InputError(f"seats.{seat.name}", "not along z", bound, "Turn the mesh.")
-    rotation = np.kron(np.eye(2), seat.axes.T)
+    rotation = np.kron(np.eye(2), seat.axes.T)  # displacements, then rotations
+    # A seat may have only the first 3 or 5 of these; as the bore is along z, the rest do not mix with them.
     return np.asarray(rotation[: len(seat.motions), : len(seat.motions)])
 
 
-def _turned(matrix: FloatArray, turn: FloatArray) -> Matrix:
-    """Return the rows of a matrix over motions along the scene's axes; unchanged where they are the same."""
-    rotated = matrix if np.array_equal(turn, np.eye(len(turn))) else turn.T @ matrix @ turn
-    return matrix_rows(rotated)
+def _along_scene_axes(matrix: FloatArray, axes: FloatArray) -> Matrix:
+    """Return a matrix over reduced coordinates as rows over the coordinates of `scene_axes`."""
+    same = np.array_equal(axes, np.eye(len(axes)))  # then the product would only add rounding
+    return matrix_rows(matrix if same else axes.T @ matrix @ axes)
 
 
 @dataclass(frozen=True)
 class SurfaceHousing:
-    """A housing with a surface: its name, its reduction, and the bearings in the order of its seats."""
+    """A housing whose surface is known: its name, its reduction, its bearings in the order of the seats."""
 
     name: str
     body: ReducedHousing

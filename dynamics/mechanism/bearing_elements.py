@@ -1,4 +1,9 @@
-"""The force elements of bearings: of those that are not linear, and of linear ones in housings that move."""
+"""Where the laws of bearings act, and the load and mass that are expected of every bearing.
+
+A law of a bearing adds forces of p rows to the bearing's linear springs; a row is a direction in which such a
+force acts. Strains are the five displacements x, y, z, tilt_x, tilt_y of a shaft's section against what
+holds it. A support is a bearing of a rotor: a bushing, or a planet's bearing on its pin.
+"""
 
 from __future__ import annotations
 
@@ -17,77 +22,94 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class BearingElement:
-    """The bearing and the directions in which the forces of an element act."""
+    """The bearing of a force element and the directions in which its forces act."""
 
     name: str
-    """Of the bearing."""
+    """Name of the bearing."""
     support: int
-    """The bearing, among the supports."""
+    """Index of the bearing among the supports of all rotors."""
     way: FloatArray
-    """The element's rows per strain of the bearing x, y, z, tilt_x, tilt_y: 1 along a displacement, a radius
-    in m for a tilt. Shape (p, 5).
+    """The rows of the element over the strains x, y, z, tilt_x, tilt_y along the axes of the scene: 1 for a
+    displacement, a radius in m for a tilt. Shape (p, 5).
     """
     local_rows: FloatArray
-    """The same per strain in the bearing's own axes. Shape (p, 5)."""
+    """The rows of the element over the strains along the bearing's own axes. Shape (p, 5)."""
     typical: FloatArray
-    """Stiffness of the rows at the typical load, N/m; of a linear bearing without cross terms. Shape (p,)."""
+    """Stiffness of the rows at the typical load, N/m; cross terms of a linear bearing are left out. Shape
+    (p,).
+    """
 
     @property
     def seat(self) -> FloatArray:
-        """Typical stiffness as a matrix of the bearing, (5, 5)."""
+        """Stiffness at the typical load over the five strains, (5, 5), in N/m, N and N m."""
         return np.asarray(self.way.T @ (self.typical[:, None] * self.way))
 
     @property
     def tilts(self) -> bool:
-        """Whether it exerts a moment."""
+        """Whether the element exerts a moment."""
         return bool(np.any(self.way[:, 3:] != 0.0))
 
     @property
     def holds_axis(self) -> bool:
-        """Whether it exerts a force along the axis."""
+        """Whether the element exerts a force along the axis."""
         return bool(self.seat[2, 2] > 0.0)
 
 
 def bearing_duties(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> dict[str, BearingDuty]:
-    """Return the duty of every bearing under the nominal mesh `forces` (m,), N.
+    """Return the duty of every bearing under the nominal `forces` of the meshes, in N, in their order.
 
-    It typically carries an equal share of those on its shaft.
+    The typical load of a bearing is an equal share of the sum of the mesh forces on its shaft; its mass is an
+    equal share of the mass of the shaft with its gears.
     """
-    lever, on_shaft = tilt_lever(scene), {shaft.name: 0.0 for shaft in scene.shafts}
+    lever = tilt_lever(scene)
+    shaft_force = {shaft.name: 0.0 for shaft in scene.shafts}
     for mesh, force in zip(scene.meshes, forces, strict=True):
         for gear in (mesh.driver, mesh.driven):
-            on_shaft[scene.gear(gear).shaft] += float(force)
+            shaft_force[scene.gear(gear).shaft] += float(force)
     return {
-        part.name: BearingDuty(
-            on_shaft[part.shaft] / len(rotor.supports), rotor.inertia.mass / len(rotor.supports), lever
+        bearing.name: BearingDuty(
+            load=shaft_force[bearing.shaft] / len(rotor.supports),
+            mass=rotor.inertia.mass / len(rotor.supports),
+            lever=lever,
         )
         for rotor in rotors
-        for part in rotor.supports
+        for bearing in rotor.supports
     }
 
 
 def bearing_locations(
     scene: Scene, rotors: Sequence[Rotor], names: Sequence[str], duties: Mapping[str, BearingDuty]
 ) -> tuple[BearingElement, ...]:
-    """Return where every law of a bearing acts; `names` are those of all supports.
+    """Return where every law of a bearing in the scene acts; `names` are the names of all supports.
 
-    Laws of a planet bearing are along its own axes, away from the carrier's and along z x (away).
+    The own axes of a planet bearing are x away from the carrier's axis, y along z x (away), and z; those of a
+    bushing are the axes of the scene.
     """
     support_index = {name: index for index, name in enumerate(names)}
-    axes = {name: seat_axes(rotors, *at) for name, at in supports_by_name(rotors).items()}
-    locations = []
+    supports = supports_by_name(rotors)
+    elements = []
     for law in scene.bearing_laws:
-        name, duty = law.bushing, duties[law.bushing]
-        way = law.rows(duty)
-        locations.append(BearingElement(name, support_index[name], way @ axes[name], way, law.typical(duty)))
-    return tuple(locations)
+        duty = duties[law.bushing]
+        rotor, bearing = supports[law.bushing]
+        local_rows = law.rows(duty)
+        element = BearingElement(
+            name=law.bushing,
+            support=support_index[law.bushing],
+            way=local_rows @ seat_axes(rotors, rotor, bearing),
+            local_rows=local_rows,
+            typical=law.typical(duty),
+        )
+        elements.append(element)
+    return tuple(elements)
 
 
 def tilt_lever(scene: Scene) -> float:
-    """Return the radius that makes lengths of tilts, m."""
+    """Return the radius in m that turns tilts into lengths: the largest base radius, 1 without gears."""
     return max((gear.base_radius for gear in scene.gears), default=1.0)
 
 
 def supports_by_name(rotors: Sequence[Rotor]) -> dict[str, tuple[int, Bushing | PlanetBearing]]:
-    """Return the rotor and the bearing of every name."""
-    return {part.name: (index, part) for index, rotor in enumerate(rotors) for part in rotor.supports}
+    """Return by the name of every bearing the index of its rotor, and the bearing."""
+    return {
+        bearing.name: (index, bearing) for index, rotor in enumerate(rotors) for bearing in rotor.supports
+    }

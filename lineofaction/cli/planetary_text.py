@@ -1,4 +1,7 @@
-"""The text of a scene file of a planetary stage."""
+"""The text of a scene file of a planetary stage.
+
+The sun is driven, the carrier is braked, and the ring stands still. The templates are TOML with its comments.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,18 @@ from lineofaction.cli.scene_text import ACCURACY, HEAD
 from lineofaction.cli.stage_sketch import PLANETS, StageSketch
 
 _LOAD_SHARE = 0.6
-"""Of the sun's highest torque in the table."""
+"""Torque of the sun under the brake, as part of the highest torque of its STE table."""
+_CARRIER_THICKNESS = 0.8
+"""Axial length of steel in the carrier, over the length of its shaft."""
+_STEEL = 7850.0
+"""Density of steel, kg/m^3."""
 
 
 def planetary_text(stage: StageSketch, head: str) -> str:
-    """Return a stage whose sun is driven, whose carrier is braked, and whose ring is held."""
-    length = 2.0 * stage.sun.width
+    """Return the text of the scene file of a stage; `head` is the first comment of the file."""
+    length = 2.0 * stage.sun.width  # of all shafts, mm
     middle = 0.5 * length
+    # torques rise: the last is the highest; the ratio is that of sun to carrier
     brake = PLANETS * _LOAD_SHARE * stage.sun.torque[-1] * stage.ratio
     return f"""{HEAD.format(head=head)}
 [run]
@@ -58,12 +66,18 @@ torque_n_m = [{brake:.3g}]
 
 
 def _shafts(stage: StageSketch, length: float) -> str:
-    """Return carrier, sun, ring and the first planet; inertia of the carrier grows as its size."""
-    radius = 1e-3 * stage.sun.center_distance
-    mass = 800.0 * radius**2 * 1e-3 * length * math.pi * 7.85
-    none = "{ mass_kg = 0.0, polar_kg_m2 = 0.0, transverse_kg_m2 = 0.0 }"
+    """Return the tables of the carrier, the sun, the ring and the first planet; `length` is in mm.
+
+    The inertia of the carrier is that of a steel disc whose radius is the center distance. The ring has none
+    on its shaft: it stands still.
+    """
+    radius = 1e-3 * stage.sun.center_distance  # m
+    thickness = 1e-3 * _CARRIER_THICKNESS * length  # m
+    mass = _STEEL * math.pi * radius**2 * thickness
     polar = 0.5 * mass * radius**2
-    carrier = f"{{ mass_kg = {mass:.3g}, polar_kg_m2 = {polar:.3g}, transverse_kg_m2 = {0.6 * polar:.3g} }}"
+    transverse = 0.6 * polar  # a thin disc has 0.5; the rest is a round figure for its thickness
+    carrier = f"{{ mass_kg = {mass:.3g}, polar_kg_m2 = {polar:.3g}, transverse_kg_m2 = {transverse:.3g} }}"
+    zero = "{ mass_kg = 0.0, polar_kg_m2 = 0.0, transverse_kg_m2 = 0.0 }"
     return f"""
 [[shafts]]
 name = "carrier"
@@ -81,7 +95,7 @@ diameter_mm = {stage.sun.pinion.bore:g}
 name = "ring"
 frame = "carrier"
 length_mm = {length:g}
-inertia = {none}
+inertia = {zero}
 
 [[shafts]] # the first planet
 name = "planet"
@@ -93,7 +107,10 @@ origin_mm = [{stage.sun.center_distance:.10g}, 0.0, 0.0]
 
 
 def _gears(stage: StageSketch, middle: float) -> str:
-    """Return the gears at mid-length; the ring's inertia counts for nothing while it is held."""
+    """Return the tables of the gears at mid-length.
+
+    A gear without a bore needs an inertia; that of the ring has no effect, as its speed is imposed as zero.
+    """
     return f"""
 [[gears]]
 name = "sun gear"
@@ -116,24 +133,11 @@ inertia = {{ mass_kg = 1.0, polar_kg_m2 = 1e-2, transverse_kg_m2 = 5e-3 }}
 
 
 def _bearings(middle: float) -> str:
-    """Return the sun's soft bearing, the ring's mount, the carrier's bearing and the planet's pin."""
-    return (
-        "".join(
-            f"""
-[[bushings]]
-name = "{name}"
-shaft = "{shaft}"
-position_mm = {middle:g}
-radial_stiffness_n_per_m = {stiffness}
-axial_stiffness_n_per_m = 1e8
-"""
-            for name, shaft, stiffness in (
-                ("sun bearing", "sun", "1e6 # soft: the sun floats between the planets"),
-                ("ring mount", "ring", "1e9"),
-                ("carrier bearing", "carrier", "2e8"),
-            )
-        )
-        + f"""
+    """Return the tables of the bearings of the sun, the ring and the carrier, and of the planet's pin."""
+    sun = _bushing("sun bearing", "sun", middle, "1e6 # soft: the sun floats between the planets")
+    ring = _bushing("ring mount", "ring", middle, "1e9")
+    carrier = _bushing("carrier bearing", "carrier", middle, "2e8")
+    return f"""{sun}{ring}{carrier}
 [[planet_bearings]]
 name = "pin"
 shaft = "planet"
@@ -142,4 +146,15 @@ position_mm = {middle:g}
 radial_stiffness_n_per_m = 2e8
 axial_stiffness_n_per_m = 1e8
 """
-    )
+
+
+def _bushing(name: str, shaft: str, position: float, radial_stiffness: str) -> str:
+    """Return the table of a bushing; the stiffness is a text in TOML, which may end in a comment."""
+    return f"""
+[[bushings]]
+name = "{name}"
+shaft = "{shaft}"
+position_mm = {position:g}
+radial_stiffness_n_per_m = {radial_stiffness}
+axial_stiffness_n_per_m = 1e8
+"""

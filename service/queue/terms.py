@@ -1,4 +1,8 @@
-"""What is kept of a job beside its inputs: caller, priority, label, delivery."""
+"""The terms of a job, which the service stores beside its inputs: label, priority, cost limit, delivery.
+
+A job is one request of a caller. Jobs with equal inputs share one computation. The holder of an API key is
+the caller; a key may limit priority and cost.
+"""
 
 from __future__ import annotations
 
@@ -19,6 +23,7 @@ ANYBODY = Holder(name="")
 LOWER_COST = (
     "Select a coarser level, fewer positions, loads or samples, of a run a shorter one; or raise the limit."
 )
+"""Suggestion of a problem whose cost is above its limit."""
 Response = Literal["raw", "document"]
 Transmission = Literal["value", "reference"]
 Json = dict[str, Any]
@@ -38,12 +43,12 @@ def cost_limit(requested: float | None, caller: Holder) -> float | None:
 
 
 def refuse_beyond(limit: float, stages: dict[str, float]) -> None:
-    """Raise `BadInput` if the predicted CPU seconds, by stage, are beyond a limit."""
+    """Raise `BadInput` if the sum of the predicted CPU seconds, by stage, is above a limit."""
     predicted = sum(stages.values())
     if predicted <= limit:
         return
-    largest = sorted(stages.items(), key=lambda stage: -stage[1])[:2]
-    parts = ", ".join(f"{name} {engineering(seconds, 2)} s" for name, seconds in largest)
+    by_cost = sorted(stages.items(), key=lambda stage: -stage[1])
+    parts = ", ".join(f"{name} {engineering(seconds, 2)} s" for name, seconds in by_cost[:2])
     bound = f"at least the predicted cost, {engineering(predicted, 3)} CPU s ({parts})"
     raise BadInput.of("max_cost_s", limit, bound, LOWER_COST)
 
@@ -66,7 +71,10 @@ class Label:
         return cls(row.title, tuple(row.tags.split()))
 
     def columns(self) -> dict[str, str]:
-        """Return it as the job table has it: the title also as it is searched, tags one a line."""
+        """Return the columns of the job table: the title, the title for searches, and one tag a line.
+
+        Every tag stands between two line feeds, so that a search for a tag finds whole tags only.
+        """
         lines = "".join(f"{tag}\n" for tag in self.tags)
         return {"title": self.title, "title_folded": self.title.casefold(), "tags": f"\n{lines}"}
 
@@ -83,7 +91,7 @@ class Delivery:
 
     @classmethod
     def of(cls, text: str) -> Self:
-        """Return what `str` wrote."""
+        """Return the delivery of a text that `str` of one has written."""
         response, _, transmission = text.partition(" ")
         return cls(response, transmission)  # type: ignore[arg-type]  # the table holds no others
 
@@ -91,14 +99,14 @@ class Delivery:
         return f"{self.response} {self.transmission}"
 
 
-AS_IT_IS = Delivery()
+AS_IT_IS = Delivery()  # raw, by value
 
 
 def delivery(response: Response, transmission: Transmission | None, field: str) -> Delivery:
-    """Return the form that was requested; without a transmission by value, but in a document by reference.
+    """Return the delivery that was requested; `field` is the name of the transmission in the request.
 
-    Raises `BadInput`, by the caller's name of the `field`: by value in a document, as JSON does not hold
-    netCDF.
+    Without a transmission a raw result is sent by value, and a document refers to it. Raises `BadInput`: a
+    document by value is requested, but JSON does not hold netCDF.
     """
     if response == "document":
         if transmission == "value":
@@ -112,29 +120,33 @@ def delivery(response: Response, transmission: Transmission | None, field: str) 
 
 @dataclass(frozen=True)
 class Terms:
-    """The terms of a job.
-
-    Its computation has the highest priority of the jobs that share it, and may cost `max_cost_s` CPU seconds
-    (None: no limit). `stated` are its inputs as the caller stated them, JSON; empty: they are not kept. With
-    `reuse` an equal job of the caller's that is under way or done answers in its place.
-    """
+    """The terms of a job."""
 
     delivery: Delivery = AS_IT_IS
+    """Form of the result."""
     label: Label = NO_LABEL
-    differences: Differences = field(default_factory=lambda: NOT_COMPARED)
+    """Title and tags."""
+    differences: Differences = field(
+        default_factory=lambda: NOT_COMPARED
+    )  # its class has no hash: no default
+    """Inputs in which the job differs from the previous job of its caller."""
     priority: int = 0
+    """Priority of the job; a computation has the highest one of the jobs that share it."""
     max_cost_s: float | None = None
+    """CPU seconds that the job may take; None: no limit."""
     stated: str = ""
+    """Inputs as the caller wrote them, JSON; empty if the service does not store them."""
     reuse: bool = False
+    """Whether an equal job of the same caller, under way or done, may answer in place of this one."""
 
     def columns(self) -> dict[str, str]:
-        """Return the columns of a job that hold them; the others are its computation's."""
-        said = {
+        """Return the columns of the table of jobs; priority and cost are stored with the computation."""
+        return {
             "delivery": str(self.delivery),
             "differences": differences_column(self.differences),
             "stated": self.stated,
+            **self.label.columns(),
         }
-        return {**said, **self.label.columns()}
 
 
-USUAL = Terms()
+USUAL = Terms()  # the terms of a job whose caller states none

@@ -1,4 +1,9 @@
-"""Bodies of executions: labels, inputs of processes, batches."""
+"""Bodies of executions: labels, inputs of processes, batches.
+
+The bodies are those of OGC API Processes. An input is the value itself, or a qualified value: an object with
+the value as its member "value" and its format beside it. A link in place of a value is refused. Models of
+bodies are BoundaryModel, which refuses unknown fields; models of answers are BaseModel.
+"""
 
 from __future__ import annotations
 
@@ -18,13 +23,16 @@ from service.schemas.answers import JobStatus, ProblemBody, ResultReference, Sub
 Title = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f]*$")]
 Tag = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._:/+-]{0,39}$")]
 Tags = Annotated[list[Tag], Field(max_length=16)]
-_FORMAT = {"mediaType", "encoding", "schema"}
 Priority = Annotated[int, Field(ge=-9, le=9)]
 Cost = Annotated[float, Field(gt=0.0, le=1e9)]
+_FORMAT = {"mediaType", "encoding", "schema"}
+"""Members of a qualified value beside "value"."""
 _LINK = {"href", "rel", "type", "hreflang", "title"}
+"""Members of a link."""
 MAX_JOBS = 200
-"""Of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
+"""Most jobs of one batch: their inputs are checked while the caller waits, 4 to 40 ms each."""
 _DEEPEST = 32
+"""Most levels of a merge patch that are merged; inputs are nowhere nested as deeply."""
 
 
 class LabelChange(BoundaryModel):
@@ -66,33 +74,35 @@ class _ExecuteBody(BoundaryModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _as_offered(cls, body: Any) -> Any:
-        """Refuse what is not offered, and take values out of their qualification."""
+    def _unqualified(cls, body: Any) -> Any:
+        """Return the body with plain values for qualified ones; refuse links and formats other than JSON."""
         if not isinstance(body, dict):
             return body
         inputs = body.get("inputs")
         if not isinstance(inputs, dict):
             return body
-        return body | {"inputs": {name: _value(name, value) for name, value in inputs.items()}}
+        return body | {"inputs": {name: _unqualified_value(name, value) for name, value in inputs.items()}}
 
 
-def _value(name: str, value: Any) -> Any:
-    """Return an input without the qualification it may have."""
+def _unqualified_value(name: str, value: Any) -> Any:
+    """Return the value of an input, plain or qualified; refuse a link, or a format other than JSON."""
     if not isinstance(value, dict):
         return value
     if "href" in value and set(value) <= _LINK:
         bound = "written out: the service reads no addresses that its callers name"
         refuse(f"inputs.{name}.href", value["href"], bound, "Send its content instead.")
     if "value" not in value or not set(value) <= _FORMAT | {"value"}:
-        return value
+        return value  # a plain value that happens to be an object
     for field in sorted(_FORMAT & set(value)):
         if field != "mediaType" or value[field] != JSON:
-            refuse(f"inputs.{name}.{field}", value[field], f"left out, or mediaType {JSON}", "")
+            bound = f"left out, or mediaType {JSON}"
+            refuse(f"inputs.{name}.{field}", value[field], bound, "")  # no suggestion
     return value["value"]
 
 
 @lru_cache(maxsize=1)
-def _wanted_output() -> type[BoundaryModel]:
+def _output_request() -> type[BoundaryModel]:
+    """Return the model of what a body asks of an output: its format, and by value or by reference."""
     type_field: Any = (Literal[NETCDF], Field(NETCDF, description="Media type of the output"))
     form = create_model("NcFormat", __base__=BoundaryModel, mediaType=type_field)
     text = "Default: value; in a document: reference"
@@ -105,20 +115,20 @@ def _wanted_output() -> type[BoundaryModel]:
 
 @cache
 def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> type[_ExecuteBody]:
-    """Return the model of a process' body.
+    """Return the model of the body that executes a process.
 
     Parameters
     ----------
     process : str
-        Its identifier.
+        Identifier of the process.
     inputs : type[BoundaryModel]
-        Model of its inputs.
+        Model of the inputs of the process.
     output : str
-        Name of its one output.
+        Name of the output; every process has one.
     """
     title = class_name(process)
-    wanted: Any = (_wanted_output() | None, Field(None, description="The output of the process"))
-    outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: wanted})
+    request: Any = (_output_request() | None, Field(None, description="The output of the process"))
+    outputs = create_model(f"{title}Outputs", __base__=BoundaryModel, **{output: request})
     form = Field("raw", description="Form of the result: raw, or a JSON object of outputs by name")
     fields: dict[str, Any] = {
         "inputs": (inputs, Field(description="Inputs of the process")),
@@ -167,7 +177,7 @@ class BatchRequest(BoundaryModel):
     subscriber: Subscriber | None = Field(None, description="Who is told about the batch")
 
     def inputs_of(self, index: int) -> dict[str, Any]:
-        """Return the inputs of one job."""
+        """Return the inputs of one job: the shared ones with the differences of the job."""
         merged: dict[str, Any] = _merge_patch(self.inputs, self.jobs[index])
         return merged
 
@@ -187,17 +197,17 @@ class BatchResults(BaseModel):
     jobs: list[BatchResult]
 
 
-def _merge_patch(target: Any, patch: Any, deepest: int = _DEEPEST) -> Any:
+def _merge_patch(target: Any, patch: Any, levels: int = _DEEPEST) -> Any:
     """Return `target` with the changes of a JSON merge patch (RFC 7396): null removes a member.
 
-    What lies deeper than any inputs do is replaced as it is.
+    Objects are merged down to so many `levels`; below them the patch replaces the target.
     """
-    if not isinstance(patch, dict) or deepest == 0:
+    if not isinstance(patch, dict) or levels == 0:
         return patch
     merged = dict(target) if isinstance(target, dict) else {}
     for name, value in patch.items():
         if value is None:
             merged.pop(name, None)
         else:
-            merged[name] = _merge_patch(merged.get(name), value, deepest - 1)
+            merged[name] = _merge_patch(merged.get(name), value, levels - 1)
     return merged

@@ -1,4 +1,9 @@
-"""The work of the processes analyze and simulate, done in a child process of its own."""
+"""The work of the service's processes analyze and simulate, done in a child process.
+
+An order is one computation with its inputs; its workspace is a directory of its own, in which another attempt
+finds the files of a worker that died. A product is a file that the work made for the store. A table is an STE
+database; a draft of it is what the passes of its refinement have so far.
+"""
 
 from __future__ import annotations
 
@@ -38,42 +43,47 @@ from service.worker.preparations import CASES, name_of_table
 
 
 class DraftedProgress:
-    """Reports stages, with the last draft behind their names, and the fraction of the whole table.
+    """Reports the progress of a table: the stage and its fraction done, and the fraction of the whole table.
 
-    It reports (stage, fraction, whole); a table that `refines` may have passes after the first.
+    The figures of the last draft are written behind the name of the stage. A table that `refines` may have
+    passes after the first.
     """
 
     def __init__(self, report: Progress, *, refines: bool) -> None:
-        self._report, self._draft = report, ""
+        self._report = report
+        self._draft = ""  # figures of the last draft; empty before there is one
         self._table = TableFraction(refines=refines)
 
     def __call__(self, stage: str, fraction: float) -> None:
-        """Report the fraction done of a stage."""
+        """Report the fraction done of a stage, with that of the whole table."""
         name = f"{stage}; {self._draft}" if self._draft else stage
         self._report(name, fraction, self._table.at(stage, fraction))
 
     def plan(self, stages: Mapping[str, float]) -> None:
-        """Take the predicted cost of the stages of a pass."""
+        """Set the predicted cost of the stages of a pass that begins."""
         self._table.plan(stages)
 
     def draft(self, table: SteDatabase, refining: str) -> None:
-        """Take the figures of a table that is being refined."""
+        """Set the draft to the figures of a table that is being refined."""
         self._draft = draft_line(table, refining)
 
 
 def warm_up() -> None:
-    """Analyze the smallest pair into a file: it loads what every analysis needs."""
+    """Analyze the smallest pair into a temporary file, so that all that an analysis needs is loaded."""
     gear = {"teeth": 20, "face_width_mm": 2.0, "bore_diameter_mm": 10.0}
     pair = {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": gear, "wheel": gear}
     accuracy = {"level": "draft", "positions": 8}
     case = {"pair": pair, "load": {"torque_n_m": [0.1]}, "accuracy": accuracy}
     with TemporaryDirectory() as name:
         inputs = {"case": validated(Case, case).model_dump(mode="json")}
-        analyze_case(WorkOrder("", inputs, "", Path(name), Path(name)), lambda *_: None)
+        order = WorkOrder(
+            entry="", inputs=inputs, key="", workspace=Path(name), data_directory=Path(name)
+        )  # no entry or key: nobody dispatches the order or stores its product
+        analyze_case(order, lambda *_: None)
 
 
 def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Compute the STE database of a case."""
+    """Compute the STE database of a case; the product is its file."""
     case = CASES.of_json(order.inputs["case"])
     file = order.workspace / "database.nc"
     database = database_of(case, order, progress)
@@ -82,12 +92,12 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 
 def _product(key: str, database: SteDatabase, file: Path) -> Product:
-    """Return a database in its file as what was made."""
+    """Return the product of a database that was written to `file`."""
     return Product(key, "database", file, headline=headline_json(database))
 
 
 def database_of(case: CheckedCase, order: WorkOrder, progress: Progress) -> SteDatabase:
-    """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
+    """Compute the STE database of a case; the service's cache keeps the compliances of its gears."""
     drafted = DraftedProgress(progress, refines=case.case.accuracy.tolerance is not None)
     with boundary_errors(), table_workers(order) as workers:
         run = Run(workers, order.data_directory / "compliance", drafted, drafted.plan)
@@ -95,7 +105,7 @@ def database_of(case: CheckedCase, order: WorkOrder, progress: Progress) -> SteD
 
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Run a scene; tables come from the store, those missing are computed and kept."""
+    """Simulate a scene; tables that the store lacks are computed, and are products beside the run."""
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
     _run(ordered.tabled.scene, file, progress)
@@ -105,7 +115,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 @dataclass(frozen=True)
 class _OrderedScene:
-    """The scene of an order with its tables, those of them that had to be computed, and its warnings."""
+    """The scene of an order with its tables; `products` are the tables that had to be computed."""
 
     tabled: TabledScene
     products: tuple[Product, ...]
@@ -113,11 +123,12 @@ class _OrderedScene:
 
 
 def ordered_scene(order: WorkOrder, progress: Progress) -> _OrderedScene:
-    """Reduce the housings of the scene of an order, gather or compute its tables."""
+    """Return the scene of an order: its housings are reduced, its tables read from the store or computed."""
     housed = housed_scene(order, progress)
     inputs, housings = housed.inputs, housed.housings
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
+    # A table in the store costs nothing; those to be computed count alike.
     costs = {mesh.name: float(_stored_key(order, mesh) is None) for _, mesh in inputs.with_database}
     tables = by_cost(partial(progress, "analysis"), costs)
     for index, mesh in inputs.with_database:
@@ -129,20 +140,23 @@ def ordered_scene(order: WorkOrder, progress: Progress) -> _OrderedScene:
 
 
 def housed_scene(order: WorkOrder, progress: Progress) -> HousedScene:
-    """Reduce the housings of the scene of an order, and read those that were measured."""
+    """Return the scene of an order with its housings reduced, measured responses of housings read first."""
     inputs = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     read_responses(inputs)
     return HousedScene(inputs, reduced_in(inputs, order.data_directory, progress))
 
 
 def _stored_key(order: WorkOrder, mesh: MeshInput) -> str | None:
-    """Return the name of the stored database of a mesh, None if it has to be computed."""
+    """Return the key of the stored database of a mesh, None if the database has to be computed."""
     key = name_of_table(mesh)
     return key if key in order.stored else None
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:
-    """Run into the file; go on from where a worker before us died."""
+    """Simulate a scene into a file; go on from where the worker of an earlier attempt died.
+
+    A file that cannot be resumed is written anew.
+    """
     try:
         status = simulate_to_file(scene, file, resume=True, progress=staged(progress))
     except ResultError:
@@ -154,23 +168,23 @@ def _run(scene: Scene, file: Path, progress: Progress) -> None:
 def _table(
     order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], report: Report
 ) -> SteDatabase:
-    """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
-    known = _stored_key(order, mesh)
-    if known is not None:
-        return SteDatabase.from_netcdf(order.stored[known])
+    """Return the database of a mesh, read from the store or computed; a computed one joins `products`."""
+    stored_key = _stored_key(order, mesh)
+    if stored_key is not None:
+        return SteDatabase.from_netcdf(order.stored[stored_key])
     assert mesh.case is not None
     key = name_of_table(mesh)
     file = order.workspace / f"database_{index}.nc"
-    if file.is_file():  # of a worker that died after it
+    if file.is_file():  # written by a worker that died later
         database = SteDatabase.from_netcdf(file)
         products.append(_product(key, database, file))
         return database
 
-    def part(_stage: str, _fraction: float, total: float | None = None, /) -> None:
-        report(total or 0.0)
+    def report_total(_stage: str, _fraction: float, total: float | None = None, /) -> None:
+        report(total or 0.0)  # the scene's progress has no stages of a table
 
     try:
-        database = database_of(CASES.of(mesh.case), order, part)
+        database = database_of(CASES.of(mesh.case), order, report_total)
     except BadInput as error:
         raise error.within(f"meshes[{index}].case") from None
     database.to_netcdf(file)

@@ -1,7 +1,9 @@
-"""A pair on the discretization of its table and on rougher ones, each with what it assembled kept.
+"""A pair on the discretization of its table and on rougher ones, for live answers with errors.
 
-Flanks, loads and alignments change from question to question; bodies and positions do not, so that the
-compliance between the candidates is assembled once on every discretization.
+The compliance of the bodies is known; a live answer changes flanks, loads and alignments. The candidates of
+contact and the compliance between them depend on bodies, center distance and positions alone, so every
+discretization assembles them once and keeps them. Answers on the rougher discretizations give the errors of
+discretization; these are solved at a sample of the table's positions, `sample.rows`.
 """
 
 from __future__ import annotations
@@ -18,76 +20,88 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class CondensedContacts:
-    """One pair at one center distance."""
+    """One pair at one center distance, on the discretizations that an answer and its errors need."""
 
     fine: PairContact
-    """As the table had it."""
+    """The pair on the discretization of the table, which the answer itself is solved on."""
     plane: PairContact | None
-    """Without the correction for a finite width; None if there is none."""
+    """The pair without the correction for the finite face width; None if there is no such correction."""
     sliced: PairContact | None
-    """In half the slices; None in the plane."""
+    """The pair in fewer slices over the face; None for a model in the plane."""
     coarse: PairContact | None
-    """On the coarse meshes; None if their compliance is not at hand."""
+    """The pair on the coarse meshes; None if their compliance was not computed."""
     patched: PairContact
-    """Without the correction, under the load patches of the coarse meshes."""
+    """The pair without that correction, under the wider load patches of the coarse meshes."""
 
     @classmethod
     def of(cls, nominal: PairContact, coarse: PairContact | None) -> CondensedContacts:
-        """Take the rougher discretizations that need no other bodies from the pair itself."""
-        made = nominal.plan.discretization
+        """Return the contacts of a pair; the coarse meshes alone are other bodies, and have to be given."""
+        discretization = nominal.plan.discretization
         return cls(
-            replace(nominal, varied=True),
-            nominal.in_plane_strain if made.corrected else None,
-            nominal.in_slices(made.coarse_slices) if made.slices > 1 else None,
-            coarse,
-            nominal.in_plane_strain.in_coarse_patches,
+            fine=replace(nominal, varied=True),  # flanks will vary, so tilts over the face are assembled too
+            plane=nominal.in_plane_strain if discretization.corrected else None,
+            sliced=nominal.in_slices(discretization.coarse_slices) if discretization.slices > 1 else None,
+            coarse=coarse,
+            patched=nominal.in_plane_strain.in_coarse_patches,
         )
 
     def with_flanks(self, pair: ParallelAxes) -> CondensedContacts:
-        """Return the same bodies with other flanks; what is assembled is shared.
+        """Return the same bodies with other flanks; they share what is assembled.
 
-        In the same slices the flanks touch alike on all bodies: it is found once.
+        Where flanks touch does not depend on the bodies. The contacts in the same slices share one record of
+        it, which `touch` fills; other slices do not fit that record.
         """
         touches: dict[bytes, Touch] = {}
 
-        def alike(contact: PairContact) -> PairContact:
+        def in_same_slices(contact: PairContact) -> PairContact:
             return replace(contact, pair=pair, touches=touches)
 
         return CondensedContacts(
-            alike(self.fine),
-            self.plane and alike(self.plane),
-            self.sliced and replace(self.sliced, pair=pair),
-            self.coarse and alike(self.coarse),
-            alike(self.patched),
+            fine=in_same_slices(self.fine),
+            plane=None if self.plane is None else in_same_slices(self.plane),
+            sliced=None if self.sliced is None else replace(self.sliced, pair=pair),
+            coarse=None if self.coarse is None else in_same_slices(self.coarse),
+            patched=in_same_slices(self.patched),
         )
 
     def touch(self, model: ContactModel, sample: TableSample) -> None:
-        """Find where the flanks touch at all positions of a table: for all bodies in the same slices."""
+        """Record where the flanks touch: at all positions of a table, and at those of the sample.
+
+        Call it on the result of `with_flanks`: all its contacts in the same slices read this record.
+        """
         nominal, positions = self.fine, sample.position[sample.rows]
         touch = with_gaps(nominal.pair, nominal.candidates(model, sample.position), model).touch
+        # A record is found by the bytes of its positions.
         nominal.touches.update(
             {positions.tobytes(): touch.rows(sample.rows), sample.position.tobytes(): touch}
         )
 
     def keep(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
-        """Keep the compliance of some of the positions that are assembled by itself."""
+        """Keep the fine compliance of the positions `rows` under a key of their own, if it is not yet kept.
+
+        To solve these positions alone then assembles nothing. `position` are all positions of the table.
+        """
         if self.fine.cached_problem(model, position[rows]) is None:
             self.fine.keep_rows(model, position, rows)
 
     def at_distance(self, change: float) -> CondensedContacts:
-        """Return the same bodies at a distance larger by `change` in m; nothing is assembled there yet."""
+        """Return the same bodies at a center distance larger by `change` in m; nothing is assembled there.
+
+        What is assembled (`_problems`) depends on the center distance, so it is not shared.
+        """
         pair = self.fine.pair.at_center_distance(self.fine.pair.center_distance + change)
         nominal = replace(self.fine, pair=pair, _problems={})
         coarse = None if self.coarse is None else replace(self.coarse, pair=pair, _problems={})
         return CondensedContacts.of(nominal, coarse)
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
-        """Assemble what is not kept yet: all positions of a table, and those that are solved again."""
-        everywhere = self.fine.candidates(model, sample.position)
-        self.fine.assemble(model, everywhere)
+        """Assemble what is not kept yet: the fine pair at all positions, others at those of the sample."""
+        candidates = self.fine.candidates(model, sample.position)
+        self.fine.assemble(model, candidates)
         positions = sample.position[sample.rows]
         if self.plane is not None and self.plane.cached_problem(model, positions) is None:
-            self.plane.assemble(model, everywhere.rows(sample.rows))
+            # Without the correction slices and patches are the same, and so are the candidates.
+            self.plane.assemble(model, candidates.rows(sample.rows))
         for other in (self.sliced, self.coarse, self.patched):
-            if other is not None:
+            if other is not None:  # other slices or patches have candidates of their own
                 other.assemble(model, other.candidates(model, positions))

@@ -1,4 +1,7 @@
-"""REXS files: read by their content, checked, written by their name."""
+"""REXS files: read by their content, checked, written by their name.
+
+REXS is an exchange format of gear units: components with attributes, and relations between components.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +16,22 @@ from lineofaction.gearbox.rexs.model import Document, Model
 from lineofaction.gearbox.rexs.xml_form import read_xml, xml_of
 
 _ASSEMBLIES = ("assembly", "ordered_assembly")
+"""Types of the relations that make a component a part of another."""
 _MAX_FAULTS = 20
+"""Faults of a model that one message lists."""
+_ZIP_START = b"PK"
+_UTF8_MARK = b"\xef\xbb\xbf"
+"""Byte order mark, which some programs write before the text."""
 
 ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
+"""Endings of the names: XML, JSON, and twice a ZIP archive of XML and other files."""
 
 
 def read_rexs(path: Path) -> Document:
     """Return what a REXS file holds: XML, JSON or ZIP by its content. No other file is opened.
 
-    Raises `BadInput`: it is missing, too large, damaged, or says what a model cannot be; the message names
-    the place.
+    Raises `BadInput` if the file is missing, too large or damaged, or if its model is unsound: an id is given
+    twice, a reference has no component, or a component is part of itself. The message names the place.
     """
     try:
         with path.open("rb") as stream:
@@ -36,8 +45,8 @@ def parsed(data: bytes) -> Document:
     """Return the document of a file's bytes."""
     if len(data) > MAX_BYTES:
         raise BadInput.of("file", f"more than {MAX_BYTES} bytes", "smaller")
-    text, files = read_archive(data) if data.startswith(b"PK") else (data, {})
-    start = text.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
+    text, files = read_archive(data) if data.startswith(_ZIP_START) else (data, {})
+    start = text.removeprefix(_UTF8_MARK).lstrip()[:1]
     model = read_json(text) if start == b"{" else read_xml(text)
     _check(model)
     return Document(model, files)
@@ -46,8 +55,8 @@ def parsed(data: bytes) -> Document:
 def serialized(document: Document, name: str) -> bytes:
     """Return a document in the form that the ending of a file's name says.
 
-    Raises `BadInput`: the ending is none of REXS, the form has no place for something, or the model is
-    unsound.
+    Raises `BadInput` if the ending is none of `ENDINGS`, if the model is unsound, or if the document has
+    other files and the ending is not that of an archive.
     """
     ending = next((end for end in reversed(ENDINGS) if name.lower().endswith(end)), None)
     if ending is None:
@@ -98,9 +107,10 @@ def _dangling(model: Model) -> Iterator[Fault]:
 
 
 def _cycles(model: Model) -> Iterator[Fault]:
-    """Yield the components that hold themselves, directly or by others, in order of their ids.
+    """Yield the components that are parts of themselves, directly or by others, and the holders of these.
 
-    Components whose parts are all settled are settled; what never settles is on a cycle or holds one.
+    A component is settled when all its parts are: those without parts at once, their holders after them. A
+    component that never settles is on a cycle, or holds a component that is. They come in order of their ids.
     """
     parts: dict[int, set[int]] = {}
     for relation in model.relations:

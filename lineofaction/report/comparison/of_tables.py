@@ -1,4 +1,9 @@
-"""STE databases against each other, and against a measured transmission error."""
+"""Pages that compare two STE databases, or one with a measured transmission error.
+
+A table is an STE database: curves of the STE over the position by torque, misalignment and change of the
+center distance. Curves are compared at the misalignment and center distance nearest to nominal. A ripple is a
+curve less its mean.
+"""
 
 from __future__ import annotations
 
@@ -26,24 +31,32 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.pair import pair_title
 from lineofaction.report.ste.curves import aligned, um_of
 
-HARMONICS = 3  # in the table of differences
+HARMONICS = 3
+"""Mesh harmonics in the table of differences."""
 MAX_HARMONICS = 8
+"""Mesh harmonics in the figure of harmonics."""
 _UM = 1e6
+"""Micrometers per meter."""
+_MARKER_OFFSET = 0.16
+"""Distance in orders between the markers of two tables at one harmonic; both lie about the harmonic."""
+_TORQUE_ROUNDING = 1e-9
+"""Relative rounding by which the ends of two torque ranges may differ."""
 
 Named = dict[str, SteDatabase]
-"""One or two tables by the names they are shown under."""
+"""One or two tables by the names they are shown under, in the order given."""
 
 
 def compare_tables(
     tables: Named, measured: MeasuredCurve | MeasuredOrders | None, torque: float | None = None
 ) -> Page:
-    """Put the comparison of two tables together, or of one with what was measured.
+    """Return the page that compares two tables with each other, or one with what was measured.
 
-    Ripples are drawn at a `torque` on the driving gear, N m; left out: the middle one that all tables hold.
-    Raises `BadInput`: they have no torque in common, or not that one, or measured orders in another unit.
+    Ripples and harmonics are drawn at `torque` on the driving gear, N m; None takes the middle one of the
+    torques that all tables cover. Raises `BadInput` if the tables have no torque in common, if one does not
+    cover `torque`, or if measured orders are not in micrometers.
     """
     torques = _common(tuple(tables.values()))
-    ripple_torque = torques[len(torques) // 2] if torque is None else _inside(torque, tables)
+    ripple_torque = torques[len(torques) // 2] if torque is None else _covered(torque, tables)
     curves = {load: _curves(tables, load) for load in torques}
     differences = tuple(_differences(curves))
     orders = measured if isinstance(measured, MeasuredOrders) else None
@@ -56,24 +69,25 @@ def compare_tables(
         *([_over_torque(curves)] if len(torques) > 1 else []),
         _harmonics(_curves(tables, ripple_torque), ripple_torque, orders),
     ]
-    listed = (differences_table(differences, tuple(tables)),) if differences else ()
-    sections = [Section("Transmission errors", figures=tuple(figures), tables=listed)]
-    differing = changed_fields({name: table.metadata.case for name, table in tables.items()})
-    if differing.rows:
-        sections.append(Section("Cases", tables=(differing,)))
+    difference_tables = (differences_table(differences, tuple(tables)),) if differences else ()
+    sections = [Section("Transmission errors", figures=tuple(figures), tables=difference_tables)]
+    case_fields = changed_fields({name: table.metadata.case for name, table in tables.items()})
+    if case_fields.rows:
+        sections.append(Section("Cases", tables=(case_fields,)))
     headlines = tuple(
-        Headline(f"{one.name} at {one.where}", one.written, one.finding)
-        for one in differences
-        if one.name == "peak to peak"
+        Headline(f"{difference.name} at {difference.where}", difference.written, difference.finding)
+        for difference in differences
+        if difference.name == "peak to peak"
     )
     titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
     return Page(f"{' and '.join(tables)} compared", "; ".join(titles), headlines, tuple(sections))
 
 
 def _common(tables: Sequence[SteDatabase]) -> list[float]:
-    """Return the torques of the first table that all cover."""
+    """Return those torques of the first table that all tables cover, moved into the range by rounding."""
     low, high = _limits(tables)
-    torques = [float(t) for t in tables[0].torque if low * (1 - 1e-9) <= t <= high * (1 + 1e-9)]
+    lowest, highest = low * (1 - _TORQUE_ROUNDING), high * (1 + _TORQUE_ROUNDING)
+    torques = [float(torque) for torque in tables[0].torque if lowest <= torque <= highest]
     if not torques:
         covered = f"{tables[0].torque[0]:g} to {tables[0].torque[-1]:g} N m of the first"
         bound = f"within {tables[-1].torque[0]:g} to {tables[-1].torque[-1]:g} N m of the second"
@@ -82,11 +96,12 @@ def _common(tables: Sequence[SteDatabase]) -> list[float]:
 
 
 def _limits(tables: Sequence[SteDatabase]) -> tuple[float, float]:
+    """Return the ends of the range of torques that all tables cover, N m."""
     low = max(float(table.torque[0]) for table in tables)
     return low, min(float(table.torque[-1]) for table in tables)
 
 
-def _inside(torque: float, tables: Named) -> float:
+def _covered(torque: float, tables: Named) -> float:
     low, high = _limits(tuple(tables.values()))
     if not low <= torque <= high:
         raise BadInput.of("--torque", torque, f"{low:g} to {high:g} N m, which all tables hold")
@@ -94,22 +109,24 @@ def _inside(torque: float, tables: Named) -> float:
 
 
 def _curves(tables: Named, torque: float) -> dict[str, Curve]:
-    """Return the curves at a torque, aligned, at equal steps of a base pitch."""
-    at = np.arange(PER_PITCH) / PER_PITCH
+    """Return the curves of the tables at a torque, at `PER_PITCH` equal steps of a base pitch."""
+    positions = np.arange(PER_PITCH) / PER_PITCH
     curves = {}
     for name, table in tables.items():
         misalignment, change = aligned(table)
         curves[name] = table.curve(
-            torque=torque, at=at, misalignment=misalignment, center_distance_change=change
+            torque=torque, at=positions, misalignment=misalignment, center_distance_change=change
         )
     return curves
 
 
 def _ripple(curve: Curve) -> FloatArray:
+    """Return a curve less its mean, µm."""
     return np.asarray(_UM * (curve.ste - curve.ste.mean()))
 
 
 def _differences(curves: dict[float, dict[str, Curve]]) -> Iterator[Difference]:
+    """Yield the differences of two tables by torque; none for a single table."""
     for torque, by_name in curves.items():
         if len(by_name) < 2:
             return
@@ -118,8 +135,9 @@ def _differences(curves: dict[float, dict[str, Curve]]) -> Iterator[Difference]:
         yield Difference("mean", where, _um(first.mean), _um(second.mean))
         yield _peak_to_peak(by_name, torque)
         for order in range(HARMONICS):
-            pair = _um(first.harmonics[order]), _um(second.harmonics[order])
-            yield Difference(f"mesh harmonic {order + 1}", where, *pair)
+            yield Difference(
+                f"mesh harmonic {order + 1}", where, _um(first.harmonics[order]), _um(second.harmonics[order])
+            )
 
 
 def _peak_to_peak(curves: dict[str, Curve], torque: float) -> Difference:
@@ -132,10 +150,10 @@ def _um(estimate: Estimate) -> Estimate:
 
 
 def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | None) -> Figure:
-    position = np.arange(2 * PER_PITCH + 1) / PER_PITCH
+    position = np.arange(2 * PER_PITCH + 1) / PER_PITCH  # two base pitches, both ends included
     lines = [
         Line(name, position, _twice(_ripple(curve)), color, band=0.5 * _UM * curve.peak_to_peak.error)
-        for (name, curve), color in zip(curves.items(), COLORS, strict=False)
+        for (name, curve), color in zip(curves.items(), COLORS, strict=False)  # more colors than curves
     ]
     caption = "STE less its mean. Bands: half the error of peak-to-peak on either side."
     findings = [f"Peak to peak: {_peak_to_peak(curves, torque)}."] if len(curves) == 2 else []
@@ -150,7 +168,7 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
             "base pitches to where it is most like the first curve. Its band is the standard deviation of "
             "single base pitches."
         )
-        findings.append(_how_alike(name, curves[name], match))
+        findings.append(_agreement(name, curves[name], match))
     across = Axis("position of the driving gear, base pitches", limits=(0.0, 2.0))
     return Figure(
         key="ripples",
@@ -162,10 +180,11 @@ def _ripples(curves: dict[str, Curve], torque: float, measured: MeasuredCurve | 
 
 
 def _twice(ripple: FloatArray) -> FloatArray:
+    """Return a ripple over two base pitches, closed by its first value."""
     return np.concatenate([ripple, ripple, ripple[:1]])
 
 
-def _how_alike(name: str, curve: Curve, match: Aligned) -> str:
+def _agreement(name: str, curve: Curve, match: Aligned) -> str:
     computed, ripple_measured = _um(curve.peak_to_peak), float(np.ptp(match.ripple))
     return (
         f"Measured {number(ripple_measured, 3)} µm peak to peak, {name} {number(computed.value, 3)} ± "
@@ -191,11 +210,12 @@ def _over_torque(curves: dict[float, dict[str, Curve]]) -> Figure:
 
 
 def _significant_torques(curves: dict[float, dict[str, Curve]]) -> str:
-    above = [one for load, by_name in curves.items() if (one := _peak_to_peak(by_name, load)).is_significant]
-    where = f": {', '.join(one.where for one in above)}" if above else ""
+    differences = [_peak_to_peak(by_name, torque) for torque, by_name in curves.items()]
+    significant = [difference for difference in differences if difference.is_significant]
+    where = f": {', '.join(difference.where for difference in significant)}" if significant else ""
     return (
-        f"The difference is larger than its error at {len(above)} of {len(curves)} torques{where}. Its error "
-        "is the root of the sum of both errors squared."
+        f"The difference is larger than its error at {len(significant)} of {len(curves)} torques{where}. "
+        "Its error is the root of the sum of both errors squared."
     )
 
 
@@ -203,23 +223,25 @@ def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders
     order = np.arange(1.0, MAX_HARMONICS + 1.0)
     lines, columns = [], {}
     for index, (name, curve) in enumerate(curves.items()):
-        amplitudes = [_um(one) for one in curve.harmonics[:MAX_HARMONICS]]
-        value = np.array([one.value for one in amplitudes])
-        lines.append(Line(name, order + 0.16 * index - 0.08, value, COLORS[index], width=0.0, markers=True))
-        columns[f"{name}, µm"] = [f"{one.value:.3f} ± {one.error:.3f}" for one in amplitudes]
+        amplitudes = [_um(amplitude) for amplitude in curve.harmonics[:MAX_HARMONICS]]
+        value = np.array([amplitude.value for amplitude in amplitudes])
+        abscissa = order + _MARKER_OFFSET * index - 0.5 * _MARKER_OFFSET
+        lines.append(Line(name, abscissa, value, COLORS[index], width=0.0, markers=True))
+        columns[f"{name}, µm"] = [
+            f"{amplitude.value:.3f} ± {amplitude.error:.3f}" for amplitude in amplitudes
+        ]
     caption = "Amplitudes of the mesh harmonics of STE."
     if measured is not None:
         measured.require("µm")
-        inside = measured.order <= MAX_HARMONICS + 0.5
-        drawn = measured.order[inside], measured.amplitude[inside]
-        lines.append(Line("measured", *drawn, palette.INK, width=1.2))
+        drawn = measured.order <= MAX_HARMONICS + 0.5  # half an order beyond the last harmonic
+        lines.append(
+            Line("measured", measured.order[drawn], measured.amplitude[drawn], palette.INK, width=1.2)
+        )
         columns["measured, µm"] = [number(measured.near(float(k)), 3) for k in order]
         caption += " Measured: as read; the table has its largest line within a tenth of each order."
+    # A row is a harmonic and its cell of every column.
     rows = tuple((f"{k:g}", *cells) for k, *cells in zip(order, *columns.values(), strict=True))
-    largest = [
-        f"harmonic {int(np.argmax([one.value for one in curve.harmonics])) + 1} of {name}"
-        for name, curve in curves.items()
-    ]
+    largest = [f"harmonic {_largest_harmonic(curve)} of {name}" for name, curve in curves.items()]
     return Figure(
         key="harmonics",
         title=f"Mesh harmonics at {torque:g} N m",
@@ -228,3 +250,7 @@ def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders
         content=(Panel(Axis("mesh order"), Axis("amplitude, µm"), tuple(lines)),),
         table=Table("Mesh harmonics", ("mesh harmonic", *columns), rows),
     )
+
+
+def _largest_harmonic(curve: Curve) -> int:
+    return int(np.argmax([amplitude.value for amplitude in curve.harmonics])) + 1

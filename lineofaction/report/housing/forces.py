@@ -1,4 +1,10 @@
-"""Forces behind the vibration and the sound of a housing, and the sound of a run's forces over time."""
+"""Forces behind the vibration and the sound of a housing, and the sound of a run's forces over time.
+
+The forces on the bearings are those of the linear response, or those of a run. A run is analyzed by orders in
+windows of some base pitches. Smearing is the part by which a window rounds off the amplitude of a resonance
+that the run passes while the window lasts. The remainder is the part of the force's variance that no order
+holds.
+"""
 
 from __future__ import annotations
 
@@ -14,29 +20,34 @@ from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, numbe
 from lineofaction.report.response.excitations import orders_left_out
 
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
-"""Smearing by 1 dB: above it a window does not resolve an order."""
+"""Smearing of 1 dB, above which a window does not resolve an order."""
 
-DEPTH, LABEL = 60.0, "sound power level, dB(A)"
-"""dB shown below the loudest."""
+DEPTH = 60.0
+"""Range of levels below the loudest one that the figure shows, dB."""
+LABEL = "sound power level, dB(A)"
 
 
 def of_run(metadata: Json) -> Json | None:
-    """Return the facts `forces` of a result if they are a run's; None for the linear response."""
+    """Return the metadata `forces` of a result if they are those of a run; None for the linear response."""
     forces: Json = metadata.get("forces", LINEAR)
     return forces if forces["source"] == "run" else None
 
 
 def row_axis(speed: FloatArray, metadata: Json) -> tuple[Axis, FloatArray]:
-    """Return the axis of the rows: their speed (S,) in rad/s where it rises all along, else the time."""
+    """Return the axis of the rows of a map, and its values (S,).
+
+    It is the speed (S,), rad/s, in rpm, if the speed rises from every row to the next, else the time in s.
+    """
     run = of_run(metadata)
-    if run is not None and not np.all(np.diff(speed) > 1e-6 * speed[:-1]):
+    rises = np.all(np.diff(speed) > 1e-6 * speed[:-1])  # a speed that is constant to rounding does not
+    if run is not None and not rises:
         time = np.array(run["time_s"])
         return Axis.over("time, s", time), time
     return Axis.over(f"speed of {metadata['leading_shaft']}, rpm", speed / RPM), speed / RPM
 
 
 def force_rows(metadata: Json) -> tuple[tuple[str, str], ...]:
-    """Say whose forces on bearings a result rests on, and how far the orders of a run hold."""
+    """Return rows of name and text: the source of the forces on bearings, and the limits of its orders."""
     run = of_run(metadata)
     if run is None:
         about = ("forces on bearings", "linear steady response: stiffness varies, flanks in contact")
@@ -56,9 +67,10 @@ def force_rows(metadata: Json) -> tuple[tuple[str, str], ...]:
     if run["smearing"] is None:
         rows.append(("smearing by the windows", "not known: the run states no modes"))
         return tuple(rows)
-    smearing = np.array(run["smearing"])
-    coarse = int(np.sum(np.any(smearing > COARSE, axis=0)))
-    smearing_text = f"median {number(20.0 * np.log10(1.0 + float(np.median(smearing))), 2)} dB"
+    smearing = np.array(run["smearing"])  # (orders, windows)
+    coarse = int(np.sum(np.any(smearing > COARSE, axis=0)))  # number of windows
+    median = 20.0 * np.log10(1.0 + float(np.median(smearing)))
+    smearing_text = f"median {number(median, 2)} dB"
     if coarse:
         smearing_text += f"; above 1 dB in {coarse} windows: run up more slowly"
     rows.append(("smearing by the windows", smearing_text))
@@ -69,12 +81,13 @@ def third_octaves_over_time(metadata: Json) -> Figure:
     """Draw the A-weighted bands over the run: impacts, sidebands and free vibration are among them."""
     course = metadata["over_time"]
     center = np.array(course["third_octave_hz"])
-    level = np.array(course["third_octave_db"]) + a_weighting(center)[:, None]
+    level = np.array(course["third_octave_db"]) + a_weighting(center)[:, None]  # (bands, times)
     total = np.array(course["total_level_db_a"])
     time = np.array(course["time_s"])
     band = np.arange(center.size, dtype=float)
-    at, x = int(total.argmax()), Axis.over("time, s", time)
-    names = tuple((float(k), f"{center[k]:g}") for k in range(0, center.size, 3))
+    loudest = int(total.argmax())
+    x = Axis.over("time, s", time)
+    names = tuple((float(k), f"{center[k]:g}") for k in range(0, center.size, 3))  # one label an octave
     y = Axis("nominal center of the band, Hz", limits=(-0.5, center.size - 0.5), names=names)
     return Figure(
         key="sound_over_time",
@@ -82,29 +95,35 @@ def third_octaves_over_time(metadata: Json) -> Figure:
         caption="All that the forces on the bearings hold, impacts and sidebands too, from "
         f"{number(course['lowest_hz'], 3)} to {number(course['highest_hz'], 4)} Hz; A-weighted at the "
         f"centers of bands. Blocks of {BLOCK:g} s overlap by half.",
-        alternative=f"Loudest at {number(time[at], 3)} s: {total[at]:.1f} dB(A) in all.",
+        alternative=f"Loudest at {number(time[loudest], 3)} s: {total[loudest]:.1f} dB(A) in all.",
         content=(Panel(x, y, shade=shaded_levels(time, band, level, LABEL, DEPTH)),),
         table=_over_time_table(course),
     )
 
 
 def _over_time_table(course: Json) -> Table:
-    columns = {
-        "time, s": lambda row: f"{row[0]:.3f}",
-        "speed, rpm": lambda row: number(row[1], 5),
-        "dB": lambda row: f"{row[2]:.1f}",
-        "dB(A)": lambda row: f"{row[3]:.1f}",
-    }
     names = ("time_s", "speed_rpm", "total_level_db", "total_level_db_a")
-    return Table.of("Sound power over the run", zip(*(course[name] for name in names), strict=True), columns)
+    columns = {
+        "time, s": lambda row: f"{row['time_s']:.3f}",
+        "speed, rpm": lambda row: number(row["speed_rpm"], 5),
+        "dB": lambda row: f"{row['total_level_db']:.1f}",
+        "dB(A)": lambda row: f"{row['total_level_db_a']:.1f}",
+    }
+    values = zip(*(course[name] for name in names), strict=True)
+    rows = [dict(zip(names, row, strict=True)) for row in values]
+    return Table.of("Sound power over the run", rows, columns)
 
 
 def total_line(speed: FloatArray, metadata: Json) -> tuple[FloatArray, FloatArray] | None:
-    """Return where on the axis of the orders the run's total lies, and its levels, dB(A); None without."""
+    """Return the total level of a run over the axis of its orders: points on the axis, and levels in dB(A).
+
+    Points rise. Returns None for a result without the sound over time.
+    """
     course = metadata.get("over_time")
     if course is None:
         return None
-    by_time = row_axis(speed, metadata)[0].label == "time, s"
-    along = np.array(course["time_s" if by_time else "speed_rpm"])
-    rising = np.argsort(along, kind="stable")
-    return along[rising], np.array(course["total_level_db_a"])[rising]
+    axis, _ = row_axis(speed, metadata)
+    name = "time_s" if axis.label == "time, s" else "speed_rpm"
+    point = np.array(course[name])
+    rising = np.argsort(point, kind="stable")
+    return point[rising], np.array(course["total_level_db_a"])[rising]

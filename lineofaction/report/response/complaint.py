@@ -1,9 +1,15 @@
-"""The answer to a complaint: what passes at its frequency, what is near it, and the modes within reach."""
+"""The page of an answered complaint: what passes at its frequency, what is near it, the modes within reach.
+
+What passes is a harmonic of a mesh, a shaft or a rolling bearing; it has an order, a multiple of the rotation
+of the complaint's shaft, and so a frequency. Parts that pass alike, such as the meshes of equal planets, have
+one harmonic at one order: they are a group, a tuple whose first member stands for it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,12 +32,21 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
-AROUND = (0.7, 1.3)
-"""Ends of the axes, over speed and frequency of the complaint."""
-OTHERS = 4
-"""Harmonics beyond the tolerance that are drawn and listed."""
-MODES_AT = (0.15, 0.35, 0.65)
-"""Where along the axis the modes that are drawn, the most amplified, have their names."""
+AXIS_ENDS = (0.7, 1.3)
+"""Ends of the axes of speed and frequency, as shares of the complaint's speed and frequency."""
+MAX_BEYOND = 4
+"""Groups of harmonics beyond the tolerance that are drawn and listed."""
+MODE_LABELS = (0.15, 0.35, 0.65)
+"""Positions of the modes' labels as shares of the width; as many modes are drawn, the most amplified ones."""
+
+
+class _GroupLine(NamedTuple):
+    """A group of what passes, and the look of its line in the figure."""
+
+    group: tuple[Passing, ...]
+    color: str
+    dash: Dash
+    width: float
 
 
 def _figure(answer: AnsweredComplaint) -> Figure:
@@ -47,32 +62,42 @@ def _figure(answer: AnsweredComplaint) -> Figure:
         f"{engineering(100.0 * complaint.tolerance, 3)} % of the complaint. Dashed: speed and frequency of "
         "the complaint, and the modes within reach.",
         alternative=f"{sentence(complaint)}.",
-        content=(replace(panel, references=(*panel.references, *_modes_in(answer))),),
+        content=(replace(panel, references=(*panel.references, *_mode_references(answer))),),
         table=_passing_table(answer),
     )
 
 
-def _listed(complaint: Complaint) -> list[tuple[Passing, ...]]:
-    """Return what is shown: what is within the tolerance, then the nearest of the others."""
+def _groups(complaint: Complaint) -> list[tuple[Passing, ...]]:
+    """Return the groups that are shown: those within the tolerance, then the nearest of the others."""
     within = complaint.within
     others = grouped(passing for passing in complaint.passing if passing not in within)
-    return [*grouped(within), *others[:OTHERS]]
+    return [*grouped(within), *others[:MAX_BEYOND]]
 
 
-def _looks(complaint: Complaint) -> Iterator[tuple[tuple[Passing, ...], str, Dash, float]]:
-    """Yield what is shown with color, dash and width of its line."""
-    for index, alike in enumerate(_listed(complaint)):
-        near = alike[0] in complaint.within
-        yield alike, palette.category(index), *(("solid", 2.4) if near else ("dot", 1.2))
+def _group_lines(complaint: Complaint) -> Iterator[_GroupLine]:
+    """Yield the groups that are shown with their looks; bold is within the tolerance."""
+    for index, group in enumerate(_groups(complaint)):
+        color = palette.category(index)
+        if group[0] in complaint.within:
+            yield _GroupLine(group, color, "solid", width=2.4)
+        else:
+            yield _GroupLine(group, color, "dot", width=1.2)
 
 
 def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
-    """Draw the frequencies over the speed of the shaft, rad/s, about the complaint."""
-    ends = np.array(AROUND)
+    """Draw frequencies over the shaft's speed about a complaint at `speed`, rad/s, and `frequency`, Hz."""
+    ends = np.array(AXIS_ENDS)
     rpm = ends * speed / RPM
     lines = tuple(
-        Line(harmonic_label(alike), rpm, alike[0].order * rpm / 60.0, color, dash, width)
-        for alike, color, dash, width in _looks(complaint)
+        Line(
+            harmonic_label(line.group),
+            rpm,
+            line.group[0].order * rpm / 60.0,
+            line.color,
+            line.dash,
+            line.width,
+        )
+        for line in _group_lines(complaint)
     )
     low, high = ends * frequency
     x = Axis.over(f"speed of {complaint.shaft}, rpm", rpm)
@@ -80,28 +105,27 @@ def _over_speed(complaint: Complaint, speed: float, frequency: float) -> Panel:
 
 
 def _by_order(complaint: Complaint) -> Panel:
-    """Draw what passes as points at its order and its distance."""
+    """Draw the groups as points at their order and their distance from the complaint."""
     lines = tuple(
         Line(
-            harmonic_label(alike),
-            np.array([candidate.order]),
-            np.array([100.0 * candidate.distance]),
-            color,
-            dash,
-            0.0,
-            True,
+            harmonic_label(line.group),
+            np.array([line.group[0].order]),
+            np.array([100.0 * line.group[0].distance]),
+            line.color,
+            line.dash,
+            width=0.0,  # points
+            markers=True,
         )
-        for alike, color, dash, _ in _looks(complaint)
-        for candidate in alike[:1]
+        for line in _group_lines(complaint)
     )
     x, y = Axis(f"order of {complaint.shaft}"), Axis("distance from the complaint, %")
     return Panel(x, y, lines, (Reference("complaint", complaint.order),))
 
 
-def _modes_in(answer: AnsweredComplaint) -> tuple[Reference, ...]:
-    modes = zip(answer.modes, MODES_AT, strict=False)
+def _mode_references(answer: AnsweredComplaint) -> tuple[Reference, ...]:
     return tuple(
-        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", at) for mode, at in modes
+        Reference(f"mode {number(mode.frequency)} Hz", mode.frequency, "horizontal", share)
+        for mode, share in zip(answer.modes, MODE_LABELS, strict=False)  # fewer modes, or fewer labels
     )
 
 
@@ -110,18 +134,19 @@ def _passing_table(answer: AnsweredComplaint) -> Table:
     forces = dict(zip(complaint.within, answer.forces, strict=True))
     columns = {
         "what": harmonic_label,
-        "order": lambda alike: number(alike[0].order, 5),
-        "frequency, Hz": lambda alike: number(complaint.hertz(alike[0].order) or np.nan, 5),
-        "off, %": lambda alike: f"{100.0 * alike[0].distance:+.2f}",
-        "within": lambda alike: "yes" if alike[0] in complaint.within else "no",
-        "excites by, N": lambda alike: _newtons(max(map(complaint.level, alike))),
-        "force, N": lambda alike: _newtons(forces[alike[0]].force if alike[0] in forces else np.nan),
-        "on bearing": lambda alike: forces[alike[0]].bearing if alike[0] in forces else "",
+        "order": lambda group: number(group[0].order, 5),
+        "frequency, Hz": lambda group: number(complaint.hertz(group[0].order) or np.nan, 5),
+        "off, %": lambda group: f"{100.0 * group[0].distance:+.2f}",
+        "within": lambda group: "yes" if group[0] in complaint.within else "no",
+        "excites by, N": lambda group: _newtons(max(map(complaint.level, group))),
+        "force, N": lambda group: _newtons(forces[group[0]].force if group[0] in forces else np.nan),
+        "on bearing": lambda group: forces[group[0]].bearing if group[0] in forces else "",
     }
-    return Table.of(f"Orders of {complaint.shaft} beside the complaint", _listed(complaint), columns)
+    return Table.of(f"Orders of {complaint.shaft} beside the complaint", _groups(complaint), columns)
 
 
 def _newtons(force: float) -> str:
+    """Return a force in words; an empty cell says that it is not known."""
     return number(force, 3) if np.isfinite(force) else ""
 
 
@@ -140,13 +165,13 @@ def _mode_table(answer: AnsweredComplaint) -> Table:
 def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
     complaint = answer.complaint
     first, *others = grouped(complaint.within)
-    several = any(alike[0].excitation.kind == MESH for alike in others)
+    several = any(group[0].excitation.kind == MESH for group in others)
     ranked = f"; the likeliest by distance and {complaint.ranked_by}" if several else ""
     headlines = [Headline("complaint", harmonic_label(first), offset_text(complaint, first[0]) + ranked)]
     if others:
-        names = "; ".join(f"{harmonic_label(alike)} {offset_text(complaint, alike[0])}" for alike in others)
+        names = "; ".join(f"{harmonic_label(group)} {offset_text(complaint, group[0])}" for group in others)
         headlines.append(
-            Headline("passes there too", names, _resolution(first[0], [alike[0] for alike in others]))
+            Headline("passes there too", names, _resolution(first[0], [group[0] for group in others]))
         )
     nearest = grouped(candidate for candidate in complaint.passing if candidate.excitation.kind == MESH)
     if first[0].excitation.kind != MESH and nearest:
@@ -161,14 +186,17 @@ def _headlines(answer: AnsweredComplaint) -> tuple[Headline, ...]:
 
 
 def _resolution(first: Passing, others: Sequence[Passing]) -> str:
-    """Say how well frequency and speed have to be known to tell what passes apart."""
-    gaps = [gap for other in others if (gap := abs(other.order / first.order - 1.0)) > SAME]
+    """Return in words how exactly frequency and speed must be known to tell `first` from the others."""
+    distances = [abs(other.order / first.order - 1.0) for other in others]
+    gaps = [distance for distance in distances if distance > SAME]
     if not gaps:
         return "the same at every speed"
-    return f"told apart by a frequency and speed known to {engineering(50.0 * min(gaps), 2)} %"
+    percent = 100.0 * 0.5 * min(gaps)  # half the distance to the nearest one
+    return f"told apart by a frequency and speed known to {engineering(percent, 2)} %"
 
 
 def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
+    """Yield the tables and lines of the terminal."""
     complaint = answer.complaint
     yield _passing_table(answer)
     for mesh, torque in complaint.torques.items():
@@ -189,9 +217,8 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
             f"flanks part: a linear mesh would pull by {share} % of its mean force, so no force here holds; "
             "loa steady and loa simulate have it"
         )
-    if any(candidate.excitation.kind == MESH for candidate in complaint.within) and not np.any(
-        np.isfinite([force.force for force in answer.forces])
-    ):
+    has_mesh = any(candidate.excitation.kind == MESH for candidate in complaint.within)
+    if has_mesh and not np.any(np.isfinite([force.force for force in answer.forces])):
         yield "forces are not known: no speed, or nothing excites the linear response"
 
 

@@ -1,4 +1,9 @@
-"""Inputs of a tolerance Monte Carlo: what it draws from, and how many pairs."""
+"""Inputs and figures of a tolerance Monte Carlo: tolerances, distribution, number of pairs.
+
+A deviation is one quantity of one gear, or the misalignment, that differs from the design within its
+tolerance. The first pairs of the sample are analyzed whole. The others follow from a model: tangents about
+some of the first pairs, whose error is measured on the rest of the first pairs.
+"""
 
 from __future__ import annotations
 
@@ -100,6 +105,7 @@ class ScatterFigures(Figures):
 
         fraction: float
         value_um: list[float]
+        # A bound is infinite, or zero for the lower one, where the sample is too small for it.
         low_um: Annotated[
             list[float] | None, Source(lambda quantile: quantile.low if quantile.low.any() else None)
         ]
@@ -115,46 +121,62 @@ class ScatterFigures(Figures):
         order: Annotated[int, Source("limit.order")]
         gear: Annotated[str, Source("limit.gear")]
         turns: Annotated[int, Source("limit.turns")]
-        """`name`, `order`, `gear`, `turns`: The order as it is named; its mesh order, and turns of a gear
-        beside it.
+        """`name`, `order`, `gear`, `turns`: The order that is limited: as the inputs name it; and by its mesh
+        order, the gear, and the number of turns of that gear by which it lies beside the mesh order.
         """
         names: list[str]
-        """The deviations that decide."""
+        """Names of the deviations, the axis of `first_order`, `total` and `cured`."""
         limit_um: Annotated[float, Source("limit.amplitude")]
         nominal_um: list[float]
+        """Amplitude without deviations, by torque."""
         share: list[float]
         low: list[float]
         high: list[float]
-        """`share`, `low`, `high`: Part of all pairs, and its bounds."""
+        """`share`, `low`, `high`: Part of all pairs that is above the limit, and its bounds, by torque."""
         missed_um: list[float]
         beyond: list[float]
-        """`missed_um`, `beyond`: By how much the model misses the amplitude of pairs analyzed whole, and the
-        part of them that it puts on the other side of the limit.
+        """`missed_um`, `beyond`: Error of the model in the amplitude of pairs analyzed whole, root mean
+        square; and the part of them that it puts on the other side of the limit. By torque.
         """
+        # the index of the torque at which most pairs are above the limit
         at_torque: Annotated[int, Source("load")]
         first_order: list[float]
         total: list[float]
-        """`first_order`, `total`: Sobol' indices of the level in dB, by deviation."""
+        """`first_order`, `total`: Sobol' indices of the level in dB at that torque, by deviation."""
         cured: list[float]
-        """Share if the tolerance of one deviation is a class finer."""
+        """Share at that torque with the tolerance of one deviation a class finer, by that deviation."""
 
     torque_n_m: list[float]
     samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]
     nominal_um: list[float]
     error_um: list[float]
+    """`nominal_um`, `error_um`: Peak-to-peak without deviations, and the error of its analysis, by torque."""
     mean_um: list[float]
     mean_standard_error_um: Annotated[list[float], Source("mean_error")]
     confidence: float
     quantiles: list[QuantileFigures]
     names: list[str]
+    """Names of the deviations, the columns of `deviation_um` and the rows of `influence`."""
     influence: list[list[float]]
+    """Rank correlation of each deviation (rows) with the peak-to-peak, by torque (columns)."""
+    # `solved` is 0 in a result without a model, in which all pairs are analyzed whole
     exact: Annotated[int, Source(lambda study: study.solved or len(study.peak_to_peak))]
     held: int
+    """`exact`, `held`: Numbers of pairs analyzed whole, and of those among them that measure the model."""
     missed_um: list[float]
     missed_largest_um: list[float]
+    """`missed_um`, `missed_largest_um`: Error of the model in the peak-to-peak of the measured pairs, by
+    torque: root mean square, and largest.
+    """
     above: AboveFigures | None
+    """Pairs above the limit; None if the inputs have no limit."""
     deviation_um: list[list[float]]
     peak_to_peak_um: list[list[float]]
     first_order_um: list[list[float]]
+    """`deviation_um`, `peak_to_peak_um`, `first_order_um`: One row a pair. Deviations by name; peak-to-peak
+    by torque; and the same from the design and its derivatives alone, by torque.
+    """
     cost: Json
+    """CPU and wall seconds by stage."""
     asked: Json
+    """Inputs of the study, as JSON."""

@@ -1,4 +1,10 @@
-"""Inputs of a study of scenes: factors, responses, sample."""
+"""Inputs and figures of a study of scenes: factors, responses, sample.
+
+A factor is a field of the scene that the study varies. Factors with levels form a grid, in which every level
+meets every other; factors with values form a list, and change together; factors with a distribution are
+sampled. A combination is one point of the grid and of the list; it is run with every sample. A point is one
+run.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +30,14 @@ QuantityName = Literal[
     "contact_loss",
     "mesh_load_factor",
 ]
-"""Of `dynamics.study.QUANTITIES`, which takes longer to load than a service to start."""
-_KINDS = ("levels", "values", "normal", "uniform", "iso1328_class")
-SAMPLED = _KINDS[2:]
+"""Names of `dynamics.study.QUANTITIES`, repeated here because loading that module would slow the start of a
+service.
+"""
+SAMPLED = ("normal", "uniform", "iso1328_class")
+"""Kinds of factors that have a distribution."""
+_KINDS = ("levels", "values", *SAMPLED)
 MAX_POINTS = 100_000
-"""Of a job: its result holds every run's figures."""
+"""Highest number of points of a study, whose result holds the figures of all of them."""
 
 
 class FactorInput(BoundaryModel):
@@ -86,17 +95,18 @@ class FactorInput(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _one_kind(self) -> Self:
-        names = [name for name in _KINDS if getattr(self, name) is not None]
-        if len(names) != 1:
+    def _check_kind(self) -> Self:
+        """Refuse a factor that has no kind, or more than one."""
+        kinds = [kind for kind in _KINDS if getattr(self, kind) is not None]
+        if len(kinds) != 1:
             bound = f"given once, as one of {', '.join(_KINDS)}"
-            refuse("levels", names or None, bound, "Keep one of them.")
+            refuse("levels", kinds or None, bound, "Keep one of them.")  # None: the field is missing
         return self
 
     @property
     def sampled(self) -> bool:
-        """Whether it has a distribution."""
-        return any(getattr(self, name) is not None for name in SAMPLED)
+        """Whether the factor has a distribution."""
+        return any(getattr(self, kind) is not None for kind in SAMPLED)
 
 
 class Inputs(BoundaryModel):
@@ -174,8 +184,8 @@ class Inputs(BoundaryModel):
     )
 
     @model_validator(mode="after")
-    def _sampled(self) -> Self:
-        """Refuse samples of no distribution, and a factor named twice."""
+    def _check_samples_and_paths(self) -> Self:
+        """Refuse samples without a distribution, a distribution without samples, and a path used twice."""
         if any(factor.sampled for factor in self.factors) != (self.samples > 1):
             bound = "above 1 where a factor has a distribution, else left out"
             refuse("samples", self.samples, bound, "For example samples = 50.")
@@ -202,18 +212,25 @@ class StudyFigures(Figures):
             """A quantile by combination of grid and list, with its confidence bounds; None: not known."""
 
             fraction: float
+            """Part of the samples that is below the quantile, 0..1."""
             value: list[float | None]
             low: list[float | None]
             high: list[float | None]
+            """`value`, `low`, `high`: The quantile and its confidence bounds, one entry a combination."""
 
         name: str
         unit: str
         mean: list[float | None]
         standard_error: list[float | None]
+        """`mean`, `standard_error`: Of the response over the samples, one entry a combination."""
         confidence: float
+        """Confidence level of the bounds of the quantiles."""
         quantiles: list[QuantileFigures]
         spread_of_level_means: dict[str, float | None]
+        """By factor of the grid or the list: largest less smallest mean of the response at one of its values.
+        """
         rank_correlation: dict[str, float | None]
+        """By factor with a distribution: rank correlation of its values with the response, -1..1."""
 
     class PointFigures(Part):
         """A point: the values of the factors and its responses."""
@@ -226,7 +243,9 @@ class StudyFigures(Figures):
             error: float | None
 
         point: int
+        """Number of the point, from 0."""
         values: dict[str, float]
+        """By path of the factor."""
         responses: dict[str, PointResponse]
 
     class FailedPoint(Part):
@@ -237,8 +256,11 @@ class StudyFigures(Figures):
         reason: str
 
     points: int
+    """Number of runs."""
     usable: int
+    """Number of runs that have responses."""
     samples: int
+    """Number of samples of every combination."""
     factors: list[FactorFigures]
     responses: list[ResponseFigures]
     worst: list[PointFigures]
@@ -246,8 +268,11 @@ class StudyFigures(Figures):
     cpu_seconds: dict[str, float | None]
     seed: int
     start: Any
+    """Start time of the responses, s."""
     receipt: str
     neglected: Any
+    """Names of the checks that the runs do without, a list."""
     design: Json
+    """Inputs of the study, as JSON."""
     runs: dict[str, str]
     """Content hashes of the runs that are kept in full, by point."""
