@@ -1,4 +1,8 @@
-"""A row of rolling elements as the law of a bearing in a scene."""
+"""A row of rolling elements as the law of a bearing in a scene.
+
+The typical load is the load across the axis that the scene expects of the bearing, `BearingDuty.load`. The
+rows of a law are its coordinates, in m: x, y, z and both tilts times a lever.
+"""
 
 from __future__ import annotations
 
@@ -17,44 +21,56 @@ from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.types import FloatArray
 
 AVERAGED = 64
-"""Elements in all, at least, whose force is taken for the average over the passing of an element."""
+"""Least number of elements, copies included, at which the force hardly varies as the cage turns.
+
+A row of fewer elements gets copies that share the stiffness: its force is then the average over the passing
+of an element.
+"""
 PASSING_ANGLES = 8
-MIN_PRESS = 1e-6  # m; of one element: sets the typical load of a bearing that nothing loads
+"""Angles of the cage within one element pitch at which the motion of the shaft is computed."""
+MIN_PRESS = 1e-6
+"""Approach, m, of one element whose force is the least typical load, as a bearing may be unloaded."""
+BALL_EXPONENT = 1.5
+"""Exponent of the approach in the force of a ball (Hertzian point contact)."""
 
 
 class _RowLaw:
-    """The law of a bearing.
+    """The force of a rolling bearing on the shaft, see `BearingLaw` for the terms.
 
-    `passing`: whether its elements pass one by one; False: their average over the passing. Preload, damping
-    and typical stiffness are those of the average.
+    `passing` says whether the force varies as each element passes; otherwise it is the average over the
+    passing. Preload, damping and typical stiffness are always those of the average.
     """
 
     def __init__(self, bearing: RollingBearing, passing: bool = False) -> None:
-        self.bearing, self.row, self.passing = bearing, bearing.row, passing
+        self.bearing = bearing
+        self.row = bearing.row
+        self.passing = passing
         self.copies = math.ceil(AVERAGED / bearing.row.count)
         self.loaded = LoadedBearing(bearing.row, self.copies, bearing.locating)
 
     @property
     def arrays(self) -> type[BallElements] | type[RollerElements]:
+        """The type of the packed arrays for the compiled evaluation."""
         return BallElements if isinstance(self.row, BallBearing) else RollerElements
 
     @property
     def bushing(self) -> str:
+        """The name of the bearing."""
         return self.bearing.name
 
-    acts_at = bushing
+    acts_at = bushing  # the law acts in all directions: the name alone tells it from other laws
 
     @property
     def lever(self) -> float:
-        """Radius that makes lengths of tilts, m."""
+        """Radius, m, that turns a tilt into a length."""
         return self.row.pitch_diameter / 2.0
 
     @cached_property
     def shift(self) -> float:
-        """Displacement of the inner ring against the outer, along z, where the shaft is not displaced, m.
+        """Displacement, m, of the inner ring against the outer along z while the shaft is not displaced.
 
-        What makes the axial preload, and what temperatures add. Raises `SolveError`: no displacement makes
-        it.
+        It is the displacement that causes the axial preload, plus the one that temperatures add. Raises
+        `SolveError`: no displacement causes the preload.
         """
         if self.bearing.axial_preload == 0.0:
             return self.bearing.axial_shift
@@ -62,51 +78,69 @@ class _RowLaw:
         return float(preloaded[2]) + self.bearing.axial_shift
 
     def rows(self, duty: BearingDuty) -> FloatArray:
+        """Return the coordinates, m, per displacement x, y, z, tilt_x, tilt_y, (5, 5)."""
         return np.diag([1.0, 1.0, 1.0, self.lever, self.lever])
 
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (5,), N/m."""
-        return np.diag(self._under(duty)[1].tangent) / np.diag(self.rows(duty)) ** 2
+        _, reaction = self._at_typical_load(duty)
+        # tilt stiffness, N m/rad, over the lever squared is a stiffness of lengths, N/m
+        return np.diag(reaction.tangent) / np.diag(self.rows(duty)) ** 2
 
     def way(self, duty: BearingDuty) -> float:
         """Return the displacement under the typical load across the axis, m."""
-        return self._under(duty)[0]
+        displacement, _ = self._at_typical_load(duty)
+        return displacement
 
     def tangent_error(self, duty: BearingDuty) -> float:
-        way, at = self._under(duty)
-        return way - float(at.force[0] / at.tangent[0, 0])
+        """Return the displacement under the typical load, less what the tangent there predicts of it, m."""
+        displacement, reaction = self._at_typical_load(duty)
+        return displacement - float(reaction.force[0] / reaction.tangent[0, 0])
 
     def laid_out(self, duty: BearingDuty) -> tuple[BallBearing | RollerBearing, RowPlacement]:
-        at = self._under(duty)[1]
-        critical = 2.0 * math.sqrt(float(at.tangent[0, 0]) * duty.mass)
-        damping = self.bearing.damping_ratio * critical / float(at.viscous[0, 0])
+        """Return the row and its placement, from which `arrays` are packed."""
+        _, reaction = self._at_typical_load(duty)
+        critical = 2.0 * math.sqrt(float(reaction.tangent[0, 0]) * duty.mass)
+        # `viscous` is the damping at 1 s/m: the quotient is the damping of an element over its load, s/m
+        damping = self.bearing.damping_ratio * critical / float(reaction.viscous[0, 0])
         copies = 1 if self.passing else self.copies
         return self.row, RowPlacement(copies, self.lever, self.shift, damping, self.bearing.locating)
 
     def passing_motion(self, duty: BearingDuty) -> float:
         """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
-        loaded, pitch = LoadedBearing(self.row, 1, self.bearing.locating), 2.0 * math.pi / self.row.count
+        loaded = LoadedBearing(self.row, 1, self.bearing.locating)  # one copy: the elements as they are
+        pitch = 2.0 * math.pi / self.row.count
         angles = np.arange(PASSING_ANGLES) * pitch / PASSING_ANGLES
-        return float(np.ptp([self._under(duty, loaded, float(angle))[0] for angle in angles]))
+        displacements = []
+        for angle in angles:
+            displacement, _ = self._at_typical_load(duty, loaded, float(angle))
+            displacements.append(displacement)
+        return float(np.ptp(displacements))
 
-    def _under(
+    def _at_typical_load(
         self, duty: BearingDuty, loaded: LoadedBearing | None = None, angle: float = 0.0
     ) -> tuple[float, Reaction]:
-        """Return displacement and answer under the typical load across the axis, nothing else moving."""
-        exponent = 1.5 if isinstance(self.row, BallBearing) else EXPONENT
+        """Return the displacement along x, m, under the typical load along x, and the reaction to it.
+
+        The other displacements stay 0, but for the shift along z. `angle` is that of the cage, rad.
+        """
+        exponent = BALL_EXPONENT if isinstance(self.row, BallBearing) else EXPONENT
         load = max(duty.load, self.row.element_stiffness * MIN_PRESS**exponent)
 
-        def reaction(way: float) -> Reaction:
-            return (loaded or self.loaded).evaluate((way, 0.0, self.shift, 0.0, 0.0), angle)
+        def reaction(x: float) -> Reaction:
+            return (loaded or self.loaded).evaluate((x, 0.0, self.shift, 0.0, 0.0), angle)
 
-        far = MIN_PRESS
-        while reaction(far).force[0] < load:
-            far *= 2.0
-        way = float(scipy.optimize.brentq(lambda x: float(reaction(x).force[0]) - load, 0.0, far, xtol=1e-15))
-        return way, reaction(way)
+        def excess_force(x: float) -> float:
+            return float(reaction(x).force[0] - load)
+
+        upper = MIN_PRESS  # doubled until the root lies between 0 and it
+        while excess_force(upper) < 0.0:
+            upper *= 2.0
+        displacement = float(scipy.optimize.brentq(excess_force, 0.0, upper, xtol=1e-15))  # m
+        return displacement, reaction(displacement)
 
 
 @lru_cache(maxsize=1024)
 def row_law(bearing: RollingBearing, passing: bool = False) -> _RowLaw:
-    """Return the law of `bearing`, laid out once."""
+    """Return the law of `bearing`; equal bearings share one law."""
     return _RowLaw(bearing, passing)

@@ -1,4 +1,8 @@
-"""A bearing's five directions, its stiffness and damping in them: linear bearings to ground and pins."""
+"""Linear bearings of a shaft to the ground or to a pin: stiffness, damping and preload in five directions.
+
+The seat of a bearing is what holds its outer ring: the ground (or a housing), or the pin of a planet. The
+five directions are x, y, z, tilt_x and tilt_y, z along the axis; the shaft turns freely about z.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +19,7 @@ from dynamics.types import FloatArray
 
 DEFAULT_DAMPING_RATIO = 0.05
 SEAT = 5
-"""Directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
+"""Number of directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
 
 POSITION = Declared(
     Kind.LENGTH, "m", between(-1000.0, 1000.0), "Position along the shaft, from its left end", 0.0
@@ -42,6 +46,7 @@ DAMPING_RATIO = Declared(
 SEAT_TEMPERATURE = replace(
     TEMPERATURE, description="Steady temperature of the housing at this seat; left out: that of the housing"
 )
+# of the kind of a slope: a position error has a sign
 _RADIAL = Declared(
     Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
 )
@@ -49,9 +54,9 @@ _TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of
 
 
 class _Seat:
-    """Stiffness K, damping C and preload p of a bearing: it pushes what holds it with K d + C d' - p.
+    """Stiffness K, damping C and preload p of a bearing, whose force on its seat is K d + C d' - p.
 
-    The isotropic figures are on the diagonals of K and C, the matrices are added to them.
+    The radial and axial values are on the diagonals of K and C; the matrices are added to them.
     """
 
     name: str
@@ -67,11 +72,12 @@ class _Seat:
     preload: tuple[float, ...] | None
 
     def check_seat(self) -> None:
-        """Refuse what is no linear bearing."""
+        """Raise `InputError` if the fields are not those of a linear bearing."""
         declared_fields(self)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is None:
                 continue
+            # 5 by 5, or 6 by 6 with the rotation about the axis in the last row and column
             matrix = check_matrix(name, getattr(self, name), (SEAT, SEAT + 1))
             if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
                 bound = "zero in the row and column of the rotation about the axis"
@@ -84,28 +90,28 @@ class _Seat:
 
     @property
     def full(self) -> bool:
-        """Whether it is more than three springs and dampers along x, y, z."""
+        """Whether the bearing is more than springs and dampers along x, y, z."""
         return self.stiffness is not None or self.damping is not None or self.preload is not None
 
     @property
     def added_stiffness(self) -> FloatArray:
-        """The stiffness matrix alone, (5, 5); zeros without one."""
+        """The stiffness matrix without radial and axial stiffness, (5, 5); zeros: no matrix."""
         return seat_matrix(self.stiffness)
 
     @property
     def seat_stiffness(self) -> FloatArray:
-        """K, (5, 5): all of the stiffness."""
+        """K, (5, 5): radial and axial stiffness and the stiffness matrix."""
         return _isotropic(self.radial_stiffness, self.axial_stiffness) + self.added_stiffness
 
     @property
     def seat_damping(self) -> FloatArray:
-        """C, (5, 5); what is left to be filled in from the damping ratio counts 0."""
+        """C, (5, 5). A damping of None, which the damping ratio determines later, counts as 0."""
         isotropic = _isotropic(self.radial_damping or 0.0, self.axial_damping or 0.0)
         return isotropic + seat_matrix(self.damping)
 
 
 def seat_matrix(matrix: Matrix | None) -> FloatArray:
-    """Return a matrix without its rotation about the axis, (5, 5); zeros for None."""
+    """Return a matrix without the row and column of the rotation about the axis, (5, 5); zeros for None."""
     if matrix is None:
         return np.zeros((SEAT, SEAT))
     return np.array(matrix, dtype=float)[:SEAT, :SEAT]
@@ -127,13 +133,16 @@ class Bushing(_Seat):
     A damping that is None is ``2 damping_ratio sqrt(stiffness * mass)`` with the mass of the shaft and its
     gears divided by the number of its bushings, so that the shaft bouncing on equal bushings has this ratio.
 
-    The matrices `stiffness` and `damping`, 5 by 5 or 6 by 6 in (x, y, z, tilt_x, tilt_y), are symmetric and
-    positive semidefinite: tilt stiffness, cross terms. In a 6 by 6 matrix the row and column of the rotation
-    about the axis are zero: the shaft turns. Without a damping matrix damping is proportional to the
-    stiffness matrix, with `damping_ratio` at the natural frequency of the bushing's share of the mass on the
-    matrix's largest stiffness, or of its share of the transverse inertia on a matrix with tilt stiffness
-    alone. `preload` are five numbers, force and moment of the bushing on the shaft at d = 0, N and N m, in
-    the same order.
+    The matrices `stiffness` and `damping` add tilt stiffness and cross terms. They are 5 by 5 in (x, y, z,
+    tilt_x, tilt_y), symmetric and positive semidefinite. They may be 6 by 6, with zeros in the row and column
+    of the rotation about the axis, as the shaft turns.
+
+    Without a damping matrix the damping is proportional to the stiffness matrix. It has `damping_ratio` at
+    the natural frequency of the bushing's share of the mass on the largest stiffness of the matrix. If the
+    matrix has tilt stiffness alone, the share of the transverse inertia takes the place of the mass.
+
+    `preload` has five numbers: force and moment of the bushing on the shaft at d = 0, N and N m, in the same
+    order.
     """
 
     name: str
@@ -158,14 +167,15 @@ class Bushing(_Seat):
 class PlanetBearing(_Seat):
     """A linear bearing between a point of a planet's axis and the pin in the carrier.
 
-    The pin moves with the carrier as a rigid body: u_pin = u_carrier + r_carrier x lever. The bearing pushes
-    it with K d + C d' - preload, d = (x, y, z, tilt_x, tilt_y) the motion of the planet's section less that
-    of the pin and its error. Matrices and preload count x away from the carrier's axis and y along
-    z x (away), so that they are the same for all planets of a set.
+    The pin moves with the carrier as a rigid body: u_pin = u_carrier + r_carrier x lever. The force of the
+    bearing on the pin is K d + C d' - preload. Here d = (x, y, z, tilt_x, tilt_y) is the motion of the
+    planet's section less the motion and the position error of the pin. In matrices and preload x points away
+    from the carrier's axis and y along z x (away), so that they are the same for all planets of a set.
 
-    Its `name` is unique among the planet bearings and bushings; `shaft` is the planet's, its displacements
-    described in the frame of `carrier`, the carrier's shaft. A damping that is None follows from the ratio
-    and the planet's mass divided by the number of its bearings. Matrices and `preload` are as of a `Bushing`.
+    `name` is unique among planet bearings and bushings. `shaft` is the shaft of the planet, whose
+    displacements are in the frame of `carrier`, the shaft of the carrier. A damping that is None follows from
+    the damping ratio and the planet's mass divided by the number of its bearings. Matrices and `preload` are
+    those of a `Bushing`.
     """
 
     name: str
@@ -189,13 +199,13 @@ class PlanetBearing(_Seat):
 
 @dataclass(frozen=True)
 class BearingStiffness:
-    """Stiffness of a bearing, or of all bearings of a shaft seen as one."""
+    """Stiffness of a bearing, or of all bearings of a shaft in place of one."""
 
     radial: float
     axial: float = 0.0
-    """`radial`, `axial`: N/m, >= 0."""
+    """`radial`, `axial`: Stiffness across and along the axis, N/m, >= 0."""
     tilt: float = 0.0
-    """About any axis across, N m/rad, >= 0."""
+    """Stiffness against a tilt about any axis across the shaft, N m/rad, >= 0."""
 
     def __post_init__(self) -> None:
         for name in ("radial", "axial", "tilt"):
@@ -203,7 +213,8 @@ class BearingStiffness:
 
     @property
     def matrix(self) -> Matrix | None:
-        """The part beyond radial and axial springs, in x, y, z, tilt_x, tilt_y; None: nothing."""
+        """The stiffness matrix of the tilts alone, in x, y, z, tilt_x, tilt_y; None: no tilt stiffness."""
         if self.tilt == 0.0:
             return None
-        return tuple(tuple(self.tilt if i == j >= 3 else 0.0 for j in range(5)) for i in range(5))
+        diagonal = np.diag([0.0, 0.0, 0.0, self.tilt, self.tilt])
+        return tuple(tuple(float(value) for value in row) for row in diagonal)

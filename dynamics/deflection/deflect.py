@@ -1,4 +1,8 @@
-"""Static deflection of a scene under load cases."""
+"""Static deflection of a scene under load cases: where its bodies rest, mean over the mesh cycle.
+
+Axes of arrays: N coordinates of the scene, P points of the shafts, K positions of the mesh cycle. The strain
+of a bearing splits its displacement into an elastic part, its clearance and the motion of its seat.
+"""
 
 from __future__ import annotations
 
@@ -30,20 +34,21 @@ from model_studies import in_unit
 from model_studies.workers import InProcess, Workers, divided
 
 MAX_POSITIONS = 512
+"""Most positions of the mesh cycle that a caller may request: each one is a static equilibrium."""
 
 
 @dataclass(frozen=True)
 class _ShaftLines(ShaftAxes):
-    """The axes of all shafts under a load case, mean over the mesh cycle."""
+    """The displaced axes of all shafts under a load case, mean over the mesh cycle."""
 
     motion: FloatArray = field(metadata=in_unit("m", "point", "freedom"))
-    """x, y, z (m), tilt_x, tilt_y, rotation (rad): du_x/dz = tilt_y and du_y/dz = -tilt_x but for shear.
+    """x, y, z (m), tilt_x, tilt_y, rotation (rad). Without shear du_x/dz = tilt_y and du_y/dz = -tilt_x.
     Shape (P, 6).
     """
 
 
 def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
-    """Return the lines at `motion` (N,)."""
+    """Return the shaft axes at the displacements `motion` (N,) of the scene."""
     axes = shaft_axes(system.scene, system.rotors)
     return _ShaftLines(axes.shaft, axes.position, axes.motion @ motion)
 
@@ -51,12 +56,13 @@ def _shaft_lines(system: System, motion: FloatArray) -> _ShaftLines:
 def cycle_times(system: System, positions: int) -> FloatArray:
     """Return the times (K,), s, at which every mesh takes K evenly spaced positions of its cycle, each once.
 
-    K evenly spaced moments of the common period of all meshes are a lattice: a mesh of C base pitches in that
-    period stands at k C / K, all different modulo 1 if C and K share no divisor. K is the least number of at
-    least `positions` for which that is so of all meshes, so that their phases towards each other vary too.
+    The times are evenly spaced over the common period of all meshes. A mesh that passes C base pitches in
+    this period is at position k C / K at time k; the positions are all different modulo 1 if C and K have no
+    common divisor. K is the least number from `positions` on that has no common divisor with C of any mesh.
+    The phases between meshes vary over the times, too.
     """
     period = common_period(system)
-    cycles = [abs(pitches) for pitches in period.pitches if pitches]
+    cycles = [abs(pitches) for pitches in period.pitches if pitches]  # 0: the mesh is at rest
     count = positions
     while any(math.gcd(cycle, count) > 1 for cycle in cycles):
         count += 1
@@ -70,15 +76,15 @@ class CaseDeflection:
 
     name: str
     direction: str
-    """`name`, `direction`: Of the load case."""
+    """`name`, `direction`: Name and direction of the load case."""
     share: float
-    """Of the duration, relative to the other cases."""
+    """Share of the duration, relative to the other cases."""
     speed: float = field(metadata=in_unit("rad_s"))
     torque: float = field(metadata=in_unit("n_m"))
-    """`speed`, `torque`: Of the leading shaft, rad/s and N m, both > 0."""
+    """`speed`, `torque`: Speed and torque of the leading shaft, rad/s and N m, both > 0."""
     status: str
-    """Of the search for the rest positions, the worst of the cycle: "converged", "iteration_limit",
-    "unbalanced". Only a converged case has figures to rely on.
+    """Worst status over the cycle of the search for the rest positions: "converged", "iteration_limit" or
+    "unbalanced". The values of a case that did not converge are unreliable.
     """
     residual: float
     """Largest unbalanced force over the largest mesh force."""
@@ -86,7 +92,7 @@ class CaseDeflection:
     bearings: tuple[BearingLoad, ...]
     shafts: _ShaftLines
     forces: tuple[ForceUnderCase, ...] = ()
-    """Of the scene; none in files of versions that did not keep them."""
+    """Forces of the scene under the case. Files of older versions have none."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +104,7 @@ class Deflection:
 
     @property
     def converged(self) -> bool:
-        """Whether all cases were found."""
+        """Whether the rest positions of all cases converged."""
         return all(case.status == "converged" for case in self.cases)
 
 
@@ -111,11 +117,12 @@ def deflect(
 ) -> Deflection:
     """Return where the bodies of `scene` rest under each load case, mean over the mesh cycle.
 
-    All effects of the scene that act at rest are on unless it switches them off: freedoms, elastic shafts,
-    laws of bearings, and where tables have what it takes, the misalignment and the center distance at which
-    they are read and the arm at which they press. Mesh and bodies are in balance at once. Raises
-    `InputError`: by field name: a case that the scene cannot have, meshes that it does not press, no common
-    period.
+    All effects that act at rest are on unless the scene switches them off: freedoms, elastic shafts and laws
+    of bearings. If the mesh tables have these axes, they are read at the misalignment and the center distance
+    of the bodies, and the mesh force acts at the arm of the table. Meshes and bodies are solved together.
+
+    Raises `InputError`, by field name: the scene cannot have a case, a case leaves a mesh unloaded, or the
+    meshes have no common period.
 
     Parameters
     ----------
@@ -127,7 +134,7 @@ def deflect(
     progress : callable, optional
         Called with the fraction done.
     workers : Workers
-        They take a load case each.
+        Run the load cases, one a task.
     """
     distinct("load_cases", [case.name for case in cases])
     check_forces(cases, [force.name for force in scene.forces])
@@ -141,8 +148,12 @@ def deflect(
 
 
 def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> CaseDeflection:
-    """Return the deflection of a scene under a load case: one task."""
-    (scene, positions), (number, case) = shared, numbered
+    """Return the deflection of a scene under a load case: one task.
+
+    All tasks share the scene and the number of positions; each has the number of its case and the case.
+    """
+    scene, positions = shared
+    number, case = numbered
     with inside(f"load_cases[{number}]"):
         loaded = loaded_scene(scene, case)
     system = assemble(loaded)
@@ -156,7 +167,7 @@ def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> Cas
         direction=case.direction,
         share=case.share,
         speed=speed,
-        torque=sum(leading_torque(loaded, leader, speed)),
+        torque=sum(leading_torque(loaded, leader, speed)),  # of loads at t = 0 and of all other torques
         status=rest.status.name.lower(),
         residual=rest.residual,
         meshes=tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),

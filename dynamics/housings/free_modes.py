@@ -1,4 +1,8 @@
-"""Natural modes of a housing with its seats free, and its static deflections under forces on them."""
+"""Natural modes of a housing with its seats free, and its static deflections under forces on the seats.
+
+A seat is a bore of the housing that holds a bearing. A loose housing has rigid motions that no mount holds.
+Axes of arrays: f freedoms, m elastic modes, k rigid motions, s forces on seats.
+"""
 
 from __future__ import annotations
 
@@ -15,23 +19,31 @@ from dynamics.housings.assembled_housing import BLOCK, AssembledHousing
 from dynamics.types import FloatArray, IntArray
 
 Solve = Callable[[FloatArray], FloatArray]
-
+"""The solution of a linear system of equations, from its right side."""
 
 SHIFT = 1e-10
-"""Shift of a housing that may move freely, relative to a bound of the highest squared frequency."""
+"""Shift of the squared frequencies of a loose housing, whose stiffness alone is singular.
+
+It is relative to an estimate of the highest squared frequency.
+"""
 REFINEMENTS = 8
-REFINED, ACCEPTED = 1e-12, 1e-6
-"""Work of the forces that a deflection leaves unbalanced, relative to that of its load: where refining ends,
-and the most that is accepted. Soft mounts and slender bodies are ill conditioned and stay between."""
+"""Most steps of iterative refinement of the deflections."""
+REFINED = 1e-12
+"""Residual at which refinement ends: work of the unbalanced forces on a deflection over that of its load."""
+ACCEPTED = 1e-6
+"""Largest accepted residual. Ill-conditioned housings, slender or on soft mounts, exceed `REFINED`."""
+MIN_DECREASE = 0.5
+"""Residual over that of the step before, above which refinement ends: further steps gain nothing."""
 
 
 def _factorized(matrix: sp.csr_array) -> Solve:
-    """Return x of matrix x = b; b is (f,) or (f, m); refuses a singular matrix."""
+    """Return the solution of matrix x = b, b (f,) or (f, m); raises `SolveError`: a singular matrix."""
     from scipy.sparse.linalg import splu  # noqa: PLC0415 (start-up time)
 
     order = _nested_dissection(matrix)
     permuted = sp.csc_array(matrix[order][:, order])
     try:
+        # the matrix is symmetric and in the order of METIS: SuperLU must neither reorder nor pivot
         factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError as error:
         raise SolveError(f"The stiffness matrix of the housing cannot be factorized: {error}.") from error
@@ -45,7 +57,7 @@ def _factorized(matrix: sp.csr_array) -> Solve:
 
 
 def _nested_dissection(matrix: sp.csr_array) -> IntArray:
-    """Return METIS' fill-reducing order, from the graph of blocks."""
+    """Return the fill-reducing order of the freedoms (f,), which METIS finds on the graph of blocks."""
     import pymetis  # noqa: PLC0415 (start-up time)
 
     blocks = matrix.tobsr(blocksize=(BLOCK, BLOCK))
@@ -53,11 +65,12 @@ def _nested_dissection(matrix: sp.csr_array) -> IntArray:
     graph.setdiag(0.0)
     graph.eliminate_zeros()
     order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
+    # blocks to their freedoms
     return (BLOCK * np.asarray(order, dtype=np.int64)[:, None] + np.arange(BLOCK)).ravel()
 
 
 class ModeStatus(IntEnum):
-    """The end of the search for modes and deflections."""
+    """How the search for modes and deflections ended."""
 
     CONVERGED = 0
     ITERATION_LIMIT = 1  # fewer modes than requested; those found are exact
@@ -66,42 +79,51 @@ class ModeStatus(IntEnum):
 
 @dataclass(frozen=True)
 class FreeModes:
-    """Modes, unit modal mass, and static deflections."""
+    """Modes of unit modal mass, and static deflections."""
 
     rigid: FloatArray
-    """Rigid motions that nothing holds. Shape (f, k)."""
+    """Rigid motions that no mount holds. Shape (f, k)."""
     shape: FloatArray
-    """Shape (f, m)."""
+    """Shapes of the elastic modes. Shape (f, m)."""
     frequency: FloatArray
-    """Hz, rising; of elastic modes alone. Shape (m,)."""
+    """Frequencies of the elastic modes, Hz, rising. Shape (m,)."""
     deflection: FloatArray
-    """Under unit forces on the seats; where the housing is loose, in balance with its inertia. Shape (f, s).
+    """Static deflections under unit forces on the seats. The inertia of a loose housing balances the forces.
+    Shape (f, s).
     """
     status: ModeStatus
     eigen_residual: float
-    """Largest |K x - w^2 M x| / |K x|."""
+    """Largest |K x - w^2 M x| / |K x| of the elastic modes."""
     solve_residual: float
-    """Largest work of the unbalanced forces on a deflection, relative to that of its load."""
+    """Largest work of the unbalanced forces on a deflection, relative to the work of its load."""
     rigid_ratio: float
-    """Highest frequency found for a rigid motion over that of the first elastic mode; 0 where held."""
+    """Highest frequency of a rigid motion over that of the first elastic mode; 0: not loose."""
 
 
 def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
     """Find the lowest elastic modes by shift-invert Lanczos, and the deflections by the same factor.
 
-    What did not converge is in the status. Raises `SolveError`: the stiffness is singular.
+    The status says what did not converge. Raises `SolveError`: the stiffness is singular.
     """
-    loose = housing.loose.shape[1]
-    squares = housing.stiffness.diagonal() / housing.mass.diagonal() if loose else np.zeros(1)
-    shift = SHIFT * float(np.max(squares))
-    shifted = sp.csr_array(housing.stiffness + shift * housing.mass) if loose else housing.stiffness
+    rigid_motions = housing.loose  # (f, k); k = 0: the mounts hold the housing
+    rigid_count = rigid_motions.shape[1]
+    shift = 0.0
+    shifted = housing.stiffness
+    if rigid_count:
+        shift = SHIFT * float(np.max(housing.stiffness.diagonal() / housing.mass.diagonal()))
+        shifted = sp.csr_array(housing.stiffness + shift * housing.mass)
     solve = _factorized(shifted)
-    rigid_motions = housing.loose
+    # with the Cholesky factor of their mass the rigid motions become orthonormal in the mass matrix
     factor = np.linalg.cholesky(rigid_motions.T @ (housing.mass @ rigid_motions))
-    rigid: FloatArray = np.asarray(np.linalg.solve(factor, rigid_motions.T).T)  # orthonormal
-    square, shape = _lanczos(housing, solve, shift, count + loose)
+    rigid: FloatArray = np.asarray(np.linalg.solve(factor, rigid_motions.T).T)
+    square, shape = _lanczos(housing, solve, shift, count + rigid_count)
     deflection, residual = _deflections(housing, solve, rigid)
-    elastic, eigenvalues = shape[:, loose:], square[loose:]
+    # the lowest modes found are the rigid motions
+    elastic = shape[:, rigid_count:]
+    eigenvalues = square[rigid_count:]
+    rigid_ratio = 0.0
+    if rigid_count and eigenvalues.size:
+        rigid_ratio = math.sqrt(float(np.abs(square[:rigid_count]).max()) / eigenvalues[0])
     force = housing.stiffness @ elastic
     imbalance = np.linalg.norm(force - (housing.mass @ elastic) * eigenvalues, axis=0)
     status = ModeStatus.CONVERGED if residual <= ACCEPTED else ModeStatus.ILL_CONDITIONED
@@ -115,21 +137,23 @@ def free_modes(housing: AssembledHousing, count: int) -> FreeModes:
         status=status,
         eigen_residual=float(np.max(imbalance / np.linalg.norm(force, axis=0), initial=0.0)),
         solve_residual=residual,
-        rigid_ratio=math.sqrt(float(np.abs(square[:loose]).max()) / eigenvalues[0])
-        if loose and eigenvalues.size
-        else 0.0,
+        rigid_ratio=rigid_ratio,
     )
 
 
 def _lanczos(
     housing: AssembledHousing, solve: Solve, shift: float, count: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return squared circular frequencies, rising, and their modes: those that converged."""
+    """Return the squared angular frequencies that converged, rising, and their modes.
+
+    `solve` solves with the stiffness plus `shift` times the mass: the modes nearest to -`shift` are found
+    first.
+    """
     from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh  # noqa: PLC0415
 
     size = housing.stiffness.shape[0]
     inverse = LinearOperator((size, size), matvec=solve, dtype=float)
-    start = np.cos(np.arange(size, dtype=float))  # the same in every run
+    start = np.cos(np.arange(size, dtype=float))  # any vector; the same in every run
     basis = min(size - 1, basis_vectors(count))
     try:
         square, shape = eigsh(
@@ -142,27 +166,30 @@ def _lanczos(
 
 
 def basis_vectors(count: int) -> int:
-    """Return how many vectors Lanczos' method holds for so many modes."""
+    """Return the number of vectors that Lanczos' method stores to find `count` modes."""
     return count + max(count // 2, 20)
 
 
 def _deflections(housing: AssembledHousing, solve: Solve, rigid: FloatArray) -> tuple[FloatArray, float]:
-    """Return deflections and their residual.
+    """Return the deflections under unit forces on the seats, (f, s), and their largest residual.
 
-    A loose housing is accelerated by the loads: inertia balances them, and the shift of the factor is
-    taken out by iterative refinement.
+    A loose housing accelerates under a load, and its inertia balances the load. Iterative refinement removes
+    the error that the shift of the factor causes.
     """
     inertia = housing.mass @ rigid
     load = housing.seats.T.toarray()
-    load -= inertia @ (rigid.T @ load)
-    deflection, imbalance = np.zeros_like(load), load
+    load -= inertia @ (rigid.T @ load)  # inertia of the rigid acceleration
+    deflection = np.zeros_like(load)
+    imbalance = load
     residual = math.inf
     for _ in range(REFINEMENTS):
         deflection = deflection + solve(imbalance)
-        deflection -= rigid @ (inertia.T @ deflection)
+        deflection -= rigid @ (inertia.T @ deflection)  # no rigid motion
         imbalance = load - housing.stiffness @ deflection
-        lost, done = (np.einsum("fs,fs->s", deflection, force) for force in (imbalance, load))
-        previous, residual = residual, float(np.max(np.abs(lost) / done))
-        if residual <= REFINED or residual > 0.5 * previous:
+        unbalanced_work = np.einsum("fs,fs->s", deflection, imbalance)
+        work = np.einsum("fs,fs->s", deflection, load)
+        previous = residual
+        residual = float(np.max(np.abs(unbalanced_work) / work))
+        if residual <= REFINED or residual > MIN_DECREASE * previous:
             break
     return deflection, residual

@@ -1,4 +1,9 @@
-"""The choice between the two methods: by the fastest motion times the step that accuracy wants."""
+"""The choice between the explicit and the implicit method of integration.
+
+The fastest motion of the system limits the explicit step, which must stay stable. Accuracy limits the step of
+both methods: it follows the fastest natural motion that the meshes excite. The explicit method is chosen if
+its step for accuracy is stable. A natural motion is a mode of the undamped system about the equilibrium.
+"""
 
 from __future__ import annotations
 
@@ -13,66 +18,81 @@ from dynamics.scene import Integration
 from dynamics.types import FloatArray, Json
 
 LIMIT = 2.0
-"""Fastest rate times step, above which the explicit method takes shorter steps than accuracy wants."""
+"""Fastest rate, rad/s, times step for accuracy, s, above which stability shortens explicit steps."""
 RADIANS = 1.0
-"""Of the fastest motion that meshes excite, per explicit step at a tolerance of 1 nm.
+"""Phase, rad, of the fastest motion that meshes excite in one explicit step at a tolerance of 1 nm.
 
-Measured 0.4 to 1.6 on one pair, two stages and a planetary stage, 500 to 5000 rpm; the fifth root of the
-tolerance holds within 15 % from 10 to 0.1 nm."""
+Measured 0.4 to 1.6 on one pair, two stages and a planetary stage, 500 to 5000 rpm. The step grows with the
+fifth root of the tolerance, within 15 % from 10 to 0.1 nm.
+"""
+REFERENCE_TOLERANCE = 1e-9
+"""Tolerance, m, to which `RADIANS` belongs."""
+TOLERANCE_EXPONENT = 0.2
+"""Exponent of the tolerance in the step: the step grows with its fifth root."""
 SHARE = 0.1
-"""Of a natural motion's energy in meshes, from which they excite it."""
+"""Share of the elastic energy of a natural motion that is in the meshes, above which they excite it."""
 LIGHT = 0.01
-"""Damping ratio below which a natural motion is damped lightly."""
+"""Damping ratio below which a natural motion is lightly damped."""
 LONGER = 1.4
-"""Implicit over explicit step at one tolerance; measured 1.05 to 1.65 there."""
+"""Implicit over explicit step at the same tolerance; measured 1.05 to 1.65 on the gears of `RADIANS`."""
 EVALUATIONS = {"explicit": 6.0, "implicit": 10.0}
-"""Of the force laws per step, which cost stands in proportion to."""
+"""Evaluations of the force laws per step, to which the CPU time is proportional."""
+SLOWEST_RATE = 1e-300
+"""Rate, rad/s, in place of 0 in a divisor: the stable step is then without bound."""
 
 
 @dataclass(frozen=True)
 class MethodChoice:
-    """The method of a run, and what speaks for it."""
+    """The method of a run, and the rates and steps that decided."""
 
     method: str
     requested: str
-    """`method`, `requested`: ``"explicit"`` or ``"implicit"``; the latter may be ``"auto"``."""
+    """`method`, `requested`: ``"explicit"`` or ``"implicit"``; the requested one may also be ``"auto"``."""
     rate: float
     """Largest magnitude of an eigenvalue of the motion about the equilibrium at t = 0, rad/s."""
     step: float
-    """That accuracy wants, s: the fixed one, or by the fastest natural motion that meshes excite."""
+    """Step for accuracy, s: the fixed step, or the one for the fastest natural motion that meshes excite."""
     slowest_decay: float
-    """Least rate of decay of natural motions that meshes excite and that are damped lightly, 1/s; infinite:
-    there are none.
+    """Least rate of decay, 1/s, of the lightly damped natural motions that meshes excite; infinite: there are
+    none.
     """
 
     @property
     def other(self) -> str:
-        """The method that was not taken."""
+        """The method that was not chosen."""
         return "implicit" if self.method == "explicit" else "explicit"
 
     def settings(self, integration: Integration) -> Integration:
-        """Return `integration` by the method chosen.
+        """Return `integration` with the chosen method.
 
-        Explicit steps that are not stated stay stable: a motion at rest has no error that would tell.
+        If the choice was automatic, the largest explicit step is the stable one: while the system is at rest,
+        the error estimate is 0 and would let the step grow beyond it.
         """
-        largest, stable = integration.largest_step, LIMIT / max(self.rate, 1e-300)
+        largest = integration.largest_step
         if self.requested == "auto" and self.method == "explicit":
+            stable = LIMIT / max(self.rate, SLOWEST_RATE)
+            # the step control needs a largest step well above its smallest
             largest = min(largest, max(stable, 2.0 * integration.smallest_step))
         return replace(integration, method=self.method, largest_step=largest)
 
     def of(self, system: System) -> System:
-        """Return `system` with these settings."""
+        """Return `system` with the settings of the chosen method."""
         integration = self.settings(system.scene.integration)
         return replace(system, scene=replace(system.scene, integration=integration))
 
     def to_json(self, mean_step: float, seconds: float) -> Json:
-        """Return what the receipt of a run of such steps (s) that took `seconds` says."""
+        """Return the entries of a run's receipt on its method, as plain JSON.
+
+        `mean_step`, s, is that of the run, `seconds` its CPU time. The cost of the other method is predicted
+        from its step.
+        """
         if self.method == "explicit":
             step = {"explicit": mean_step, "implicit": LONGER * mean_step}
         else:
-            shortened = min(mean_step / LONGER, LIMIT / max(self.rate, 1e-300))
+            # the explicit step: as accurate as the implicit one, and stable
+            shortened = min(mean_step / LONGER, LIMIT / max(self.rate, SLOWEST_RATE))
             step = {"explicit": shortened, "implicit": mean_step}
-        cost = {name: EVALUATIONS[name] / step[name] for name in step}
+        cost = {name: EVALUATIONS[name] / step[name] for name in step}  # evaluations per second of motion
         return {
             "used": self.method,
             "requested": self.requested,
@@ -88,32 +108,47 @@ class MethodChoice:
 
 
 def choose_method(system: System, displacement: FloatArray, integration: Integration) -> MethodChoice:
-    """Choose for runs of `system` about the equilibrium at `displacement` (n,)."""
-    arrays, n = system.arrays, displacement.size
+    """Choose the method for runs of `system` about the equilibrium at `displacement` (n,)."""
+    arrays = system.arrays
+    n = displacement.size
     at_rest = np.zeros(n)
     balance = force_balance(arrays, 0.0, displacement, at_rest, at_rest)
     response = np.linalg.solve(arrays.mass, np.hstack([balance.stiffness, balance.damping]))
+    # d/dt (q, q') = A (q, q'): the upper half of A is (0, I), the lower -(M^-1 K, M^-1 C)
     first_order = np.vstack([np.eye(n, 2 * n, n), -response])
     rate = float(np.max(np.abs(np.linalg.eigvals(first_order)), initial=0.0))
-    fastest, decay = _excited_motions(
-        system, 0.5 * (balance.stiffness + balance.stiffness.T), balance.damping
-    )
-    wanted = RADIANS * (integration.tolerance / 1e-9) ** 0.2 / fastest if fastest > 0.0 else np.inf
-    step = integration.fixed_step or min(float(wanted), integration.largest_step)
+    symmetric = 0.5 * (balance.stiffness + balance.stiffness.T)
+    fastest, decay = _excited_motions(system, symmetric, balance.damping)
+    accurate = np.inf
+    if fastest > 0.0:
+        phase = RADIANS * (integration.tolerance / REFERENCE_TOLERANCE) ** TOLERANCE_EXPONENT
+        accurate = phase / fastest
+    step = integration.fixed_step or min(float(accurate), integration.largest_step)
     chosen = "explicit" if rate * step <= LIMIT else "implicit"
     requested = integration.method
-    return MethodChoice(chosen if requested == "auto" else requested, requested, rate, step, decay)
+    return MethodChoice(
+        method=chosen if requested == "auto" else requested,
+        requested=requested,
+        rate=rate,
+        step=step,
+        slowest_decay=decay,
+    )
 
 
 def _excited_motions(system: System, stiffness: FloatArray, damping: FloatArray) -> tuple[float, float]:
-    """Return the rate of the fastest natural motion with energy in the meshes, rad/s, and `slowest_decay`.
+    """Return the rate of the fastest natural motion that meshes excite, rad/s, and the slowest decay, 1/s.
 
-    0 and infinite without one.
+    The decay is that of the field `slowest_decay`. If meshes excite no motion, the rate is 0 and the decay
+    infinite.
     """
-    square, shape = scipy.linalg.eigh(stiffness, system.arrays.mass)
-    stretch = system.arrays.direction[system.driving_rows] @ shape
-    energy = system.flanks.mean_stiffness[: len(stretch)] @ stretch**2
-    excited = energy > SHARE * np.abs(square)
-    rate = np.sqrt(np.maximum(square[excited], 0.0))
-    decay = 0.5 * np.einsum("ia,ij,ja->a", shape[:, excited], damping, shape[:, excited])
-    return float(np.max(rate, initial=0.0)), float(np.min(decay[decay < LIGHT * rate], initial=np.inf))
+    # shapes (n, n) have unit modal mass: the squared rate is twice the elastic energy
+    squared_rate, shape = scipy.linalg.eigh(stiffness, system.arrays.mass)
+    stretch = system.arrays.direction[system.driving_rows] @ shape  # of the meshes, (meshes, n)
+    mesh_energy = system.flanks.mean_stiffness[: len(stretch)] @ stretch**2  # twice the energy
+    excited = mesh_energy > SHARE * np.abs(squared_rate)
+    rate = np.sqrt(np.maximum(squared_rate[excited], 0.0))
+    excited_shape = shape[:, excited]  # (n, excited motions)
+    decay = 0.5 * np.einsum("ia,ij,ja->a", excited_shape, damping, excited_shape)
+    lightly_damped = decay < LIGHT * rate
+    fastest = float(np.max(rate, initial=0.0))
+    return fastest, float(np.min(decay[lightly_damped], initial=np.inf))

@@ -1,4 +1,10 @@
-"""The logical T-shaped grid of one tooth sector: a tooth standing in the middle of the body below it."""
+"""The logical T-shaped grid of one tooth sector: a tooth standing in the middle of the body below it.
+
+A sector is one pitch of the gear, from the middle of a tooth space to the middle of the next. The body lies
+below the split point, at which the flank starts; the land is the part of the body's upper edge beside the
+tooth. Column 0 is the right end, row 0 the bore (of a ring gear: the outside of its rim). An element spans
+three rows and three columns of the grid of nodes. Axes of arrays: m elements, n nodes.
+"""
 
 from __future__ import annotations
 
@@ -9,30 +15,31 @@ import numpy as np
 
 from fe_contact.types import BoolArray, IntArray
 
-# Corners of a quadrilateral and the middles of its sides 0-1, 1-2, 2-3, 3-0 as (row, column) of the grid of
-# nodes, counter-clockwise when the columns run from right to left.
+# (row, column) in the grid of nodes of the eight nodes of an element, from its first row and column: corners
+# 0 to 3, then the middles of the sides 0-1, 1-2, 2-3, 3-0. They run counter-clockwise, as the columns run
+# from right to left.
 OFFSETS = np.array([(0, 2), (0, 0), (2, 0), (2, 2), (0, 1), (1, 0), (2, 1), (1, 2)])
-# Of teeth that point inwards, whose rows run towards the center; the side 0-1 stays the one to the body.
+# The same for a ring gear, whose rows run towards the center. The side 0-1 is the one to the body, too.
 INWARD_OFFSETS = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0)])
 
 
 @dataclass(frozen=True)
 class SectorGrid:
-    """Eight-node quadrilaterals on a T-shaped grid, mid space to mid space."""
+    """Eight-node quadrilaterals on a T-shaped grid, from one mid space to the next."""
 
     body_rows: int
     tooth_rows: int
-    """`body_rows`, `tooth_rows`: Rows of elements from the bore to the split point, and from there to the
-    tip.
+    """`body_rows`, `tooth_rows`: Rows of elements from the bore to the split point, and from the split point
+    to the tip.
     """
     land: int
-    """Columns of elements on each side of the tooth."""
+    """Columns of elements of the land on each side of the tooth."""
     across: int
     """Columns of elements across the tooth."""
     inward: bool = False
     """Whether the tooth points to the gear's center: the rows then run from the rim's outside inwards."""
     web_rows: tuple[int, int] = (0, 0)
-    """First row of the web, and the first one of the rim above it; equal if there is no web."""
+    """First row of the web, and first row of the rim above it, counted as in `cells`; equal: no web."""
 
     @property
     def columns(self) -> int:
@@ -41,7 +48,10 @@ class SectorGrid:
 
     @cached_property
     def cells(self) -> IntArray:
-        """Column and row of each element, (m, 2); rows of the body are negative, -1 the highest."""
+        """Column and row of each element, (m, 2).
+
+        Rows count from the split point: those of the body are negative, those of the tooth start at 0.
+        """
         body = [(i, j) for j in range(-self.body_rows, 0) for i in range(self.columns)]
         tooth = [(self.land + i, j) for j in range(self.tooth_rows) for i in range(self.across)]
         return np.array(body + tooth)
@@ -53,8 +63,9 @@ class SectorGrid:
         return np.asarray((row >= self.web_rows[0]) & (row < self.web_rows[1]))
 
     @cached_property
-    def _places(self) -> IntArray:
-        """Place of each element's nodes in the flattened grid of nodes, (m, 8)."""
+    def _grid_index(self) -> IntArray:
+        """Index of each element's nodes in the flattened grid of nodes, (m, 8)."""
+        # first column and row of the element: two per element, rows from the bore
         low = 2 * (self.cells + np.array([0, self.body_rows]))
         offsets = INWARD_OFFSETS if self.inward else OFFSETS
         row = low[:, 1, None] + offsets[:, 0]
@@ -62,16 +73,16 @@ class SectorGrid:
 
     @cached_property
     def number(self) -> IntArray:
-        """Node at each place of the grid of nodes, (2 rows + 1, 2 columns + 1); -1 where there is none."""
+        """Number of the node at each point of the grid of nodes, (2 rows + 1, 2 columns + 1); -1: no node."""
         number = np.full((2 * (self.body_rows + self.tooth_rows) + 1, 2 * self.columns + 1), -1)
-        used = np.unique(self._places)
+        used = np.unique(self._grid_index)
         number.flat[used] = np.arange(len(used))
         return number
 
     @cached_property
     def quads(self) -> IntArray:
         """Nodes of each element, (m, 8): corners counter-clockwise, middles of sides 0-1, 1-2, 2-3, 3-0."""
-        return np.asarray(self.number.ravel()[self._places])
+        return np.asarray(self.number.ravel()[self._grid_index])
 
     @property
     def nodes(self) -> int:
@@ -80,14 +91,14 @@ class SectorGrid:
 
     @cached_property
     def corner(self) -> BoolArray:
-        """Whether a node is a corner of elements, (n,)."""
+        """Whether a node is a corner of an element, not the middle of a side, (n,)."""
         corner = np.zeros(self.nodes, dtype=bool)
         corner[self.quads[:, :4]] = True
         return corner
 
     @property
     def right(self) -> IntArray:
-        """Nodes of the right cut from the bore to the root."""
+        """Nodes of the right cut between two sectors, from the bore to the root."""
         return self.number[: 2 * self.body_rows + 1, 0]
 
     @property

@@ -1,4 +1,8 @@
-"""The conclusion of an optimization in words: the gain, its end, and what was not tried."""
+"""The conclusion of an optimization in words: the gain, how the search ended, and what was not tried.
+
+The start is the design before the optimization, the optimum the best design found. Both were analyzed in
+full. Their ripple is the peak-to-peak transmission error, expected over the scatter.
+"""
 
 from __future__ import annotations
 
@@ -14,53 +18,62 @@ from fe_contact.microgeometry.search import Ended
 from fe_contact.microgeometry.variables import GEARS, LENGTHS, QUANTITIES
 
 AT_BOUND = 1e-3
-"""A variable this near to a bound, in parts of its range, lies on it."""
+"""Distance from a bound, over the range of the variable, up to which the variable lies on the bound."""
 
 
 def outcome_and_reason(choice: Choice, request: OptimizationRequest) -> tuple[Outcome, str]:
     """Return the outcome of an optimization and its reason, in sentences."""
-    outcome, ended = outcome_of(choice.start, choice.optimum), _ended(choice, request)
+    outcome = outcome_of(choice.start, choice.optimum)
+    end = _end_of_search(choice, request)
+    rise = _rise_by_torque(choice)
     if outcome is Outcome.LIMITS_EXCEEDED:
-        over = f"{excess(choice.optimum)}{_worse(choice)}"
-        return outcome, f"the best design exceeds the limits by {over}; {ended}"
+        return outcome, f"the best design exceeds the limits by {excess(choice.optimum)}{rise}; {end}"
     gain = gain_of(choice.start, choice.optimum)
     trend = "falls" if gain.value >= 0.0 else "rises"
     change = (
         f"expected peak-to-peak {trend} by {1e6 * abs(gain.value):.3g} µm, errors "
-        f"{engineering(1e6 * gain.error, 2)} µm{_worse(choice)}"
+        f"{engineering(1e6 * gain.error, 2)} µm{rise}"
     )
     if outcome is Outcome.IMPROVED:
-        return outcome, f"{change}; {ended}"
+        return outcome, f"{change}; {end}"
     if outcome is Outcome.LIMITS_MET:
-        return outcome, f"the limits are kept, which the start exceeds; {change}; {ended}"
-    return outcome, f"{change}; {_why_not(choice, request, gain.error)}{ended}"
+        return outcome, f"the limits are kept, which the start exceeds; {change}; {end}"
+    return outcome, f"{change}; {_reason_without_gain(choice, request, gain.error)}{end}"
 
 
-def _worse(choice: Choice) -> str:
-    """Name the torques at which the best design ripples more than the start, whether they count or not."""
+def _rise_by_torque(choice: Choice) -> str:
+    """Name the torques at which the best design ripples more than the start, torques without weight included.
+
+    Empty if there are none.
+    """
     before, after = choice.start.harris_map, choice.optimum.harris_map
-    worse = rising(before, after)
-    if not worse.size:
+    rows = rising(before, after)
+    if not rows.size:
         return ""
-    torques = ", ".join(f"{torque:.6g}" for torque in before.torque[worse])
-    maximum = worse[np.argmax((after.expected - before.expected)[worse])]
+    torques = ", ".join(f"{torque:.6g}" for torque in before.torque[rows])
+    maximum = rows[np.argmax((after.expected - before.expected)[rows])]  # the largest rise
     change = f"{1e6 * before.expected[maximum]:.3g} to {1e6 * after.expected[maximum]:.3g} µm"
     return f"; it rises at {torques} N m, most at {before.torque[maximum]:.6g} N m from {change}"
 
 
-def _ended(choice: Choice, request: OptimizationRequest) -> str:
-    """Say how the search ended; one that was interrupted may have had more to find in any of its starts."""
-    cut = any(run.ended is Ended.CANCELLED for run in choice.runs)
-    if cut or len(choice.runs) < request.search.starts:
+def _end_of_search(choice: Choice, request: OptimizationRequest) -> str:
+    """Return a clause on how the search ended.
+
+    A search is interrupted if one of its starts is, or if some of them never ran.
+    """
+    cancelled = any(run.ended is Ended.CANCELLED for run in choice.runs)
+    if cancelled or len(choice.runs) < request.search.starts:
         count = sum(run.evaluations for run in choice.runs)
         maximum = request.search.starts * request.search.evaluations
         return f"the search was interrupted after {count} of at most {maximum} designs"
     return "the search converged" if choice.run.converged else "the search used all its evaluations"
 
 
-def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
+def _reason_without_gain(choice: Choice, request: OptimizationRequest, error: float) -> str:
+    """Return a clause on why nothing was gained, empty if unknown; `error` is that of the gain, m."""
     if request.outside:
         return f"the start lies beyond the bounds of {', '.join(request.outside)}; "
+    # differences of ripple between the designs of a search, m: within the error they say nothing
     spread = max(run.spread for run in choice.runs)
     if choice.run.converged and spread <= error:
         return f"the variables have no influence: all designs lie within {engineering(1e6 * spread, 2)} µm; "
@@ -68,47 +81,57 @@ def _why_not(choice: Choice, request: OptimizationRequest, error: float) -> str:
 
 
 def untried_steps(choice: Choice, request: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
-    """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
-    names = _not_varied({variable.name for variable in request.variables})
-    spread = (*((MISALIGNMENT,) if request.scatter.misalignment else ()), *request.scatter.modification)
-    off = [name for name, choice_of in study.decision.checked.decision.items() if choice_of == "off"]
+    """Return a clause for every kind of freedom that the optimization did not use."""
+    names = _fixed_quantities({variable.name for variable in request.variables})
+    scattered = list(request.scatter.modification)
+    if request.scatter.misalignment:
+        scattered.insert(0, MISALIGNMENT)
+    neglected = [name for name, state in study.decision.checked.decision.items() if state == "off"]
     bounds = _on_bounds(choice, request)
     starts = "one start" if request.search.starts == 1 else f"{request.search.starts} starts"
-    untried = [
+    method = request.search.method.to_json()["method"].replace("_", " ")
+    untried = [  # an empty clause does not apply
         f"wider bounds of {', '.join(bounds)}, which the optimum lies on" if bounds else "",
         f"other values of {', '.join(names)}" if names else "",
-        f"scatter of anything but {', '.join(spread)}" if spread else "scatter of anything",
-        f"neglected effects: {', '.join(off)}" if off else "",
-        f"other searches than {starts} of {request.search.method.to_json()['method'].replace('_', ' ')}; "
-        "ripple has many local minima",
+        f"scatter of anything but {', '.join(scattered)}" if scattered else "scatter of anything",
+        f"neglected effects: {', '.join(neglected)}" if neglected else "",
+        f"other searches than {starts} of {method}; ripple has many local minima",
         "other center distances, and torques without weight",
     ]
     return tuple(filter(None, untried))
 
 
-def _not_varied(free: set[str]) -> list[str]:
-    """Name the figures that stay, those of both gears once; lengths only of amounts that vary."""
+def _fixed_quantities(free: set[str]) -> list[str]:
+    """Return the names of the quantities of flanks that did not vary; `free` names the variables.
+
+    Quantities that are fixed on both gears are named once. The length of a relief is named only if the amount
+    of the relief varies.
+    """
     fixed_names = {
         gear: [
             name
             for name in QUANTITIES
+            # a variable is named "gear.quantity", a length "amount_length"
             if f"{gear}.{name}" not in free
             and (name not in LENGTHS or f"{gear}.{name.removesuffix('_length')}" in free)
         ]
         for gear in GEARS
     }
-    both = [name for name in QUANTITIES if all(name in figures for figures in fixed_names.values())]
-    names = [
-        f"{gear}.{name}" for gear, figures in fixed_names.items() for name in figures if name not in both
-    ]
+    both = [name for name in QUANTITIES if all(name in fixed for fixed in fixed_names.values())]
+    names = [f"{gear}.{name}" for gear, fixed in fixed_names.items() for name in fixed if name not in both]
     return [*names, f"{', '.join(both)} of both gears"] if both else names
 
 
 def _on_bounds(choice: Choice, request: OptimizationRequest) -> list[str]:
-    """Variables whose optimum lies on a bound that is not the end of what there is: nothing removed."""
+    """Return the variables whose optimum lies on a bound that could be wider.
+
+    A lower bound of 0 could not: no material is removed there.
+    """
     names = []
+    # `place` is the best design of the search, each variable in parts of its range
     for variable, part in zip(request.variables, np.asarray(choice.run.place), strict=True):
-        low, high = part <= AT_BOUND, part >= 1.0 - AT_BOUND
-        if high or (low and variable.low != 0.0):
+        on_low = part <= AT_BOUND
+        on_high = part >= 1.0 - AT_BOUND
+        if on_high or (on_low and variable.low != 0.0):
             names.append(variable.name)
     return names

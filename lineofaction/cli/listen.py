@@ -1,4 +1,9 @@
-"""``loa listen``: runs as sounds, by what they hold or through the housings of a scene."""
+"""``loa listen``: runs of a simulation as sounds, in WAV files.
+
+A sound is the force on a bearing or another signal that the run holds; with a scene it is the sound pressure
+or the motion that the housings of the scene make of it at a receiver. The full scale is the value
+that a sample of 1.0 stands for; it is the same for all files, so that their loudness can be compared.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +28,7 @@ from lineofaction.report.run.view import RunView
 
 
 def run_listen(
-    named: Sequence[Path],
+    run_paths: Sequence[Path],
     target: Path | None,
     view: RunView,
     *,
@@ -32,10 +37,14 @@ def run_listen(
     microphone: str,
     as_json: bool,
 ) -> None:
-    """Read the runs, write a WAV file of each on one full scale, print what they hold."""
+    """Read the runs, write a WAV file of each with one full scale, and print a table of the sounds.
+
+    `run_paths` are files or project folders; without a `target`, the first folder gets the output.
+    """
     receiver = receiver_of(scene, point, microphone)
-    output = output_of(target, next((name for name in named if name.is_dir()), None), SOUND)
-    files = [run_in(name) for name in named]
+    project = next((path for path in run_paths if path.is_dir()), None)
+    output = output_of(target, project, SOUND)
+    files = [run_in(path) for path in run_paths]
     paths = _outputs(files, output)
     runs = {name: read_run(file, "runs") for name, file in named_files(files)}
     if scene is None or receiver is None:
@@ -60,17 +69,17 @@ def run_listen(
 
 
 def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
-    """Return a file for every run.
+    """Return the WAV file for every run.
 
-    Raises `BadInput`: several runs would go to one file, to files of one name, or where nothing can be
-    written.
+    Raises `BadInput`: several runs would go to one file, or to files of the same name, or the output cannot
+    be written.
     """
     if output.suffix == ".wav":
         if len(files) > 1:
             raise BadInput.of("output", str(output), "a folder for several runs", "It gets a file per run.")
         check_writable(output)
         return [output]
-    if output.is_file() or not (output.is_dir() or output.parent.is_dir()):
+    if output.is_file() or not (output.is_dir() or output.parent.is_dir()):  # a new folder needs a parent
         raise BadInput.of(
             "output", str(output), "a file ending in .wav, or a folder", "Make its parent first."
         )
@@ -81,19 +90,23 @@ def _outputs(files: Sequence[Path], output: Path) -> list[Path]:
 
 
 def _show(sounds: Sequence[RunSound], scale: float, remark: str) -> None:
-    out, unit = console(), sounds[0].recording.unit
-    more = list(dict.fromkeys(name for sound in sounds for name in sound.cells))
+    """Print a table of the sounds, the quantities, the full scale and a remark on all sounds."""
+    out = console()
+    unit = sounds[0].recording.unit  # one full scale: one unit
+    # columns that only some sounds have, in order, each once
+    optional_columns = list(dict.fromkeys(name for sound in sounds for name in sound.cells))
     rows = [
         [
             sound.name,
             engineering(sound.recording.rms, 4),
             f"{sound.recording.samples.size / sound.recording.sample_rate:.3f}",
-            *(sound.cells.get(name, "") for name in more),
+            *(sound.cells.get(name, "") for name in optional_columns),
         ]
         for sound in sounds
     ]
-    columns = ["run", f"rms, {unit}", "s", *more]
-    out.print(table(columns, rows, text_columns=("run", *more[-1:])))
+    columns = ["run", f"rms, {unit}", "s", *optional_columns]
+    # the last optional column is text, if there is one
+    out.print(table(columns, rows, text_columns=("run", *optional_columns[-1:])))
     for quantity in dict.fromkeys(sound.recording.quantity for sound in sounds):
         out.print(quantity, soft_wrap=True)
     out.print(f"full scale: {number(scale)} {unit}; {remark}", soft_wrap=True)

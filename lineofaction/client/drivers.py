@@ -1,4 +1,8 @@
-"""Drivers of the operations of a client: one that blocks, one that awaits."""
+"""Drivers of the operations of a client: one that blocks, one that awaits.
+
+An operation, or its steps, is a generator of actions: to send a request, to take a piece of a body, to pause.
+A driver performs each action and sends the answer into the generator, see `lineofaction.client.steps`.
+"""
 
 from __future__ import annotations
 
@@ -19,11 +23,15 @@ T = TypeVar("T")
 
 
 class _Course(Generic[T]):
-    """How far an operation is: a driver takes its next action, performs it and gives back what came of it."""
+    """The progress of an operation.
+
+    A driver takes the next action with `action`, performs it, and returns its answer with `answer` or its
+    exception with `fail`.
+    """
 
     def __init__(self, steps: Generator[Any, Any, T]) -> None:
         self._steps = steps
-        self.answer(None)
+        self.answer(None)  # a generator starts with None
 
     def action(self) -> Any:
         """Return the next action; raises `StopIteration` with the result, or what the operation raises."""
@@ -35,19 +43,19 @@ class _Course(Generic[T]):
         self._reply = reply
 
     def fail(self, error: BaseException) -> None:
-        """Give what an action raised; the operation decides what becomes of it."""
+        """Give the exception that an action raised; the operation handles it or passes it on."""
         self._advance, self._reply = self._steps.throw, error
 
 
 class BlockingDriver:
-    """Performs steps on a network of its own; threads may share it.
+    """Performs steps with its own HTTP connections, blocking; threads may share it.
 
     Parameters
     ----------
     transport : httpx2.BaseTransport, optional
         Replaces the network, for tests.
     options : dict
-        Of the client of httpx2.
+        Options of `httpx2.Client`.
     """
 
     def __init__(self, transport: httpx2.BaseTransport | None, options: dict[str, Any]) -> None:
@@ -63,7 +71,7 @@ class BlockingDriver:
         with ExitStack() as streams:
             try:
                 while True:
-                    self._go_on(course, course.action(), streams)
+                    self._answer(course, course.action(), streams)
             except StopIteration as end:
                 result: T = end.value
                 return result
@@ -81,42 +89,53 @@ class BlockingDriver:
                     yield action.value
                     course.answer(None)
                 else:
-                    self._go_on(course, action, streams)
+                    self._answer(course, action, streams)
 
     def map(self, operations: Iterable[Steps[T]], concurrency: int) -> Iterator[T]:
-        """Perform operations side by side in this thread; yield their results in order.
+        """Perform operations at the same time in this thread; yield their results in order.
 
-        While one pauses, others go on; at most `concurrency` are begun or wait to be yielded. What one
-        raises is raised in its turn and ends the iteration.
+        While an operation pauses, others proceed. At most `concurrency` operations are started or have a
+        result that waits for its turn. The exception of an operation is raised in its turn and ends the
+        iteration.
         """
-        source, window = iter(operations), deque[_Begun[T]]()
+        source = iter(operations)
+        window = deque[_Started[T]]()
         with ExitStack() as streams:
             while True:
-                window.extend(_Begun(_Course(steps)) for steps in islice(source, concurrency - len(window)))
+                window.extend(_Started(_Course(steps)) for steps in islice(source, concurrency - len(window)))
                 if not window:
                     return
                 while not window[0].ended:
-                    under_way = (operation for operation in window if not operation.ended)
-                    self._until_pause(min(under_way, key=lambda begun: begun.due), streams)
+                    running = (operation for operation in window if not operation.ended)
+                    earliest = min(running, key=lambda operation: operation.due)
+                    self._until_pause(earliest, streams)
                 first = window.popleft()
                 if first.error is not None:
                     raise first.error
                 yield cast("T", first.value)
 
-    def _until_pause(self, begun: _Begun[Any], streams: ExitStack) -> None:
-        """Perform what an operation wants until it pauses or ends."""
-        time.sleep(max(begun.due - time.monotonic(), 0.0))
+    def _until_pause(self, operation: _Started[Any], streams: ExitStack) -> None:
+        """Perform the actions of an operation until it pauses or ends."""
+        time.sleep(max(operation.due - time.monotonic(), 0.0))
         try:
-            while not isinstance(action := begun.course.action(), Pause):
-                self._go_on(begun.course, action, streams)
-            begun.due = time.monotonic() + action.seconds
-            begun.course.answer(None)
+            action = operation.course.action()
+            while not isinstance(action, Pause):
+                self._answer(operation.course, action, streams)
+                action = operation.course.action()
+            operation.due = time.monotonic() + action.seconds
+            operation.course.answer(None)
         except StopIteration as end:
-            begun.ended, begun.value = True, end.value
+            operation.ended = True
+            operation.value = end.value
         except Exception as error:  # noqa: BLE001 (raised in its turn)
-            begun.ended, begun.error = True, error
+            operation.ended = True
+            operation.error = error
 
-    def _go_on(self, course: _Course[Any], action: Send | Piece | Pause, streams: ExitStack) -> None:
+    def _answer(self, course: _Course[Any], action: Send | Piece | Pause, streams: ExitStack) -> None:
+        """Perform an action and give its answer or its exception to the operation.
+
+        `streams` closes the responses that the operation opened.
+        """
         try:
             course.answer(self._perform(action, streams))
         except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
@@ -129,29 +148,33 @@ class BlockingDriver:
                     self._http.stream(action.method, action.path, **action.options)
                 )
                 if not response.is_success:
-                    response.read()
+                    response.read()  # the body says why the request was refused
                 return Stream(response, response.iter_bytes())
             case Send():
                 return self._http.request(action.method, action.path, **action.options)
             case Piece():
-                return next(action.stream.pieces, None)
+                return next(action.stream.pieces, None)  # None: the end of the body
             case Pause():
                 return time.sleep(action.seconds)
 
 
 @dataclass
-class _Begun(Generic[T]):
-    """An operation of `BlockingDriver.map`: how it goes on, and when."""
+class _Started(Generic[T]):
+    """An operation of `BlockingDriver.map`, and its result or exception once it has ended."""
 
     course: _Course[T]
     due: float = 0.0
+    """Time of the monotonic clock, s, at which its pause ends."""
     ended: bool = False
     value: T | None = None
     error: Exception | None = None
 
 
 class AwaitingDriver:
-    """Performs steps on a network of its own; as `BlockingDriver`, with `httpx2.AsyncBaseTransport`."""
+    """Performs steps with its own HTTP connections, awaiting.
+
+    Parameters are those of `BlockingDriver`; the transport is an `httpx2.AsyncBaseTransport`.
+    """
 
     def __init__(self, transport: httpx2.AsyncBaseTransport | None, options: dict[str, Any]) -> None:
         self._http = httpx2.AsyncClient(transport=transport, **options)
@@ -166,7 +189,7 @@ class AwaitingDriver:
         async with AsyncExitStack() as streams:
             try:
                 while True:
-                    await self._go_on(course, course.action(), streams)
+                    await self._answer(course, course.action(), streams)
             except StopIteration as end:
                 result: T = end.value
                 return result
@@ -184,13 +207,13 @@ class AwaitingDriver:
                     yield action.value
                     course.answer(None)
                 else:
-                    await self._go_on(course, action, streams)
+                    await self._answer(course, action, streams)
 
     async def map(self, operations: Iterable[Steps[T]], concurrency: int) -> AsyncGenerator[T, None]:
-        """Perform operations side by side; yield their results in order.
+        """Perform operations at the same time; yield their results in order.
 
-        At most `concurrency` are begun or wait to be yielded. What one raises is raised in its turn; the
-        others are then cancelled.
+        At most `concurrency` operations are started or have a result that waits for its turn. The exception
+        of an operation is raised in its turn; the other operations are then cancelled.
         """
         window: deque[asyncio.Task[T]] = deque()
         try:
@@ -205,9 +228,10 @@ class AwaitingDriver:
                 task.cancel()
             await asyncio.gather(*window, return_exceptions=True)
 
-    async def _go_on(
+    async def _answer(
         self, course: _Course[Any], action: Send | Piece | Pause, streams: AsyncExitStack
     ) -> None:
+        """Perform an action and give its answer or its exception to the operation."""
         try:
             course.answer(await self._perform(action, streams))
         except BaseException as error:  # noqa: BLE001 (whatever it is, the operation decides)
@@ -220,11 +244,11 @@ class AwaitingDriver:
                     self._http.stream(action.method, action.path, **action.options)
                 )
                 if not response.is_success:
-                    await response.aread()
+                    await response.aread()  # the body says why the request was refused
                 return Stream(response, response.aiter_bytes())
             case Send():
                 return await self._http.request(action.method, action.path, **action.options)
             case Piece():
-                return await anext(action.stream.pieces, None)
+                return await anext(action.stream.pieces, None)  # None: the end of the body
             case Pause():
                 return await asyncio.sleep(action.seconds)

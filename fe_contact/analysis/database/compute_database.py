@@ -1,4 +1,10 @@
-"""The main flow: from a checked request to the STE database, in one pass."""
+"""The main flow: from a checked request to the STE database, in one pass.
+
+A pass solves the contact at all loads and alignments, checks assumptions and laws, estimates the errors, and
+writes the receipt. The receipt is a JSON record of cost, plan and checks; the effect ledger in it lists each
+effect with its influence. Support loads are further loads, down to lift-off and into overload, which the mesh
+force is extracted from.
+"""
 
 from __future__ import annotations
 
@@ -34,14 +40,20 @@ from model_studies.workers import InProcess, RunCost
 
 @dataclass(frozen=True)
 class _Computed:
-    """A table, and what it was computed with: effects that turned out to be needed included."""
+    """A table, and the model and discretization that it was computed with.
+
+    The model includes effects that were switched on because an assumption failed.
+    """
 
     table: SteDatabase
     decision: Decision
 
 
 def compute_database(checked: Checked, case: Json, run: Run, choice: Decision | None = None) -> SteDatabase:
-    """Compute the table of a checked request; parameters of `compute_pass`."""
+    """Compute the table of a checked request.
+
+    Parameters are those of `compute_pass`; `choice` is its `decision`.
+    """
     return compute_pass(checked, case, run, choice).table
 
 
@@ -55,130 +67,147 @@ def compute_pass(
     """Compute the table of a checked request once.
 
     Raises `SolveError`: an assumption of the run does not hold and `on_violation` is "fail", or the table
-    breaks a law of mechanics; `partial` is then the table.
+    violates a law of mechanics; the attribute `partial` of the error is then the table.
 
     Parameters
     ----------
     case : dict
-        Echoed into the result and hashed.
+        Case of the request; it is copied into the result and hashed.
     decision : Decision, optional
-        Model and discretization; default: those that the accuracy asks for.
+        Model and discretization; default: those that the requested accuracy needs.
     clock : StageClock, optional
-        That of the workers' cost, with what was spent on this pass before it began; default: a new one.
+        Clock of the workers' cost, which may already hold time that was spent on this pass; default: a new
+        clock.
     """
-    clock, before = clock or StageClock(run.workers.cost), replace(run.workers.cost)
-    planned = solve_table(checked, clock, run, decision=decision)
-    made, assumptions, repeated = settled(
-        planned,
+    clock = clock or StageClock(run.workers.cost)
+    initial_cost = replace(run.workers.cost)  # a copy: the workers add to the original
+    first = solve_table(checked, clock, run, decision=decision)
+    # `settled` solves again with the effects that are needed, until the assumptions hold
+    result, assumptions, repeated = settled(
+        first,
         check_assumptions,
-        lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
+        lambda last, needed: solve_table(with_effects(last.checked, needed), clock, run, last),
         clock,
     )
-    laws = _lawful(made)
-    full = _full(made)
-    influences = _started_influences(planned, run, before) if full else iter([{}])
-    requested = made.table
-    assessed, made = _assessed(made, clock, run)
-    inserted = made.table is not requested  # which no prediction holds
+    laws = _checked_laws(result)
+    has_full_receipt = _has_full_receipt(result)
+    # an iterator of one value, so that workers may compute it while the errors are estimated
+    influences = _started_influences(first, run, initial_cost) if has_full_receipt else iter([{}])
+    requested = result.table
+    assessed, result = _assessed(result, clock, run)
+    inserted = result.table is not requested  # alignments were inserted to meet the tolerance
     if inserted:
-        laws = _lawful(made)
-    contact = _contact(made, clock)
-    if not (repeated or inserted or made.derived or run.workers.cost.since(before).tasks):
-        cost = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
-        record(run.cache, made.prediction.logged, cost)
+        laws = _checked_laws(result)
+    contact = _contact(result, clock)
+    # the cost model learns from runs alone that went as predicted, in this process
+    if not (repeated or inserted or result.derived or run.workers.cost.since(initial_cost).tasks):
+        cost = {log_name(result.prediction.kind, name): time for name, time in clock.seconds.items()}
+        record(run.cache, result.prediction.logged, cost)
     with clock.stage("effect ledger"):
-        known = next(influences)
         ledger = effect_ledger(
-            made.checked, run.cache, assumptions, plan=made.plan, influences=known, estimates=full
+            result.checked,
+            run.cache,
+            assumptions,
+            plan=result.plan,
+            influences=next(influences),
+            estimates=has_full_receipt,
         )
-    remote = run.workers.cost.since(before)
-    receipt = clock.to_json() | assessed.to_json() | contact | _planned(made)
+    remote = run.workers.cost.since(initial_cost)
+    receipt = clock.to_json() | assessed.to_json() | contact | _planned(result)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
     receipt["laws"] = [law.to_json() for law in laws]
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
-    metadata = _metadata(case, made, receipt, ledger)
-    table = assessed.with_errors(made.table, metadata)
-    tolerance = made.checked.request.options.tolerance
+    metadata = _metadata(case, result, receipt, ledger)
+    table = assessed.with_errors(result.table, metadata)
+    tolerance = result.checked.request.options.tolerance
     if tolerance is not None:
-        tolerance_use = tolerance_receipt(table, tolerance, made.checked.request)
+        tolerance_use = tolerance_receipt(table, tolerance, result.checked.request)
+        # the table shares `metadata`: its receipt gets the entries, too
         metadata.receipt["tolerance"] = tolerance_use
         metadata.receipt["choice"]["met"] = tolerance_use["met"]
-    return _Computed(table, made.decision)
+    return _Computed(table, result.decision)
 
 
-def _started_influences(planned: SolvedTable, run: Run, before: RunCost) -> Iterator[Influences]:
-    """Start the estimate of the plan's influences.
+def _started_influences(first: SolvedTable, run: Run, initial_cost: RunCost) -> Iterator[Influences]:
+    """Start the estimate of the influences of effects; the iterator yields them once.
 
-    Workers do it beside other tasks, where any were handed out for this table and it takes longer than to
-    hand it out: springs over the face take half a second, those of a plane hundredths.
+    The workers compute it if they had tasks of this table and the model extends over the face: the estimate
+    then takes half a second. In the plane it takes hundredths, less than to hand it out.
     """
-    remote = planned.checked.model.across_face and run.workers.cost.since(before).tasks
+    remote = first.checked.model.across_face and run.workers.cost.since(initial_cost).tasks
     workers = run.workers if remote else InProcess()
-    return workers.run(_influences_of_request, planned.places.nominal.bodies, [planned.checked])
+    # one task; the bodies are shared with the other tasks of the table
+    return workers.run(_influences_of_request, first.places.nominal.bodies, [first.checked])
 
 
 def _influences_of_request(_bodies: object, checked: Checked) -> Influences:
     return estimated_influences(checked)
 
 
-def _full(made: SolvedTable) -> bool:
-    return made.checked.request.options.receipt == "full"
+def _has_full_receipt(result: SolvedTable) -> bool:
+    return result.checked.request.options.receipt == "full"
 
 
-def _lawful(made: SolvedTable) -> tuple[LawCheck, ...]:
-    """Check the laws of a table; raises `SolveError` where one is broken."""
-    support = [contact.solution for contact in made.support]
-    laws = check_laws(made.table, made.places.places, made.solved, support)
-    require_laws(laws, made.table)
+def _checked_laws(result: SolvedTable) -> tuple[LawCheck, ...]:
+    """Check the laws of mechanics on a table; raises `SolveError`: one is violated."""
+    support = [contact.solution for contact in result.support]
+    laws = check_laws(result.table, result.places.places, result.solved, support)
+    require_laws(laws, result.table)
     return laws
 
 
-def _contact(made: SolvedTable, clock: StageClock) -> Json:
-    """Return what the receipt of a table says of its contact."""
+def _contact(result: SolvedTable, clock: StageClock) -> Json:
+    """Return the entries of the receipt about the contact."""
     with clock.stage("contact"):
-        support = [(contact.problem, contact.solution) for contact in made.support]
-        return contact_receipt(made.solved, support, condition=_full(made), known=made.condition)
+        support = [(contact.problem, contact.solution) for contact in result.support]
+        return contact_receipt(
+            result.solved, support, condition=_has_full_receipt(result), known=result.condition
+        )
 
 
-def _assessed(made: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, SolvedTable]:
-    """Return the errors of a table, and the table with the alignments that were inserted for a tolerance."""
-    if not _full(made):
-        return unassessed_table(made.table, made.places, made.plan), made
+def _assessed(result: SolvedTable, clock: StageClock, run: Run) -> tuple[AssessedTable, SolvedTable]:
+    """Return the errors of a table, and the table, with alignments inserted where the tolerance needs them.
+
+    A receipt that is not full has no errors.
+    """
+    if not _has_full_receipt(result):
+        return unassessed_table(result.table, result.places, result.plan), result
     stage = "error estimate"
-    progress = by_cost(partial(run.progress, stage), made.prediction.parts[stage])
+    # progress counts the predicted cost of the parts of the stage, of which the bodies are one
+    progress = by_cost(partial(run.progress, stage), result.prediction.parts[stage])
     report = partial(progress, "bodies")
-    divided = replace(run, workers=made.places.workers)
-    bodies = condensed_bodies(made.checked, made.plan, clock, divided, coarse=True, report=report)
+    divided = replace(run, workers=result.places.workers)
+    bodies = condensed_bodies(result.checked, result.plan, clock, divided, coarse=True, report=report)
     with clock.stage(stage):
-        assessed, made = assessed_table(made, made.places.on_bodies(bodies))
+        assessed, result = assessed_table(result, result.places.on_bodies(bodies))
     run.progress(stage, 1.0)
-    return assessed.with_derivatives(made.derived), made
+    return assessed.with_derivatives(result.derived), result
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
-    """Return what is implausible about the results."""
+    """Return the findings about implausible values of the results."""
     module = request.pair.pinion.normal_module
     return table_findings(table.static_transmission_error, table.max_pressure, module)
 
 
-def _planned(made: SolvedTable) -> Json:
-    """Return what was chosen and expected of the run before it began, to stand beside what happened."""
-    error = made.decision.mesh.option.error.to_json()
+def _planned(result: SolvedTable) -> Json:
+    """Return the plan, the predicted cost and the choice of model, as they were before the run."""
+    error = result.decision.mesh.option.error.to_json()
     planned = {
-        "plan": made.plan.to_json(),
-        "prediction": made.prediction.to_json() | {"error": error},
-        "choice": made.decision.to_json(),
+        "plan": result.plan.to_json(),
+        "prediction": result.prediction.to_json() | {"error": error},
+        "choice": result.decision.to_json(),
     }
-    if made.derived is not None:
-        planned["cycle"] = made.derived.to_json()
-    cycle = made.checked.cycle
+    if result.derived is not None:
+        planned["cycle"] = result.derived.to_json()
+    cycle = result.checked.cycle
     return planned if cycle is None else planned | {"predicted": cycle.to_json()}
 
 
-def _metadata(case: Json, made: SolvedTable, receipt: Json, ledger: list[Json]) -> Metadata:
-    request = made.checked.request
-    findings = merged(request.findings, solved_findings(request, made.table))
+def _metadata(case: Json, result: SolvedTable, receipt: Json, ledger: list[Json]) -> Metadata:
+    request = result.checked.request
+    findings = merged(request.findings, solved_findings(request, result.table))
     return Metadata(
         case=case,
         effect_ledger=ledger,

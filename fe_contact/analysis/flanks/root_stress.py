@@ -1,4 +1,9 @@
-"""Tooth-root stress of a gear pair: unit-load stress of both gears times the forces of the solved contact."""
+"""Tooth-root stress of a gear pair: unit-load stress of both gears times the forces of the solved contact.
+
+A unit-load stress is the stress at stations along a root for a unit force at each node of a flank. A history
+is the stress at the stations over the positions of the mesh. Axes of arrays: P positions, N stressed teeth, K
+pairs of teeth in contact, p stations along the root, q stations across the face, n flank nodes.
+"""
 
 from __future__ import annotations
 
@@ -40,29 +45,40 @@ from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 from model_studies.stage_clock import StageClock
 
 _STRESSES = 2.5
-"""Stresses of a tooth's roots over the face to all forces on the flanks, with the compliance that they need,
-over that compliance: 2.2 to 2.9 of four gears on two meshes. In the plane as much as the compliance."""
+"""CPU time of the unit-load stress of a gear in three dimensions over that of its compliance alone.
+
+The stress needs the compliance, whose time is included. Measured 2.2 to 2.9 on four gears with two meshes
+each. In the plane the ratio is 1.
+"""
 
 UnitStresses = tuple[UnitRootStress, UnitRootStress]
 Histories = tuple[RootStressHistory, RootStressHistory]
 
 LOAD_SHARING = 0.02
-"""Part of a root stress that the load of the tooth leaves open: a published series of solid models, less the
-error of its mesh, is 0.7 to 2 % below (tests/validation/test_published_root_stress.py)."""
+"""Relative error of a root stress that comes from how the load is put on the tooth.
+
+The stresses of a published series of solid models, less the error of their mesh, are 0.7 to 2 % lower than
+ours (tests/validation/test_published_root_stress.py).
+"""
 
 
 def stress_seconds(pair: ParallelAxes, plan: Plan, cache: Path | None) -> float:
     """Predict the CPU seconds of the unit-load stress of both gears on both meshes; nothing is meshed."""
-    made, bodies = plan.discretization, plan.bodies(pair)
-    hypothesis, times = PlaneHypothesis.PLANE_STRAIN, _STRESSES
-    if isinstance(made, PlaneDiscretization):
-        hypothesis, times = made.hypothesis, 1.0
-    meshes = root_meshes(made)
+    discretization = plan.discretization
+    bodies = plan.bodies(pair)
+    hypothesis = PlaneHypothesis.PLANE_STRAIN
+    time_ratio = _STRESSES
+    if isinstance(discretization, PlaneDiscretization):
+        hypothesis = discretization.hypothesis
+        time_ratio = 1.0
+    meshes = root_meshes(discretization)
     recipes: tuple[MeshRecipe | SectorRecipe, ...] = (*meshes.recipes, *meshes.coarse_recipes)
+    # both gears on the fine meshes, then both on the coarse ones
     gears = (body.right_handed() for body in (*bodies, *bodies))
-    return times * sum(
+    distinct = dict.fromkeys(zip(gears, recipes, strict=True))  # identical gears are computed once
+    return time_ratio * sum(
         body_seconds(gear, recipe, cache)
-        for gear, recipe in dict.fromkeys(zip(gears, recipes, strict=True))
+        for gear, recipe in distinct
         if not stress_cached(gear, recipe, hypothesis, cache)
     )
 
@@ -76,14 +92,14 @@ class RootStress:
     wheel: RootStressHistory
     torque: float
     normal_force: float
-    """`torque`, `normal_force`: On the driving gear, N m; F_bn, N."""
+    """`torque`, `normal_force`: Torque on the driving gear, N m, and normal force of the teeth F_bn, N."""
     misalignment: float
     center_distance_change: float
     """`misalignment`, `center_distance_change`: m."""
     receipt: Json
-    """CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON."""
+    """CPU seconds by stage, memory, the plan, assumptions and repeated solutions: plain JSON."""
     warnings: list[Json] = field(default_factory=list)
-    """What is implausible about the case or the stresses."""
+    """Findings about implausible values of the case or of the stresses."""
 
 
 def root_stress(
@@ -110,6 +126,7 @@ def root_stress(
         for finding in root_findings(name, history.peak("tension").stress.value)
     ]
     warn_of(unexpected(request.findings, tuple(findings)))
+    # the request may have announced a root stress from a formula: the solved one takes its place
     nominal = (finding for finding in request.findings if finding.check != "root_stress")
     return RootStress(
         pinion,
@@ -124,12 +141,13 @@ def root_stress(
 
 
 def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStressHistory]:
-    """Return the histories of both gears, with the error that rougher discretizations show."""
-    units = unit_stresses(solved.contact, False, cache)
+    """Return the histories of both gears, with errors estimated from coarser discretizations."""
+    units = unit_stresses(solved.contact, coarse=False, cache=cache)
     fine = pair_histories(solved, units)
-    rough = pair_histories(solved, unit_stresses(solved.contact, True, cache))
-    remaining = root_meshes(solved.contact.plan.discretization).remaining
-    changes = [remaining * _peak_changes(fine, rough), *_load_changes(solved, fine, units, cache)]
+    rough = pair_histories(solved, unit_stresses(solved.contact, coarse=True, cache=cache))
+    # error of the fine mesh over the difference of both meshes
+    mesh_error_ratio = root_meshes(solved.contact.plan.discretization).remaining
+    changes = [mesh_error_ratio * _peak_changes(fine, rough), *_load_changes(solved, fine, units, cache)]
     errors = LOAD_SHARING + np.linalg.norm(changes, axis=0)
     return [
         replace(history, relative_error=error) for history, error in zip(fine, errors.tolist(), strict=True)
@@ -139,21 +157,27 @@ def _histories(solved: SolvedOperatingPoint, cache: Path | None) -> list[RootStr
 def _load_changes(
     solved: SolvedOperatingPoint, fine: Histories, units: UnitStresses, cache: Path | None
 ) -> Iterator[FloatArray]:
-    """Yield the changes of the peaks of both gears (2,) by positions, slices and meshes of the contact."""
-    for half in halves(fine[0].position):
-        yield _peak_changes(fine, (fine[0].at(half), fine[1].at(half)))
-    for both in rougher_solutions(solved, cache):
-        finer, rougher = (pair_histories(solution, units) for solution in both)
-        yield _peak_changes(finer, rougher)
+    """Yield relative changes of the peaks of both gears (2,), one for each coarser contact solution.
+
+    The coarser solutions have every second position, fewer slices, coarser load patches or a coarser mesh.
+    """
+    pinion, wheel = fine
+    for half in halves(pinion.position):  # every second position, then the others
+        yield _peak_changes(fine, (pinion.at(half), wheel.at(half)))
+    for solutions in rougher_solutions(solved, cache):
+        yield _peak_changes(pair_histories(solutions.finer, units), pair_histories(solutions.rougher, units))
 
 
 def _peak_changes(fine: Histories, rough: Histories) -> FloatArray:
-    """Return the changes of the peaks of both gears (2,), in parts of them.
+    """Return the relative changes of the peak stresses of both gears (2,).
 
-    The greater of both roots: one difference of two solutions may vanish by chance.
+    Each is the greater one of both roots of a tooth: one of them alone may vanish by chance.
     """
-    peaks = np.array(
-        [[[h.peak(root).stress.value for root in ROOTS] for h in both] for both in (fine, rough)]
+    peaks = np.array(  # axes: fine or rough, gear, root
+        [
+            [[history.peak(root).stress.value for root in ROOTS] for history in histories]
+            for histories in (fine, rough)
+        ]
     )
     return np.asarray(np.abs(peaks[1] / peaks[0] - 1.0).max(axis=1))
 
@@ -161,9 +185,10 @@ def _peak_changes(fine: Histories, rough: Histories) -> FloatArray:
 def unit_stresses(contact: PairContact, coarse: bool, cache: Path | None) -> UnitStresses:
     """Compute or fetch the unit-load stress of both gears; identical gears are computed once.
 
-    `coarse`: on the meshes that tell the error of the others.
+    `coarse` selects the coarse meshes, which serve to estimate the error of the fine ones.
     """
-    pair, meshes = contact.pair, root_meshes(contact.plan.discretization)
+    pair = contact.pair
+    meshes = root_meshes(contact.plan.discretization)
     gears = contact.plan.bodies(pair)
     if isinstance(meshes, FaceRootMeshes):
         sectors = meshes.coarse_recipes if coarse else meshes.recipes
@@ -179,8 +204,10 @@ def pair_histories(
     solved: SolvedOperatingPoint, units: UnitStresses
 ) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact; `units` may be of any mesh."""
-    pair, candidates = solved.contact.pair, solved.problem.candidates
+    pair = solved.contact.pair
+    candidates = solved.problem.candidates
     carrying = np.unique(candidates.pair)
+    # the teeth before the first and after the last pair feel their load, too
     stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
     forces = _forces(solved, units, carrying)
     first, second = (
@@ -193,7 +220,7 @@ def pair_histories(
             # pair j is on tooth -j of the driving gear and on tooth j of the driven one
             stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
             near_load=_near_load(solved, unit, patches, stressed, unit.station_z + offset),
-            relative_error=np.nan,
+            relative_error=np.nan,  # not estimated yet, see `_histories`
             critical_coordinate=critical_section(tooth_profile(gear)),
         )
         for unit, loads, direction, gear, offset, patches in zip(
@@ -212,44 +239,54 @@ def pair_histories(
 def _forces(
     solved: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the inward nodal forces on the teeth of `pairs` (K,) of both gears, (P, K, n)."""
-    candidates, force = solved.problem.candidates, solved.solution.force[:, 0]
+    """Return the nodal forces on the teeth of `pairs` (K,) of both gears, > 0 into the flank, (P, K, n)."""
+    candidates = solved.problem.candidates
+    force = solved.solution.force[:, 0]  # at the only load
     out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
     for p in range(len(force)):
         if units[0].across_face:
             offset = solved.contact.pair.axial_offset
-            both, inward = face_flank_forces(candidates, force, p, units, offset), -1.0
+            gears = face_flank_forces(candidates, force, p, units, offset)
+            inward = -1.0  # these forces count positive out of the flank
         else:
-            both, inward = plane_flank_forces(candidates, force, p, units), 1.0
-        for loads, by_tooth, direction in zip(out, both, (-1, 1), strict=True):
+            gears = plane_flank_forces(candidates, force, p, units)
+            inward = 1.0
+        for loads, by_tooth, direction in zip(out, gears, (-1, 1), strict=True):
             for tooth, forces in by_tooth.items():
-                loads[p, np.searchsorted(pairs, direction * tooth)] = inward * forces
+                pair_index = np.searchsorted(pairs, direction * tooth)
+                loads[p, pair_index] = inward * forces
     return out[0], out[1]
 
 
 def _near_load(
     solved: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
 ) -> BoolArray:
-    """Return which stations, at `face` (q,), are within half a patch of a loaded patch, (P, N, p, q)."""
-    candidates, force = solved.problem.candidates, solved.solution.force[:, 0]
+    """Return whether stations lie in a loaded patch or within its half width of its ends, (P, N, p, q).
+
+    `face` (q,) holds the positions of the stations across the face, m.
+    """
+    candidates = solved.problem.candidates
+    force = solved.solution.force[:, 0]  # at the only load
     near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
     tooth = np.searchsorted(stressed, candidates.pair)
-    for p, i in np.argwhere(force > 0.0):
-        row = p % len(patches.center)
+    for p, i in np.argwhere(force > 0.0):  # position and candidate
+        row = p % len(patches.center)  # the arrays of patches repeat over the positions
         half = patches.half_width[row, i]
         along = np.abs(unit.station_s - patches.center[row, i]) < 2.0 * half
         if along.any():
             across = np.abs(face - candidates.face_position[i]) < 0.5 * candidates.point_width + half
+            # a plane model has no stations across the face: distance along the root alone decides
             near[p, tooth[i]] |= along[:, None] & (across | (not unit.across_face))
     return near
 
 
 def _superposed(unit: UnitRootStress, forces: FloatArray, ahead: IntArray) -> FloatArray:
-    """Add up what the loads of all pairs do to each tooth, (P, N, 2, 3, p, q).
+    """Add up the stresses of each tooth under the loads of all pairs, (P, N, 2 roots, 3 components, p, q).
 
-    `ahead` (N, K) says how many teeth the stressed one is ahead of the loaded one; further than `unit` knows
-    nothing arrives.
+    `ahead` (N, K) says how many teeth the stressed one is ahead of the loaded one. Beyond the distances that
+    `unit` has, a load causes no stress.
     """
+    # unit stress by distance in teeth, stations and components flattened, flank nodes last
     by_distance = unit.stress.reshape(len(unit.distance), -1, forces.shape[2])
     stress = np.zeros((len(forces), len(ahead), by_distance.shape[1]))
     for k in range(forces.shape[1]):
