@@ -250,6 +250,11 @@ def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArra
     return amplitudes
 
 
+def _empty_by_freedom(shape: tuple[int, ...], freedoms: int, columns: int) -> ComplexArray:
+    """Return room for (S, H, n, c) displacements that lies freedom by freedom in memory, as results do."""
+    return np.moveaxis(np.empty((freedoms, columns, *shape), dtype=complex), (2, 3), (0, 1))
+
+
 def _solve(
     at: Excited,
     force: ComplexArray,
@@ -273,10 +278,7 @@ def _solve(
     pushed = _right_sides(force, rows, second) * per_meter[:, None]
     saved, watched = 1 if rows is None else 1 + len(rows), at.system.arrays.direction[at.system.driving_rows]
     largest = np.zeros((len(watched), omega.shape[1]))
-    # a freedom at a time in memory, as results have it
-    displacement = np.moveaxis(
-        np.empty((pushed.shape[2], saved, *omega.shape), dtype=complex), (2, 3), (0, 1)
-    )
+    displacement = _empty_by_freedom(omega.shape, pushed.shape[2], saved)
     modal = at.system.arrays.sparse.modal
     first = _first_eliminated(modal.first, terms)
     small = modal_elimination(modal, per_meter, total, damping, mass) if first else None

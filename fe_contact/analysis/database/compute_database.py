@@ -112,21 +112,23 @@ def compute_pass(
             influences=next(influences),
             estimates=has_full_receipt,
         )
-    remote = run.workers.cost.since(initial_cost)
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(result)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
     receipt["laws"] = [law.to_json() for law in laws]
+    remote = run.workers.cost.since(initial_cost)
     if remote.tasks or remote.lost:
         receipt["elsewhere"] = asdict(remote)
-    metadata = _metadata(case, result, receipt, ledger)
-    table = assessed.with_errors(result.table, metadata)
-    tolerance = result.checked.request.options.tolerance
-    if tolerance is not None:
-        tolerance_use = tolerance_receipt(table, tolerance, result.checked.request)
-        # the table shares `metadata`: its receipt gets the entries, too
-        metadata.receipt["tolerance"] = tolerance_use
-        metadata.receipt["choice"]["met"] = tolerance_use["met"]
+    table = assessed.with_errors(result.table, _metadata(case, result, receipt, ledger))
+    _enter_tolerance(table, result.checked.request)
     return _Computed(table, result.decision)
+
+
+def _enter_tolerance(table: SteDatabase, request: Request) -> None:
+    """Enter into the receipt of a table how its tolerance was used and whether it is met, if it has one."""
+    if request.options.tolerance is not None:
+        used = tolerance_receipt(table, request.options.tolerance, request)
+        table.metadata.receipt["tolerance"] = used
+        table.metadata.receipt["choice"]["met"] = used["met"]
 
 
 def _started_influences(first: SolvedTable, run: Run, initial_cost: RunCost) -> Iterator[Influences]:

@@ -149,7 +149,7 @@ class PairContact:
         if not isinstance(made, FaceDiscretization):
             return self
         plan = replace(self.plan, discretization=made.in_slices(count))
-        return replace(self, plan=plan, _problems={})
+        return replace(self, plan=plan, touches={}, _problems={})  # a record of touch is one of its slices
 
     @property
     def in_coarse_patches(self) -> PairContact:
