@@ -15,6 +15,7 @@ from dynamics.acoustics import (
     ModalResistance,
     OrderPower,
     Range,
+    band_cases,
     level_bands,
     order_power,
     sound_power_level,
@@ -37,7 +38,6 @@ from model_studies.progress import Progress, silent
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
 """dB; speeds that miss more are no map of a resonance."""
-Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -297,7 +297,7 @@ def sound_band(
         Of factors, by name in `GUESSES`; default: their usual ones. Those of what a scene does not have, e.g.
         mounts, contribute nothing.
     cases : int
-        As of `level_bands`.
+        Joint cases, as of `band_cases`.
     alternatives : mapping of str to SoundModel, optional
         Further models that may be right, e.g. with the resistance of another radiation model, by the name of
         their contribution: their difference, both ways.
@@ -327,8 +327,7 @@ def sound_band(
         progress("band", min(done[0] / count, 1.0))
         return result
 
-    varied = partial(level_bands, ranges=ranges, cases=cases)
-    return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
+    return _band(model, np.asarray(speed, dtype=float), ranges, cases, others, powers)
 
 
 def band_about(
@@ -359,7 +358,8 @@ def band_about(
 def _band(
     model: SoundModel,
     speed: FloatArray,
-    varied: Callable[[Levels], tuple[LevelBand, ...]],
+    ranges: Mapping[str, Range],
+    cases: int,
     others: Mapping[str, SoundModel],
     powers: Powers,
 ) -> SoundBand:
@@ -372,7 +372,8 @@ def _band(
             varied_model = varied_model if value == 1.0 else GUESSES[name].varied(varied_model, value)
         return _levels(order, loudest, *((order, nominal) if varied_model is model else powers(varied_model)))
 
-    bands = list(varied(levels))
+    level_cases = np.array([levels(values) for values in band_cases(ranges, cases)])
+    bands = list(level_bands(ranges, level_cases))
     for name, other in others.items():
         difference = _levels(order, loudest, *powers(other)) - levels({})
         for index, error in enumerate(np.abs(difference).tolist()):

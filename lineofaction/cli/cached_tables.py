@@ -25,7 +25,7 @@ from lineofaction.gearbox.schemas.meshes import MeshInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.tabled_scene import ComputedTables
 from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
-from model_studies.cached_file import cached_in
+from model_studies.cached_file import keep_cached, read_cached
 from model_studies.workers import InProcess, Workers
 from service.version import program_tag
 
@@ -51,14 +51,14 @@ class CachedTables:
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
-        return cached_in(
-            self.file(case),
-            SteDatabase.from_netcdf,
-            lambda: self.compute(case),
-            SteDatabase.to_netcdf,
-            DatabaseError,
-            keeps=lambda table: not table.n_failed,
-        )
+        file = self.file(case)
+        cached = read_cached(file, SteDatabase.from_netcdf, DatabaseError)
+        if cached is not None:
+            return cached
+        table = self.compute(case)
+        if not table.n_failed:
+            keep_cached(table, file, SteDatabase.to_netcdf)
+        return table
 
 
 def _analyzed(case: CheckedCase, report: Report, workers: Workers) -> SteDatabase:

@@ -12,7 +12,6 @@ import pytest
 
 from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.backlash import base_circle_backlash
 from fe_contact.geometry.printed_data import (
@@ -22,6 +21,7 @@ from fe_contact.geometry.printed_data import (
     PROFILE_SHIFT,
     backlash_rounding,
 )
+from fe_contact.involute import involute_function
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.schemas import Case, validated
 
