@@ -48,10 +48,10 @@ STEPS = 0.2
 
 @dataclass(frozen=True)
 class _Vibration:
-    """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings)."""
+    """Vibration in B blocks of a run: m meshes, b bearings, n orders of a mesh (first mesh for bearings)."""
 
     rms: FloatArray
-    """Of the transmission error about its mean, m. Shape (B, m)."""
+    """Root mean square of the transmission error about its mean, m. Shape (B, m)."""
     error_orders: FloatArray
     """Amplitudes of the transmission errors, m. Shape (B, m, n)."""
     force_orders: FloatArray
@@ -67,7 +67,7 @@ class BlockGrid:
     time: FloatArray
     """Output grid, s. Shape (T,)."""
     position: FloatArray
-    """Of the meshes in the kinematic motion, unwrapped base pitches. Shape (m, T)."""
+    """Position of the meshes in the kinematic motion, unwrapped base pitches. Shape (m, T)."""
     bounds: IntArray
     """First sample of each block, and the one behind its last. Shape (B, 2)."""
     orders: int
@@ -140,11 +140,13 @@ class TimeIntegration:
     title: str
     family: str
     tolerance: float | None = None
-    """m; None: the scene's own."""
+    """Tolerance of the time steps, m; None: the tolerance of the scene."""
     every: int = 1
     """Position nodes of the tables that are kept: every one, every second ..."""
     additions: tuple[str, ...] | None = None
-    """What effects may add; those that add something else, or nothing, are off. None: all."""
+    """Additions to the model that effects may make. An effect that makes another one, or none, is off. None:
+    all.
+    """
 
     def refusal(self, scene: Scene) -> str | None:
         """Say that fewer effects change nothing, or that a fixed step knows no tolerance."""
@@ -304,12 +306,14 @@ class FidelityResult(model_studies.FidelityResult):
 
     family: str
     rms_error: float = NAN
-    """Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of squares
-    over that of the reference. NaN: not known.
+    """Relative error of the rms of the transmission errors: over all blocks and meshes, root of the sum of
+    squared errors over that of the squares of the reference. NaN: not known.
     """
     transmission_error_orders: float = NAN
     bearing_force_orders: float = NAN
-    """`transmission_error_orders`, `bearing_force_orders`: Likewise of the amplitudes at the orders."""
+    """`transmission_error_orders`, `bearing_force_orders`: Relative errors of the amplitudes at the orders,
+    formed as `rms_error` is.
+    """
 
 
 @brief
@@ -328,7 +332,7 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     blocks: int
     """`orders`, `blocks`: Orders that were compared, and blocks of the run."""
     transmission_error_rms: FloatArray = field(metadata=in_unit("m", "block", "mesh"))
-    """Of the reference, m. Shape (blocks, meshes)."""
+    """Root mean square of the transmission errors in the reference, m. Shape (blocks, meshes)."""
 
 
 def frontier(

@@ -64,4 +64,4 @@ class AllowedError:
 
 
 RELATIVE = AllowedError(floor=0.0)
-"""What holds where no tolerance was requested."""
+"""Allowed error of a run without a requested tolerance. Its absolute part is zero."""

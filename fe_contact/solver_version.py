@@ -1,4 +1,4 @@
-"""What a result is made with: the contact solver, whose version is in every content hash, and packages."""
+"""Versions that a result is made with: the contact solver's, part of every content hash, and packages'."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ EDGES = 2.6
 RESIDUAL = 1e-8
 """Greatest relative residual of the dense solve."""
 MAX_PANELS = 8000
-"""So many take 7 GB at the peak."""
+"""Most panels of a hull: 8000 take 7 GB at the peak."""
 SHARES = {"operators": 0.98, "pressure": 0.02}
 """Usual shares in the time."""
 STAGE = "boundary elements"
@@ -69,16 +69,17 @@ class _SurfacePressure:
     """The solution of the exterior problem at one frequency."""
 
     pressure: ComplexArray
-    """At the nodes, Pa, complex peak amplitudes of e^{+i omega t} for the shapes with amplitude 1. Shape (N,
-    M).
+    """Pressure at the nodes for the shapes with amplitude 1, Pa: complex peak amplitudes of e^{+i omega t}.
+    Shape (N, M).
     """
     resistance: ComplexArray
-    """From the far field, kg/s. Shape (M, M)."""
+    """Resistance by the power in the far field, kg/s. Shape (M, M)."""
     surface_resistance: ComplexArray
-    """From pressure and velocity on the hull, Hermitian part; equal but for the discretization. Shape (M, M).
+    """Resistance by pressure and velocity on the hull, Hermitian part, kg/s: equal to `resistance` but for
+    the discretization. Shape (M, M).
     """
     residual: float
-    """Of the linear solve, relative."""
+    """Relative residual of the linear solve."""
 
     def imbalance(self, amplitudes: ComplexArray) -> float:
         """Return the power into the air at the hull less that in the far field, relative to the latter."""

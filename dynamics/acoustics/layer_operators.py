@@ -25,7 +25,9 @@ Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 6
 is more than the square of assembly: larger operators miss the cache more often.
 """
 BYTES, LIBRARY = 110.0, 1e8
-"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
+"""Memory of the operators over the square of the number of panels, bytes (5.9 GB measured with 7040 panels),
+and memory of NGSolve, bytes.
+"""
 
 
 def operators_cost(panels: int) -> Cost:

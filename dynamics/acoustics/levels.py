@@ -31,7 +31,7 @@ CASES = 64
 JOINTLY = "jointly"
 """Contribution of parameters that act on each other, and of extremes inside a range."""
 SEED = 22
-"""Of the joint cases: bands are the same each time."""
+"""Seed of the joint cases, by which equal inputs have equal bands."""
 
 
 def sound_power_level(power: ArrayLike) -> FloatArray:

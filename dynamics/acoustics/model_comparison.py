@@ -137,19 +137,19 @@ MODELS: tuple[RadiationModel, ...] = (
     ElementalRadiators(baffled=True),
     BoundaryElements(),
 )
-"""From coarse to fine."""
+"""Radiation models from coarse to fine."""
 
 
 @dataclass(frozen=True)
 class _ModelResult:
-    """What a radiation model says of a vibration."""
+    """Sound power of a vibration by one radiation model."""
 
     power: float
-    """W."""
+    """Sound power, W."""
     efficiency: float
     """Radiation efficiency, 1."""
     cost: WorkCost
-    """Predicted and measured."""
+    """Predicted and measured cost."""
 
     @property
     def level(self) -> float:
@@ -166,7 +166,7 @@ class ModelComparison:
     predicted: Mapping[str, Cost]
     """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
-    """By how much the level of each may be off, dB, from and to; below 0: too quiet."""
+    """Bounds of the error of each level, dB: lower and upper; a negative error is a level that is too low."""
 
     @property
     def errors(self) -> dict[str, float]:

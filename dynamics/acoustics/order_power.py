@@ -128,11 +128,11 @@ class OrderPower:
     """
 
     frequency: FloatArray
-    """Hz, above zero. Shape (K, B)."""
+    """Frequencies of the orders, Hz, above zero. Shape (K, B)."""
     power: FloatArray
-    """W. Shape (K, B)."""
+    """Sound power of the orders, W. Shape (K, B)."""
     floor: FloorPower | None = None
-    """Of orders that are not among these: totals and bands have it."""
+    """Sound power of orders that are not among these K; totals and bands include it."""
 
     def __post_init__(self) -> None:
         frequency, power = np.asarray(self.frequency, dtype=float), np.asarray(self.power, dtype=float)

@@ -44,13 +44,13 @@ class Recording:
     """
 
     samples: FloatArray
-    """In `unit`. Shape (N,)."""
+    """Samples of the signal, in `unit`. Shape (N,)."""
     sample_rate: int
-    """Hz."""
+    """Sample rate, Hz."""
     quantity: str
     unit: str
-    """`quantity`, `unit`: What it is, e.g. ``"sound pressure at 1 m"`` in ``"Pa"``. A bearing force is no
-    sound pressure.
+    """`quantity`, `unit`: Quantity of the signal and its unit, e.g. ``"sound pressure at 1 m"`` in ``"Pa"``.
+    A bearing force is no sound pressure.
     """
 
     def __post_init__(self) -> None:

@@ -59,26 +59,27 @@ def _row_runs(rows: _SparseRows) -> RowRuns:
 
 
 class SparseMatrices(NamedTuple):
-    """What the compiled loops multiply with."""
+    """Sparse matrices of a system for the products in compiled loops."""
 
     damping: _SparseRows
     stiffness: _SparseRows
     direction: _SparseRows
     turn: _SparseRows
-    """`damping`, `stiffness`, `direction`, `turn`: Of `SystemArrays`. The first two have the same entries:
-    those where either matrix is not 0.
+    """`damping`, `stiffness`, `direction`, `turn`: Matrices of `SystemArrays`. The first two have the same
+    entries: all at which either matrix is not 0.
     """
     bodies: _SparseRows
     """The entries of `direction` before the modal freedoms."""
     mobility: _SparseRows
     """Inverse of the mass matrix."""
     coupling: _SparseRows
-    """Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
-    entries joins. Weights are 1.
+    """Pattern of the inverse of any sum of mass, damping and stiffness: an entry for any two freedoms that a
+    chain of entries joins. Weights are 1.
     """
     coupling_runs: RowRuns
     resistance_runs: RowRuns
-    """`coupling_runs`, `resistance_runs`: Of `coupling`, and of `damping` and `stiffness`."""
+    """`coupling_runs`, `resistance_runs`: Runs of the rows of `coupling`, and of `damping` and `stiffness`.
+    """
     modal: ModalFreedoms
     """The last freedoms, where each of them is alone in the first two matrices."""
 
@@ -136,7 +137,7 @@ def joined_by_chains(entries: BoolArray) -> BoolArray:
 
 
 NO_ENTRIES = sparse_matrices(_NONE, _NONE, _NONE, _NONE, _NONE)
-"""Of a system without freedoms."""
+"""Matrices of a system without freedoms."""
 
 
 @inner

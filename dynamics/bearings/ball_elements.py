@@ -36,7 +36,7 @@ DIRECTIONS, AXIAL = 5, 2
 
 @dataclass(frozen=True)
 class RowPlacement:
-    """What a row's geometry does not say."""
+    """Data of a row of elements beside its geometry: coordinates, damping and seats."""
 
     copies: int = 1
     """Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing."""
@@ -54,7 +54,7 @@ class BallElements(NamedTuple):
     """Balls of l bearings."""
 
     balls: IntArray
-    """Their number. Shape (l,)."""
+    """Number of balls of each bearing. Shape (l,)."""
     stiffness: FloatArray
     """c of a ball between both grooves, N/m^1.5. Shape (l,)."""
     damping: FloatArray

@@ -38,12 +38,12 @@ class Reaction:
     """The answer of a bearing of Z elements in L laminae each (balls: 1) to a displacement."""
 
     force: FloatArray
-    """Of the inner ring on the outer, N, N m. Shape (5,)."""
+    """Force and moment of the inner ring on the outer, N and N m. Shape (5,)."""
     tangent: FloatArray
-    """Its derivative in the displacement, symmetric. Shape (5, 5)."""
+    """Derivative of the force in the displacement, symmetric. Shape (5, 5)."""
     viscous: FloatArray
-    """Its derivative in the rate of displacement if the damping of an element is its load times 1 s/m. Shape
-    (5, 5).
+    """Derivative of the force in the rate of displacement, if the damping of an element is its load times 1
+    s/m. Shape (5, 5).
     """
     energy: float
     """Stored in the contacts, J."""

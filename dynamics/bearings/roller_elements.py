@@ -27,15 +27,15 @@ class RollerElements(NamedTuple):
     """Rollers of l bearings."""
 
     rollers: IntArray
-    """Their number. Shape (l,)."""
+    """Number of rollers of each bearing. Shape (l,)."""
     stiffness: FloatArray
     """c of one lamina between both raceways, N/m^(10/9). Shape (l,)."""
     damping: FloatArray
     """Damping of a lamina over its load, s/m. Shape (l,)."""
     cosine: FloatArray
     sine: FloatArray
-    """`cosine`, `sine`: Of the contact angle; the normal has these parts along radius and axis. Shape (l,)
-    each.
+    """`cosine`, `sine`: Cosine and sine of the contact angle, the parts of the normal along radius and axis.
+    Shape (l,) each.
     """
     arm: FloatArray
     """Radius of the circle of the rollers' centers times the sine, over the lever of tilts. Shape (l,)."""

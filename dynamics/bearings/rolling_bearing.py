@@ -167,7 +167,7 @@ class _Row:
 @described
 @dataclass(frozen=True)
 class CatalogLine:
-    """What a catalog says of a deep groove ball bearing, and its clearance, which it does not."""
+    """Catalog data of a deep groove ball bearing, and its clearance, which no catalog states."""
 
     bore: float = required(BORE)
     outside_diameter: float = required(OUTSIDE)

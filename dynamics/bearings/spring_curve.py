@@ -21,10 +21,10 @@ DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
 
 
 class SpringCurveLaws(NamedTuple):
-    """Curves."""
+    """Force-displacement curves of l bearings."""
 
     force: Cubics
-    """By displacement, m or rad; N, N m."""
+    """Force over displacement: N over m, or N m over rad."""
     energy: FloatArray
     """Energy at the start of each piece less that at no displacement, J. Shape (S,)."""
     lever: FloatArray
@@ -127,7 +127,7 @@ class SpringCurve(SceneBearingLaw):
 
     @property
     def fixed_direction(self) -> str | None:
-        """Its direction, unless that is the axis."""
+        """Name of the direction field, unless the curve acts along the axis (None)."""
         return None if self.direction == "z" else "direction"
 
     def pieces(self) -> tuple[FloatArray, FloatArray]:

@@ -55,16 +55,18 @@ def fit_pressure(inside: Cylinder, around: Cylinder, interference: float) -> flo
 
 @dataclass(frozen=True)
 class WarmRings:
-    """What temperatures do to a row."""
+    """Play and interference of a row at temperature."""
 
     play: float
     """Change of the row's clearance as it counts it, m."""
     interference: tuple[float, float] | None
-    """Of the inner ring on the shaft and the outer in its bore, m; < 0: loose. None: not stated."""
+    """Interference of the inner ring on the shaft and of the outer ring in its bore, m; < 0: loose. None: no
+    fits are stated.
+    """
 
 
 class _Row(Protocol):
-    """What play needs of a row, in m and rad."""
+    """Geometry of a row that its play follows from, in m and rad."""
 
     @property
     def pitch_diameter(self) -> float: ...

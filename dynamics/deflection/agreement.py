@@ -19,9 +19,11 @@ TOLERANCE = 1e-6
 SMALL = 1e-6
 """Misalignment below which a change counts over this one, m."""
 PASSES = 6
-"""Most passes."""
+"""Most passes between table and deflection."""
 MARGIN, MIN_MARGIN = 0.5, 2e-6
-"""How far the first knots lie beyond the misalignments without contact: part of their range, least in m."""
+"""Distance of the first knots beyond the range of the misalignments without contact: over that range, and
+least distance, m.
+"""
 CLOSEST = 2e-8
 """Least distance of knots, m: a closer one takes the place of the one before."""
 

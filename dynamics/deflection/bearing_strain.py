@@ -53,19 +53,19 @@ def _evaluate(system: SystemArrays, local: LocalState, element: int) -> None:
 class BearingStrain:
     """Displacements x, y, z (m), tilt_x, tilt_y (rad) at b bearings, each (b, 5); their sum is the shaft's.
 
-    Of a planet bearing: of the planet against its pin.
+    Displacements at a planet bearing are those of the planet relative to its pin.
     """
 
     elastic: FloatArray
-    """What the bearing yields under its load. Shape (b, 5)."""
+    """Elastic displacement in the bearing under its load. Shape (b, 5)."""
     clearance: FloatArray
-    """What it moves before anything presses back. Shape (b, 5)."""
+    """Displacement through the clearance, before the bearing carries load. Shape (b, 5)."""
     seat: FloatArray
-    """Of its seat in an elastic housing. Shape (b, 5)."""
+    """Displacement of the seat in an elastic housing. Shape (b, 5)."""
 
     @property
     def shaft(self) -> FloatArray:
-        """Of the shaft's section in the bearing, (b, 5)."""
+        """Displacement of the shaft's section in the bearing, (b, 5)."""
         return self.elastic + self.clearance + self.seat
 
 

@@ -123,22 +123,24 @@ class MeshAlignment:
 
     name: str
     force: float = field(metadata=in_unit("n"))
-    """Transverse, N."""
+    """Transverse mesh force, N."""
     misalignment: float = field(metadata=in_unit("m"))
-    """m."""
+    """Misalignment, mean over the cycle, m."""
     least: float = field(metadata=in_unit("m"))
     largest: float = field(metadata=in_unit("m"))
     """`least`, `largest`: Misalignment over the cycle, m."""
     causes: FloatArray = field(metadata=in_unit("m", "cause"))
     """Parts of the misalignment by `CAUSES`, m. Shape (6,)."""
     center_distance_change: float = field(metadata=in_unit("m"))
-    """m, with what the scene sets."""
+    """Change of the center distance, with the change that the scene sets, m."""
     lead_torsion: float = field(metadata=in_unit("m"))
     """Growth of the gap over the common face width by the twist of both shafts along it, m; not part of the
     misalignment.
     """
     load_arm: float = field(metadata=in_unit("m"))
-    """Of the mesh force from mid-face of the table's driving gear, m; NaN: it acts at mid-face."""
+    """Axial distance of the mesh force from mid-face of the table's driving gear, m; NaN: the force acts at
+    mid-face.
+    """
     in_table: bool = True
     """Whether the table has the misalignments of the whole cycle, or no such axis."""
 

@@ -28,7 +28,7 @@ class Verdict:
     possible: bool
     """False: the scene has no such freedom or data, and requesting it changes nothing."""
     reason: str
-    """In words."""
+    """Reason for the verdict, in words."""
     influence: float
     """Static displacement along the line of action that the effect adds at the nominal force, m."""
 
@@ -37,13 +37,15 @@ class Effect:
     """One optional piece of physics."""
 
     name: ClassVar[str]
-    """What a scene calls it."""
+    """Name of the effect in a scene."""
     cost: ClassVar[str]
-    """What it costs, in words."""
+    """Cost of the effect, in words."""
     adds: ClassVar[tuple[str, ...]] = ()
-    """What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`."""
+    """Additions of the effect to the model: names of `FREEDOMS` that a rotor gets, names of `additions`."""
     linear: ClassVar[bool] = True
-    """Whether linear theory estimates its influence; False: of impacts it says nothing."""
+    """Whether linear theory estimates the influence of the effect; False for effects on impacts, of which it
+    knows nothing.
+    """
     at_rest: ClassVar[bool | None] = None
     """Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
     one of motion; None: where the scene calls for it, as in a run.

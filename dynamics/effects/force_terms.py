@@ -22,7 +22,7 @@ class FlankTerms:
     """A flank of the plane and what effects add to it."""
 
     table: MeshTable
-    """What it reads: of the plane, at one operating point."""
+    """Table of the flank, at one operating point."""
     rows: tuple[FloatArray | None, FloatArray | None, FloatArray | None] = (None, None, None)
     """Gradients of each kind of row in all rotors' freedoms; None: it has none. Three (k, N) arrays."""
     follows: tuple[int, int] = (0, 0)
@@ -53,7 +53,7 @@ class FlankInSpace:
 
     mechanism: Mechanism
     index: int
-    """Its mesh."""
+    """Index of the mesh in the scene."""
     coast: bool
     """Whether it is the coast flank."""
 
@@ -69,7 +69,7 @@ class FlankInSpace:
 
     @property
     def line(self) -> LineOfAction:
-        """Its line of action."""
+        """Line of action of the flank."""
         return line_of_action(self.mechanism.scene, self.index, self.sense)
 
     @property

@@ -22,7 +22,7 @@ UNSHARED = ("outputs", "quantity")
 
 @dataclass(frozen=True)
 class _Verdicts:
-    """What the parts of a scene call for, made when it is first read."""
+    """Verdicts of all parts of a scene, made when first read."""
 
     make: Callable[[], Sequence[Verdict]]
 
@@ -39,14 +39,14 @@ class _LedgerEntry:
     part: str
     """The shaft or the mesh that it is decided for."""
     choice: str
-    """What the scene requests: ``"auto"``, ``"on"``, ``"off"``."""
+    """Choice of the scene: ``"auto"``, ``"on"``, ``"off"``."""
     verdicts: _Verdicts
-    """Of all parts; `index` is that of this one."""
+    """Verdicts of all parts; the one of this part has the number `index`."""
     index: int
 
     @property
     def verdict(self) -> Verdict:
-        """What the scene calls for."""
+        """Verdict of this part."""
         return self.verdicts.made[self.index]
 
     @property

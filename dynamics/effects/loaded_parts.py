@@ -58,7 +58,10 @@ class LoadedRotor:
 
     @property
     def applied(self) -> tuple[float, ...]:
-        """Where forces and unbalances act across it: distances from its center of mass, m; weight: at 0."""
+        """Distances along the axis from the rotor's center of mass to its lateral forces and unbalances, m.
+
+        Weight acts at 0.
+        """
         scene, body = self.mechanism.scene, self.rotor
         across = [part for part in scene.forces if any((*part.force[:2], *part.moment[:2]))]
         parts: list[OnShaft] = [*across, *scene.unbalances]

@@ -41,13 +41,13 @@ class Element:
 
     law: Law
     entry: int
-    """Its index in the arrays of its law."""
+    """Index of the element in the arrays of its law."""
     mesh: int
-    """The mesh whose position it reads; -1: none."""
+    """Mesh whose position the element reads; -1: none."""
     gradient: FloatArray
-    """In the six freedoms of all r rotors. Shape (p, N)."""
+    """Gradient of the local coordinates in the six freedoms of all r rotors. Shape (p, N)."""
     offset: FloatArray
-    """m. Shape (p,)."""
+    """Local coordinates at q = 0, m. Shape (p,)."""
     drift: FloatArray | None = None
     """Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0. Shape (p,
     k).
@@ -69,7 +69,7 @@ class Elements(NamedTuple):
     first: IntArray
     """First row of each element, and R. Shape (E + 1,)."""
     mesh: IntArray
-    """From m on the turn of frames and cages it reads. Shape (E,)."""
+    """Mesh whose position each element reads; from m on the frame or cage whose turn it reads. Shape (E,)."""
     offset: FloatArray
     """`offset`, `stiffness`: The stiffness is for error norms and first guesses. Shape (R,) each."""
     drift: FloatArray

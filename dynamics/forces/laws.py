@@ -86,7 +86,7 @@ class Compiled(NamedTuple):
     revolution. None: no energy.
     """
     inside: tuple[Routine, ...] = ()
-    """What both call."""
+    """Compiled routines that `force` and `energy` both call."""
 
     @property
     def routines(self) -> tuple[Routine, ...]:

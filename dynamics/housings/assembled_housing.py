@@ -42,7 +42,7 @@ class _Freedoms:
     free: IntArray
     """The free nodes."""
     faces: tuple[_RigidFace, ...]
-    """Those that move. Six freedoms each: x, y, z, rotations about x, y, z through its point."""
+    """Rigid faces that move. Each has six freedoms: x, y, z, rotations about x, y, z through its point."""
 
     def face(self, name: str) -> IntArray:
         """Return the six freedoms of a rigid face."""
@@ -109,7 +109,7 @@ class AssembledHousing:
     """M x'' + C x' + K x = B' f; q = B x."""
 
     freedoms: _Freedoms
-    """x, f of them."""
+    """Freedoms x; f in all."""
     mass: sp.csr_array
     stiffness: sp.csr_array
     """`mass`, `stiffness`: With the mounts' stiffness. (f, f) sparse arrays."""
@@ -121,7 +121,7 @@ class AssembledHousing:
     loose: FloatArray
     """Rigid motions that feet and mounts do not hold; six without any. Shape (f, k)."""
     body: RigidBody
-    """Of the mesh."""
+    """Mass, center and inertia of the mesh as a rigid body."""
 
 
 def assemble(housing: MeshedHousing) -> AssembledHousing:

@@ -70,7 +70,7 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
 
 
 class _Content(NamedTuple):
-    """What a file holds: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
+    """Content of a mesh file: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
 
     points: FloatArray
     tetrahedra: IntArray

@@ -71,7 +71,7 @@ class FlatFace:
 
 @dataclass(frozen=True)
 class StepSolid:
-    """What the one solid of a STEP file is, in the frame of the file."""
+    """Volume, surface, bores and planes of the one solid of a STEP file, in the frame of the file."""
 
     volume: float
     surface: float

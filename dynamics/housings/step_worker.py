@@ -30,7 +30,9 @@ RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3
 ELEMENTS_A_TURN = 12
 DRAWN_A_TURN, DRAWN_ELEMENTS, DRAWN_SMALLEST = 16, 40, 400
-"""Of a drawn surface: elements a turn; across the body at most, where it is flat and where it is curved."""
+"""Elements of a drawn surface: around a full turn of curvature; across the body at least where it is flat,
+and at most where it is curved.
+"""
 FRONTAL_DELAUNAY = 6
 WORST = 0.05
 """Quality of a tetrahedron (its inverse condition number, 1 if it is regular) below which a mesh is made

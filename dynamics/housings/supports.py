@@ -1,4 +1,4 @@
-"""Where a housing is loaded and held: its bearing seats, and its feet, fixed or on elastic mounts."""
+"""Supports and loads of a housing: its bearing seats, and its feet, fixed or on elastic mounts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dynamics.solid_housing import Ring
 from dynamics.types import FloatArray
 
 MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
-"""In the seat's own axes, z along the bore."""
+"""Directions of motion in the seat's own axes, z along the bore."""
 
 PRECISION = 1e-6
 """Relative; a data sheet or a finite-element program writes its matrices with that many digits."""

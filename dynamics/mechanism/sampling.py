@@ -35,29 +35,31 @@ class Sampling:
     """The sampling of a run."""
 
     rate: float
-    """Hz of the output grid."""
+    """Sample rate of the output grid, Hz."""
     chosen: str
-    """Why this rate."""
+    """Reason for the rate, in words."""
     mesh_frequency: float
     mode_frequency: float
-    """`mesh_frequency`, `mode_frequency`: Hz: the highest mesh frequency of the kinematic motion; the highest
-    resolved mode that the meshes excite, 0 where there is none.
+    """`mesh_frequency`, `mode_frequency`: Highest mesh frequency of the kinematic motion, and highest
+    resolved mode that the meshes excite (0: none), Hz.
     """
     mesh_orders: int
-    """Wanted."""
+    """Number of mesh orders that the output resolves."""
     band: float
-    """Hz: up to it the output is made where its rate is chosen; orders and modes reach beyond it where it is
-    the lower one.
+    """Frequency up to which an automatic rate resolves the output, Hz. Orders and modes reach beyond it where
+    it is the lower one.
     """
     pass_frequency: float
     stop_frequency: float
-    """`pass_frequency`, `stop_frequency`: Hz: up to the first the filter passes, from the second on it stops;
-    what lies between may fold, to above the first.
+    """`pass_frequency`, `stop_frequency`: Edges of the filter, Hz: it passes frequencies up to the first and
+    stops those from the second on. Frequencies between both may fold, to above the first.
     """
     stop_band: float
-    """dB; 0: the output are points of the motion, unfiltered."""
+    """Attenuation of the filter from `stop_frequency` on, dB; 0: the output are points of the motion,
+    unfiltered.
+    """
     inner_rate: float
-    """Hz of the grid on which the steps are evaluated, filtered, and searched for peaks."""
+    """Rate of the grid on which the steps are evaluated, filtered, and searched for peaks, Hz."""
     taps: int
     """Length of the filter in inner samples: linear phase, its delay compensated."""
 

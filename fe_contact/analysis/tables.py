@@ -1,7 +1,4 @@
-"""Positions of a table, and what is solved at them.
-
-A table as solved, before its errors are known: plan, positions, solutions.
-"""
+"""The solved table of a run, before its errors are known: plan, positions, solutions."""
 
 from __future__ import annotations
 
@@ -40,26 +37,28 @@ from model_studies.workers import InProcess, pays
 
 @dataclass(frozen=True)
 class SolvedTable(SolvedRun):
-    """One run up to its table."""
+    """A run up to its solved table."""
 
     decision: Decision
     """Model and discretization."""
     prediction: Prediction
-    """What it was expected to cost."""
+    """Predicted cost of the run."""
     nodes: PositionNodes
     contacts: Sequence[SolvedContact]
     support: Sequence[SolvedContact]
-    """`contacts`, `support`: Of every place at the loads of the table, and at the support loads."""
+    """`contacts`, `support`: Contacts of every operating point at the loads of the table, and at the support
+    loads.
+    """
     table: SteDatabase
-    """Its errors not yet estimated."""
+    """Table whose errors are not yet estimated."""
     condition: FloatArray | None = None
     """Condition numbers of the compliances, where workers found them."""
     derived: DerivedCycle | None = None
-    """What came of derivatives, where they were tried."""
+    """Outcome of the derivatives over the cycle; None where they were not tried."""
 
     @property
     def edge_depths(self) -> list[FloatArray]:
-        """See `SolvedRun`; they were found with the solutions."""
+        """Largest depths of tip edges inside the mating flanks at every operating point, (L,) in m."""
         return [contact.edge_depth for contact in self.contacts]
 
 

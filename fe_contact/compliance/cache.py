@@ -27,7 +27,9 @@ from host import lock
 CACHED_KEYS = 64
 """Hashes of what was requested last, kept in memory."""
 PATIENCE_S = 600.0
-"""How long another process may take for a result before it is computed here too: it may have been stopped."""
+"""Longest wait for a result that another process computes, s. That process may have been stopped: after this
+time the result is computed here too.
+"""
 _LOOK_S = 0.05
 NOT_ARRAYS = ("facts", "checksum")
 Cached = TypeVar("Cached", FlankCompliance, FlankCompliance3D, UnitRootStress)

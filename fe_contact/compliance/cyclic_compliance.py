@@ -1,4 +1,4 @@
-"""From a gear to its flank compliance over the face width: mesh, condense a sector, close the ring, check."""
+"""Flank compliance of a gear over the face width: mesh, condense a sector, close the ring, check."""
 
 from __future__ import annotations
 

@@ -46,9 +46,9 @@ class EliminationTree:
     """The order of an elimination."""
 
     root: Front
-    """Its border are the kept freedoms."""
+    """Root of the tree. Its border holds the kept freedoms."""
     order: IntArray
-    """Position of each freedom in the elimination; kept ones are last, in the order they were requested.
+    """Position of each freedom in the elimination; kept freedoms are last, in the order they were requested.
     Shape (n,).
     """
 

@@ -1,4 +1,4 @@
-"""From a gear to its flank compliance in the transverse plane: mesh, assemble, condense, check."""
+"""Flank compliance of a gear in the transverse plane: mesh, assemble, condense, check."""
 
 from __future__ import annotations
 

@@ -34,10 +34,10 @@ class _KeyUpdate(NamedTuple):
     """The contribution of the key to the compliance of the ring."""
 
     rows: FloatArray
-    """By tooth from -span to span. Shape (2 span + 1, r, nf)."""
+    """Rows of the update by tooth from -span to span. Shape (2 span + 1, r, nf)."""
     core: FloatArray
-    """The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core @ rows[o]``, m/N. Shape
-    (r, r).
+    """Core of the update, m/N. The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core
+    @ rows[o]``. Shape (r, r).
     """
 
 

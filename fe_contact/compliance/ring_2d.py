@@ -18,11 +18,11 @@ class Ring:
     """Condensed stiffness of one gear, bore clamped, per unit face width."""
 
     mesh: GearMesh
-    """Its mesh."""
+    """Mesh of the gear."""
     sector: CondensedSector
-    """One tooth."""
+    """Condensed sector of one tooth."""
     hub_matrix: sp.csc_array | None
-    """Stiffness of the hub on its own freedoms."""
+    """Stiffness of the hub on its own freedoms; None without a hub."""
     matrix: sp.csc_array
     """Condensed stiffness of the whole gear. (n, n) sparse array."""
     position: IntArray

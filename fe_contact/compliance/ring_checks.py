@@ -30,9 +30,9 @@ class _FlankLoad:
     """Inward normal forces on the involute of one tooth."""
 
     forces: FloatArray
-    """At the flank's nodes, N/m. Shape (k,)."""
+    """Inward normal forces at the flank's nodes, N/m. Shape (k,)."""
     moment: float
-    """Their moment about the gear's axis, N: every normal of an involute touches the base circle."""
+    """Moment of the forces about the gear's axis, N. Every normal of an involute touches the base circle."""
 
     def work(self, matrix: FloatArray) -> float:
         """Return q' S q with S the middle diagonal block of a flank compliance."""

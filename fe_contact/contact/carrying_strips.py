@@ -16,7 +16,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 _POINTS = 8
-"""Of a strip at which a change is spread over the flank."""
+"""Points of a strip at which a change of the flanks is sampled."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,13 @@ class CarryingStrips:
     shape: tuple[int, int, int]
     """Numbers of positions, loads and candidates."""
     index: IntArray
-    """Of each among all of these, flattened. Shape (k,)."""
+    """Index of each strip among all positions, loads and candidates, flattened. Shape (k,)."""
     strips: Strips
     closing: ClosingLag
     turned: TurnedForces
-    """Of all candidates."""
+    """Motions of the bodies by turned forces, of all candidates."""
     following: FollowingPatches | None
-    """Of all candidates; None where patches stay."""
+    """Motions of the load patches, of all candidates; None where patches stay."""
     normal: float
     """Normal approach taken away per depth removed in the transverse section."""
     weight: FloatArray
@@ -41,7 +41,7 @@ class CarryingStrips:
     each.
     """
     added_arm: FloatArray
-    """Arm of a little more load, m. Shape (P, L)."""
+    """Arm of a small further load, m. Shape (P, L)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:

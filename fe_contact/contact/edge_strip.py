@@ -49,13 +49,13 @@ class EdgeStrips(NamedTuple):
     radius: FloatArray
     """Relative radius in the normal section, m."""
     softness: FloatArray
-    """4/(pi E*) over the width, 1/N m."""
+    """Softness of a half plane, 4/(pi E*), over the width, 1/N m."""
     patch: FloatArray
     """Distance of the patch's centroid from the edge, m."""
     missing: FloatArray
-    """Part of the corner that the local law has not, 0 to 1."""
+    """Part of the corner's softness that is missing in the local law, 0 to 1."""
     corner: FloatArray
-    """What the corner yields over a half plane, over the width, m/N."""
+    """Additional softness of the corner beyond a half plane, over the width, m/N."""
     length: FloatArray
     """Half-width of the patch on a half plane, m."""
 

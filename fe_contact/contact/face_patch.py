@@ -243,15 +243,15 @@ class _SliceForces(NamedTuple):
 
     low: IntArray
     width: IntArray
-    """`low`, `width`: First place among those freedoms that each slice loads, and how many from there on.
-    Shape (n,) each.
+    """`low`, `width`: First needed freedom that each slice loads, and number of freedoms from there on. Shape
+    (n,) each.
     """
     start: IntArray
-    """Sums of the widths before each. Shape (n + 1,)."""
+    """Sum of the widths of all slices before each slice. Shape (n + 1,)."""
     force: FloatArray
-    """Those of slice i, (P, width), from P start[i] on."""
+    """Forces of the slices one after the other: those of slice i, (P, width), begin at P start[i]."""
     lever: FloatArray
-    """Shape (P, n)."""
+    """Lever of the load of each slice. Shape (P, n)."""
 
 
 @inner()

@@ -1,4 +1,4 @@
-r"""How much more a body gives way near its free end than an endless half plane does.
+r"""Additional approach of a body near its free end beyond that of an endless half plane.
 
 A line load that runs to the free end of a body presses on a quarter space. Its mirror image in the end plane
 frees that plane of shear; the normal stress that is left there is freed by loads that amplify the image by a

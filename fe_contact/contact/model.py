@@ -83,8 +83,8 @@ class MeetingTeeth:
 
     pair: ParallelAxes
     meeting: IntArray
-    """Which pair since position 0. Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at
-    position k, with the k-th next teeth of both gears.
+    """Number of the pair that meets, counted from position 0. Meeting 0 is pair 0 at position 0. Meeting k
+    touches at the pitch point at position k, with the k-th next teeth of both gears.
     """
     roll_1: FloatArray
     roll_2: FloatArray

@@ -1,4 +1,4 @@
-"""Touching points of plain involutes, with or without tip edges, and what is known of a touching point."""
+"""Touching points of plain involutes, with or without tip edges, and their local geometry."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Touch:
     s_2: FloatArray
     """`s_1`, `s_2`: Flank coordinates, m."""
     gap: FloatArray
-    """On the line of action, m; infinite = the pair cannot touch."""
+    """Gap on the line of action, m; infinite where the pair cannot touch."""
     radius: FloatArray
     """Relative radius of curvature in the transverse section, m."""
     lever_1: FloatArray
@@ -39,13 +39,15 @@ class Touch:
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
-    """`offset`, `jump`, `bend`: Its breaks. Shape (P, n, B) each."""
+    """`offset`, `jump`, `bend`: Breaks of the gap: place, slope and curvature from there on. Shape (P, n, B)
+    each.
+    """
     shift: FloatArray
-    """How far modifications move the touching point, or the middle of the strip, towards tip 1, m."""
+    """Way by which modifications move the touching point, or the middle of the strip, towards tip 1, m."""
     approach_error: FloatArray
     """Error of the approach on rough flanks; see `RoughStrip`."""
     lag: FloatArray
-    """Lag of gear 2 that closes a depth removed there, over that depth."""
+    """Lag of gear 2 that closes a removed depth at the touching point, over that depth."""
     slope_1: FloatArray
     slope_2: FloatArray
     """`slope_1`, `slope_2`: How fast what is removed from each flank grows over its roll length towards the

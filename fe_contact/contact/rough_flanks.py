@@ -1,4 +1,4 @@
-"""How rough flanks may be: surfaces on all teeth of a gear, and what differs from tooth to tooth."""
+"""Bounds of the roughness of flanks: surfaces on all teeth of a gear, and gaps of single teeth."""
 
 from __future__ import annotations
 

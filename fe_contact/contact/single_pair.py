@@ -43,7 +43,7 @@ class _SinglePairs:
     share: FloatArray
     """Part of the force on each candidate; sums to 1 where there are any. Shape (Q, J, m/J)."""
     length: FloatArray
-    """Of the contact lines, m; 0 where the pair is not on the line of action. Shape (Q, J)."""
+    """Length of the contact lines, m; 0 where the pair is not on the line of action. Shape (Q, J)."""
 
     @classmethod
     def of(cls, problem: ContactProblem, usable: BoolArray) -> _SinglePairs:

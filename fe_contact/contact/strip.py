@@ -34,10 +34,12 @@ from fe_contact.types import FloatArray
 from host.loops import inner, njit
 
 _TOLERANCE = 1e-9
-"""Of strip and middle over the strip; the approach is stationary in both."""
+"""Error of strip and middle over the strip that ends an iteration. The approach is stationary in both."""
 _STEPS = 100
 _NEWTON_STEPS, _EDGE_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
-"""Of strip and middle at once, and their last step over the strip, which leaves its square."""
+"""Most steps of Newton's method for strip and middle together, without and with an edge, and the last step
+over the strip that ends it. The error left is of the order of the square of that step.
+"""
 _TILTED = 0.1
 """Way of the middle by which its response to tilt is found, over half the strip."""
 _NEAR = 1e-6

@@ -88,14 +88,14 @@ class Strips:
 
 @dataclass(frozen=True)
 class ClosingLag:
-    """How small gaps change the lag that closes the rigid flanks, beside their depth under the strips."""
+    """Change of the lag that closes the rigid flanks, by small gaps, beyond their depth under the strips."""
 
     strips: Strips
-    """Of k contacts."""
+    """Strips of k contacts."""
     excess: FloatArray
     """Normal approach taken away per depth removed at the touching point, less that depth. Shape (k,)."""
     lag: FloatArray
-    """The same per slope of gear 2's flank (`flank_slope`): how far that flank lags, m. Shape (k,)."""
+    """Lag of gear 2 per slope of its flank (`flank_slope`), m. Shape (k,)."""
     way: FloatArray
     """Way of the touching point per slope of the gap, m; zero where an edge or a break holds it. Shape (k,).
     """
@@ -106,7 +106,7 @@ class ClosingLag:
 
     @classmethod
     def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
-        """Take those of candidates at positions and numbers (k,)."""
+        """Return the closing lag of candidates at positions and numbers (k,)."""
         touch, arm = candidates.touch, candidates.motion_arm[at]
         lag = arm * np.where(touch.low[at] < 0.0, touch.gap[at] * touch.lag[at], 0.0)
         near_break = (np.abs(touch.offset[at]) < _AT_TOUCH * STEP * touch.radius[at][:, None]).any(axis=1)
@@ -185,23 +185,23 @@ class ClosingLag:
 
 @dataclass(frozen=True)
 class FollowingPatches:
-    """How patches follow the slope of small gaps, and what motions of the bodies that adds."""
+    """Motions of load patches that follow slopes of small gaps, and displacements of bodies by them."""
 
     problem: ContactProblem
     slice_force: FloatArray
     """Forces on the slices, N. Shape (P, L, n)."""
     at_rest: Strips
-    """Strips under a small load of all candidates, by which patches follow; k = P m."""
+    """Strips of all candidates under a small load, which the patches follow; k = P m."""
     index: IntArray
-    """Of each among all positions and candidates, flattened. Shape (k,)."""
+    """Index of each strip among all positions and candidates, flattened. Shape (k,)."""
     way: FloatArray
-    """Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean. Shape
-    (k,).
+    """Motion of the patch of each strip towards tip 1 per slope of the gap, m; patches of a slice move by
+    their mean. Shape (k,).
     """
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
-        """Take those of a solved problem."""
+        """Return the moving patches of a solved problem."""
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         touch, rest = c.touch, c.strips
         free = (rest.slope == 0.0) & (np.abs(touch.shift) < c.slices.law_length) & np.isfinite(c.gap)
@@ -243,20 +243,20 @@ class FollowingPatches:
 
 @dataclass(frozen=True)
 class TurnedForces:
-    """How slopes of small gaps change the motions of the bodies by the forces that they turn."""
+    """Changes of the displacements of bodies by forces that turn with the slopes of small gaps."""
 
     problem: ContactProblem
     slice_force: FloatArray
     displacement: FloatArray
-    """`slice_force`, `displacement`: Forces on the slices, N, and what they move, m. Shape (P, L, n)."""
+    """`slice_force`, `displacement`: Forces on the slices, N, and their displacements, m. Shape (P, L, n)."""
     closing: ClosingLag
-    """Of the k candidates whose slices carry."""
+    """Lag of the k candidates whose slices carry."""
     index: IntArray
-    """Of each among all positions and candidates, flattened. Shape (k,)."""
+    """Index of each candidate among all positions and candidates, flattened. Shape (k,)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> TurnedForces:
-        """Take those of a solved problem."""
+        """Return the turned forces of a solved problem."""
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(loaded & np.isfinite(c.gap))

@@ -1,4 +1,4 @@
-"""Touching points of flanks that differ from tooth to tooth, beside those that all teeth have in common."""
+"""Touching points of flanks that differ from tooth to tooth, from those that all teeth have in common."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 _AT_ONCE = 16_384
-"""Candidates whose gaps are found together: what they take stays in the cache of the processor."""
+"""Candidates whose gaps are computed together: their arrays stay in the cache of the processor."""
 _SLOPES = ("lag", "slope_1", "slope_2", "turn_1", "turn_2")
 _MOVING = ("s_1", "s_2", "gap", "approach_error", *_SLOPES, *Gap._fields)
-"""What the gaps of teeth change of touching points."""
+"""Arrays of touching points that the gaps of single teeth change."""
 
 
 class _Part(NamedTuple):
@@ -57,16 +57,16 @@ def tooth_touch(
     Parameters
     ----------
     touch : Touch
-        Of the flanks that all teeth have in common, with the gaps of the model.
+        Touching points of the flanks that all teeth have in common, with the gaps of the model.
     meeting : ndarray of int, shape (R, m)
-        Which pair of teeth meets there; see `MeetingTeeth`.
+        Number of the pair of teeth that meets at each candidate; see `MeetingTeeth`.
     face : ndarray, shape (m,)
         Distance of each candidate from the pinion's mid-face, m.
 
     Notes
     -----
-    Load patches stay where the common flanks touch: `shift` is theirs. What differs from tooth to tooth
-    counts as a lag: a pitch error of gear 2 turns its flank, and as much of a lag closes it on any slope.
+    Load patches stay where the common flanks touch: they define `shift`. Deviations of single teeth count
+    as a lag: a pitch error of gear 2 turns its flank, and a lag of the same size closes it on any slope.
     """
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
     parts = list(

@@ -43,10 +43,12 @@ class LedgerEntry:
     choice: str
     """"on", "off" or "auto", as requested."""
     verdict: Verdict
-    """What the scene calls for; its reason stands even when the caller decided otherwise."""
+    """Verdict of the effect on the scene. Its reason stands even when the caller decided otherwise."""
     cost: str
     override: str = ""
-    """Why it is not as the verdict has it, though the choice is "auto"; empty if it is."""
+    """Reason why the effect differs from its verdict though the choice is "auto"; empty if it does not
+    differ.
+    """
 
     @property
     def decision(self) -> str:

@@ -34,7 +34,7 @@ class CornerContact(Effect):
     valid_for: ClassVar[str] = "sharp, rounded and chamfered tip edges"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On unless tip relief keeps the edges and the flanks beside them apart."""
+        """Call for the effect unless tip relief keeps the edges and the flanks next to them apart."""
         pair = scene.pair
         deflection = _largest_deflection(scene)
         relief = _least_tip_gap(pair)

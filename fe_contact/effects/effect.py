@@ -21,21 +21,22 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ContactScene:
-    """The scene that the effects assess by."""
+    """Pair, loads and axes of a table, by which effects decide."""
 
     pair: ParallelAxes
     torque: FloatArray
     """Torques on the driving gear, N m."""
     registry: Sequence[Effect]
-    """The effects that there are."""
+    """All effects that the analysis knows."""
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
     """Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
     action, zero at its middle.
     """
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
-    """Changes of the table axis, m."""
+    """Changes of the center distance on the table axis, m."""
     pitches: int | None = None
-    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
+    """Number of base pitches of the table where teeth differ; None: until the contact of all teeth repeats.
+    """
 
     @property
     def largest_misalignment(self) -> float:

@@ -23,7 +23,7 @@ class FaceLoadDistribution(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where anything acts across the face."""
+        """Call for the effect where anything in the scene acts across the face."""
         reasons = across_face(scene)
         if reasons:
             return Verdict(True, "; ".join(reasons))

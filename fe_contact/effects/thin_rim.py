@@ -23,7 +23,7 @@ class ThinRim(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a web."""
+        """Call for the effect where either gear has a web."""
         with_web = [name for name, gear in scene.gears.items() if gear.web is not None]
         if not with_web:
             return Verdict(False, "both bodies are solid", neutral=True)

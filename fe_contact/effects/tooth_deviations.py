@@ -36,7 +36,7 @@ class ToothDeviations(Effect):
     valid_for: ClassVar[str] = "waves longer than the contact strip is wide"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has any."""
+        """Call for the effect where either gear has run-out, wobble, waves or teeth that differ."""
         figures = [f"{name} {_figures(gear)}" for name, gear in scene.gears.items() if gear.deviates]
         if not figures:
             return Verdict(False, "no gear has run-out, wobble, waves or teeth that differ", neutral=True)

@@ -31,11 +31,11 @@ class TurningGap:
     gear: int
     """0 is the pinion, 1 the wheel."""
     teeth: int
-    """Of that gear."""
+    """Number of teeth of the gear."""
     base_radius: float
-    """Of that gear, m."""
+    """Base radius of the gear, m."""
     period: int
-    """Base pitches after which it is taken to repeat."""
+    """Base pitches after which the gap repeats."""
     turn: float
     """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
@@ -156,22 +156,22 @@ class TurningGap:
 
 
 class Turning(NamedTuple):
-    """How a gear turns, in revolutions, from where a tooth touches at the pitch point in mid-face."""
+    """Turn of a gear in revolutions, counted from the contact of a tooth at the pitch point in mid-face."""
 
     period: int
     teeth: int
-    """`period`, `teeth`: Base pitches after which its teeth repeat, and their number."""
+    """`period`, `teeth`: Base pitches after which the teeth of the gear repeat, and their number."""
     pitch_point: float
-    """Roll length there, m."""
+    """Roll length at the pitch point, m."""
     per_roll: float
     """`per_roll`, `per_face`: Revolutions over roll length, and over distance from the pinion's mid-face;
     1/m.
     """
     axial_offset: float
-    """Of its mid-face from the pinion's, m."""
+    """Distance of the gear's mid-face from the pinion's, m."""
     per_face: float
     face_width: float
-    """m."""
+    """Face width of the gear, m."""
 
 
 @njit(cache=True, error_model="numpy")

@@ -164,7 +164,7 @@ class FlankModification(_Figures):
 
 
 FLANK_FIELDS = declarations(FlankModification)
-"""What every figure of a flank is, by its name."""
+"""Declaration of every figure of a flank, by its name."""
 
 
 def fields_of(*kinds: Kind) -> tuple[str, ...]:

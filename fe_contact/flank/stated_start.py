@@ -1,4 +1,4 @@
-"""Where reliefs start as drawings state it (ISO 21771-1): by diameter, roll length or roll angle.
+"""Starts of reliefs as drawings state them (ISO 21771-1): by diameter, roll length or roll angle.
 
 The point of a flank at the roll length l has the roll angle xi = tan(alpha_y) = l/r_b and the diameter
 d_y = d_b sqrt(1 + xi^2).

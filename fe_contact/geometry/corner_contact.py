@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 Side = Literal["approach", "exit"]
 _ITERATIONS = 50
 _ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Of a gap, in parts of the center distance: it is a difference of lengths of that order."""
+"""Rounding error of a gap over the center distance. A gap is a difference of lengths of that order."""
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,7 @@ class Toothing:
 
         @property
         def form_point(self) -> FormPoint:
-            """Where involute and fillet meet."""
+            """Point at which involute and fillet meet."""
 
     def _check_fields(self) -> None:
         """Check all numbers one by one, and the allowance against the tooth it is taken from."""
@@ -266,7 +266,7 @@ class Toothing:
 
     @property
     def web(self) -> Web | None:
-        """Where the body is narrower than the face; None if it is not."""
+        """Web between rim and hub, where the body is narrower than the face; None for a solid body."""
         return None
 
     @property

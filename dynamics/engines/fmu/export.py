@@ -1,4 +1,4 @@
-"""From a mesh element to an FMU file: its variables, model description, C header and binary."""
+"""Export of a mesh element as an FMU file: its variables, model description, C header and binary."""
 
 from __future__ import annotations
 

@@ -34,17 +34,17 @@ class Assumption:
     """One thing that a run took for granted."""
 
     effect: str
-    """The effect that would not need it; empty if there is none."""
+    """Effect that does without the assumption; empty if there is no such effect."""
     what: str
-    """The assumption."""
+    """Text of the assumption."""
     holds: bool | None
-    """None: it could not be assessed."""
+    """Whether the assumption holds; None where it could not be assessed."""
     change: float
     """Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance counts
     by (`AllowedError.scale`), as far as that is known; NaN else.
     """
     reason: str
-    """What was found."""
+    """Finding of the check, in words."""
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -138,7 +138,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
 
 
 def _plane(run: SolvedRun) -> Iterator[Assumption]:
-    """In the plane: loads even over the face, and the finite width in the correction."""
+    """Check the assumptions of the plane: uniform load over the face, correction for the finite width."""
     request, model = run.checked.request, run.checked.model
     if model.across_face:
         return
@@ -206,7 +206,7 @@ def _load_patches(run: SolvedRun) -> Assumption:
 
 
 def _support_loads(run: SolvedTable) -> Assumption:
-    """From lift-off to twice the largest load the forces for dynamics are solved."""
+    """Check that the forces for dynamics are solved from lift-off to twice the largest load."""
     failed = sum(int(np.count_nonzero(point.solution.status)) for point in run.support)
     reason = (
         f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"

@@ -12,7 +12,7 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray, Json
 
 _DIGITS = 6
-"""Of value and bound in a message: a law may be broken in the last of them."""
+"""Significant digits of value and bound in a message. A law may be broken in the last digits alone."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class LawCheck:
 
 @dataclass(frozen=True)
 class Law:
-    """What a law bounds: its name, the quantity, its unit and how many of it are in one SI unit."""
+    """Quantity that a law bounds: names of law and quantity, unit in messages, factor from SI to the unit."""
 
     name: str
     quantity: str

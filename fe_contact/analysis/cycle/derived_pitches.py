@@ -32,9 +32,13 @@ from fe_contact.planning.cost_of_derivatives import BATCH
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
 PART_OF_TOLERANCE = 0.4
-"""That derivatives may take where one is requested: meshes and slices are planned to use the rest."""
+"""Share of the tolerance that derivatives may take where a tolerance is requested. Plan and mesh use the
+rest.
+"""
 MAX_GROWN = 1.25
-"""Of the pressure of a pair of teeth over that in the state whose tangent counts."""
+"""Largest growth of the pressure of a pair of teeth over its pressure in the state whose tangent counts. A
+larger load share spreads along the face instead.
+"""
 _MAX_POINTS = 0.99
 
 _ARM, _CENTROID, _SHARES = 0, 1, 2
@@ -79,17 +83,19 @@ def _of_solution(solution: ContactSolution) -> dict[str, NDArray[Any]]:
 
 
 class DerivedErrors(NamedTuple):
-    """What derivatives miss at L loads."""
+    """Errors of curves by derivatives at L loads."""
 
     band: FloatArray
-    """Of the transmission error at every position, m; 0 where it was solved. Shape (T P, L)."""
+    """Error of the transmission error at every position, m; 0 at solved positions. Shape (T P, L)."""
     curves: FloatArray
     arms: FloatArray
-    """`curves`, `arms`: Of the quantities of transmission error and load arm, m. Shape (23, L) each."""
+    """`curves`, `arms`: Errors of the curve quantities of transmission error and load arm, m. Shape (23, L)
+    each.
+    """
     share: float
     pressure: float
-    """`share`, `pressure`: Of the share of a pair, and of the largest pressure over that of the table: what
-    99 % of the drawn points keep.
+    """`share`, `pressure`: Error of the load share of a pair, and error of the largest pressure over the
+    largest pressure of the table. 99 % of the drawn points have smaller errors.
     """
 
 
@@ -98,19 +104,21 @@ class DerivedPitches:
     """The base pitches about which derivatives give all others of an operating point."""
 
     contact: CycleContact
-    """Of the table."""
+    """Contact of the table."""
     pitches: IntArray
-    """Those that were solved. Shape (K,)."""
+    """Solved base pitches. Shape (K,)."""
     state: IntArray
-    """Which state counts, of the nominal gears and those of the pitches. Shape (T, P, L)."""
+    """Index of the state whose tangent is least: 0 for the nominal gears, 1 + k for pitch k of `pitches`.
+    Shape (T, P, L).
+    """
     at_state: FloatArray
-    """Their transmission error and load arm, m. Shape (1 + K, P, L, 2)."""
+    """Transmission error and load arm of the states, m. Shape (1 + K, P, L, 2)."""
     curves: FloatArray
-    """Those of all base pitches. Shape (T, P, L, 2)."""
+    """Transmission error and load arm of all base pitches, m. Shape (T, P, L, 2)."""
 
     @classmethod
     def of(cls, envelope: Envelope, ste: FloatArray) -> DerivedPitches:
-        """Take those of an envelope whose transmission error (T, P, L) is known."""
+        """Return the pitches of an envelope whose transmission error (T, P, L) is known."""
         states = envelope.minimum.state.copy()
         states[envelope.pitches] = 1 + np.arange(envelope.pitches.size)[:, None, None]
         exact = [envelope.arrays[name] for name in _CURVES]
@@ -155,7 +163,7 @@ class DerivedTable:
     """One operating point over a whole period, by derivatives."""
 
     contacts: tuple[SolvedContact, ...]
-    """Of each set of loads. Pitches that were not solved have no residuals: NaN."""
+    """Contact for each set of loads. Residuals are NaN in pitches that were not solved."""
     derived: DerivedPitches
     errors: DerivedErrors
 
@@ -201,17 +209,17 @@ def derived_table(
 
 @dataclass(frozen=True)
 class DerivedCycle:
-    """What came of derivatives at all operating points of a table."""
+    """Outcome of the derivatives at all operating points of a table."""
 
     points: OperatingPoints
     tables: tuple[DerivedTable, ...]
-    """Of every place; empty where all base pitches are to be solved."""
+    """Tables of all operating points; empty where all base pitches are to be solved."""
     reason: str = ""
-    """Why they are; else empty."""
+    """Reason why all base pitches are to be solved; empty where derivatives suffice."""
 
     @property
     def places(self) -> OperatingPoints:
-        """Those of the table, their pitches by derivatives."""
+        """Operating points of the table; each has the derivatives of its pitches."""
         pairs = zip(self.points.places, self.tables, strict=True)
         return replace(
             self.points, places=tuple(replace(point, derived=table.derived) for point, table in pairs)
@@ -219,7 +227,7 @@ class DerivedCycle:
 
     @property
     def contacts(self) -> list[list[SolvedContact]]:
-        """What is kept of every place, for each set of loads."""
+        """Contacts for each set of loads: for each set a list over the operating points."""
         return [list(contacts) for contacts in zip(*(table.contacts for table in self.tables), strict=True)]
 
     def to_json(self) -> Json:

@@ -69,15 +69,16 @@ class LoadSums:
     """Means of Q quantities over the load about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
-    """At the state. Shape (P, L, Q)."""
+    """Means at the state. Shape (P, L, Q)."""
     by_tooth: tuple[FloatArray, FloatArray]
-    """What each tooth of either gear adds as a member of each pair. Tuple of ndarray, shape (J, R, P, L, Q).
+    """Contribution of each tooth of either gear as a member of each pair. Tuple of ndarray, shape (J, R, P,
+    L, Q).
     """
     at_state: FloatArray
-    """What the teeth of the state add together. Shape (P, L, Q)."""
+    """Sum of the contributions of the teeth of the state. Shape (P, L, Q)."""
 
     def over(self, gaps: ToothGaps, pitches: IntArray, where: BoolArray) -> FloatArray:
-        """Return those at points (k, Q) of whole base pitches (t,), `where` (t, P, L) tells."""
+        """Return the means at points (k, Q) of whole base pitches (t,), selected by `where` (t, P, L)."""
         t, p, load = np.nonzero(where)
         return self.value[p, load] - self.at_state[p, load] + self._added(gaps, pitches, t, p, load)
 
@@ -102,16 +103,17 @@ class Tangent:
     """Transmission error at P positions and L loads about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
-    """At the state, m. Shape (P, L)."""
+    """Transmission error at the state, m. Shape (P, L)."""
     part: FloatArray
-    """Part of each pair in what a gap adds, 1 in sum. Shape (J, P, L)."""
+    """Weight of each pair in the contribution of a gap, sum 1. Shape (J, P, L)."""
     by_tooth: tuple[FloatArray, FloatArray]
-    """What each tooth of either gear adds as a member of each pair, m. Tuple of ndarray, shape (J, R, P, L).
+    """Contribution of each tooth of either gear as a member of each pair, m. Tuple of ndarray, shape (J, R,
+    P, L).
     """
     at_state: FloatArray
-    """The same of the teeth of the state, m. Shape (J, P, L)."""
+    """Contribution of the teeth of the state, m. Shape (J, P, L)."""
     sums: LoadSums
-    """Of the same state."""
+    """Means over the load about the same state."""
 
     def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
         """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""

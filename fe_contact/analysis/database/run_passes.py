@@ -1,4 +1,4 @@
-"""Passes of a run under a tolerance, and what all of them cost."""
+"""Passes of a run under a tolerance, and their total cost."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Pass:
     cost: Json
     """Times by stage and memory, as in a receipt."""
     table: SteDatabase | None
-    """None: the pass failed."""
+    """Table of the pass; None if the pass failed."""
     refinement: Refinement | None = None
-    """What was refined before it; None: the first one."""
+    """Refinement before the pass; None for the first pass."""
     failure: str = ""
-    """Why there is no table."""
+    """Reason why the pass has no table; empty where it has one."""
 
     @property
     def used(self) -> float:

@@ -1,4 +1,4 @@
-"""The assessed table: its errors by source, and what is known of them."""
+"""The assessed table: its errors by source, and the loads inserted for its accuracy."""
 
 from __future__ import annotations
 
@@ -67,23 +67,27 @@ class AssessedTable:
     """Errors of a table."""
 
     band: FloatArray
-    """Of every point, m; NaN where not estimated. Shape (P, F, M, D)."""
+    """Error of the transmission error at every point, m; NaN where not estimated. Shape (P, F, M, D)."""
     curve_error: FloatArray
-    """Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M,
+    D).
+    """
     load_arm_error: FloatArray
-    """The same of the load arm. Shape (3, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics of the load arm by source, m. Shape (3, 23, F, M, D)."""
     interval_error: FloatArray
-    """Of points between the nodes of an axis, at the lower one, m. Shape (3, F, M, D)."""
+    """Error of points between the nodes of an axis, stored at the lower node, m. Shape (3, F, M, D)."""
     inserted: SupportLoads | None
-    """Loads with which the table has these errors between its loads."""
+    """Solutions at inserted loads. With these nodes the table has the stated errors between its loads."""
     by_source: Json
     held_out: Json
-    """`by_source`, `held_out`: The largest by source; what was measured between the nodes of each axis."""
+    """`by_source`, `held_out`: The largest errors by source; the errors measured between the nodes of each
+    axis.
+    """
     bias: PlaneBias | None
-    """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
+    """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
-        """Return the table with them, and with the metadata that state them."""
+        """Return the table with these errors and with the metadata that state them."""
         with_errors = replace(
             table,
             error_estimate=self.band,

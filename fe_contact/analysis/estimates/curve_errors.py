@@ -56,8 +56,9 @@ HARMONIC_SHARE = 0.3
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
 
 LEFT_OF_ARM = (1.75, 1.0, 1.25)
-"""What meshes leave of mean, peak-to-peak and harmonics of the load arm, over the same parts of the
-transmission error: where the load lies follows from differences of compliance along the face."""
+"""Errors that meshes leave in mean, peak-to-peak and harmonics of the load arm, over the same errors of the
+transmission error. They differ because the load arm follows from differences of compliance along the face.
+"""
 
 BALANCE = 0.5
 """Least change of the mean arm over the mean size of the change about it. An arm balances one end of the

@@ -47,13 +47,15 @@ class AlignmentErrors:
     """Error between the nodes of an axis of alignments."""
 
     made: SolvedTable
-    """With the alignments that were inserted."""
+    """Solved table with the inserted alignments."""
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
     change: FloatArray
-    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, I, F)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out alignment, m. Shape (23,
+    I, F).
+    """
     limit: str
-    """Why intervals that miss the goal got no further node; empty where all meet it."""
+    """Reason why intervals that miss the goal got no further node; empty where all meet it."""
 
 
 @dataclass(frozen=True)

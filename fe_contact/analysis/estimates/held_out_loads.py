@@ -50,11 +50,13 @@ class LoadErrors:
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each load, m. Shape (F - 1,)."""
     change: FloatArray
-    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, F - 1)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out load, m. Shape (23, F -
+    1).
+    """
     inserted: SupportLoads | None
     """Solutions at further loads, with which the table has these errors, in all its base pitches."""
     limit: str
-    """Why intervals that miss the goal got no further load; empty where all meet it."""
+    """Reason why intervals that miss the goal got no further load; empty where all meet it."""
 
 
 @dataclass(frozen=True)
@@ -62,13 +64,13 @@ class HeldOutLoads:
     """The first pitch of a table at some positions, held against solutions between its loads."""
 
     table: SteDatabase
-    """One base pitch."""
+    """Table of the first base pitch."""
     rows: IntArray
     """Positions that are solved. Shape (R,)."""
     places: OperatingPoints
-    """Of the table."""
+    """Operating points of the table."""
     solved: Solved
-    """Of every place: held-out loads start from them."""
+    """Solutions of all operating points. The contact at held-out loads starts from them."""
 
     def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""

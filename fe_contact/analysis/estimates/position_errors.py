@@ -36,7 +36,8 @@ looked for by themselves: the chords beside their interval bound them as they ar
 LOADS = 7
 """Nodes of an axis of loads that are solved: peaks between positions come and go from one to the next."""
 SOLVED_PART = 4
-"""Of the intervals between fixed positions one in so many is solved, if so many bend."""
+"""Divisor of the number of bending intervals between fixed positions: at most one in `SOLVED_PART` is solved.
+"""
 NEXT_SPACING = 0.25
 """Error at half the spacing over that at the spacing: second order."""
 
@@ -48,7 +49,7 @@ class PositionErrors:
     band: FloatArray
     """Largest error beside each position of all base pitches, m. Shape (T P, F)."""
     curves: FloatArray
-    """Of mean, peak-to-peak and harmonics, m. Shape (23, F)."""
+    """Errors of mean, peak-to-peak and harmonics, m. Shape (23, F)."""
 
 
 def position_errors(

@@ -12,7 +12,9 @@ from fe_contact.types import FloatArray
 BETWEEN_LOADS = 1.5
 """Error of the even gap at any load over the largest at those that are solved, of nine contacts in ten."""
 AT_AN_EDGE = 0.25
-"""Of what crests give way beyond plain flanks, where a tip edge touches them: no gap is fitted there."""
+"""Error of the even gap at a tip edge over the additional deflection of crests beyond plain flanks. No even
+gap is fitted at edges.
+"""
 
 
 def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> FloatArray:

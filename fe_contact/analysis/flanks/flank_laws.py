@@ -19,7 +19,7 @@ from fe_contact.types import FloatArray
 _Places = tuple[NDArray[np.intp], ...]
 
 OVERLAP = 1e-6
-"""Of the largest deflection: how well the solver closes gaps."""
+"""Allowed overlap of flanks over the largest deflection: accuracy of the gaps that the solver closes."""
 
 _PUSHING = Law("contacts push", "force pulling over the load")
 _PRESSING = Law("contacts push", "pressure below zero over the largest")

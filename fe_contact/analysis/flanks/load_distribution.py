@@ -34,17 +34,17 @@ class FlankErrors:
     """Errors of figures of flank results over their values, or why there are none."""
 
     line_load: float | None = None
-    """`line_load`, `pressure`: Of the largest ones clear of edges. None: not estimated."""
+    """`line_load`, `pressure`: Relative errors of the largest values away from edges. None: not estimated."""
     face_load_factor: float | None = None
     largest_face_load_factor: float | None = None
-    """`face_load_factor`, `largest_face_load_factor`: Of K_Hbeta over the cycle, and of the largest one at a
-    position.
+    """`face_load_factor`, `largest_face_load_factor`: Relative errors of K_Hbeta over the cycle, and of the
+    largest K_Hbeta at a position.
     """
     pressure: float | None = None
     edge_line_load: float | None = None
-    """Of the largest one at edges, as a mean over a slice."""
+    """Relative error of the largest line load at edges, as a mean over a slice."""
     reason: str = "one solution tells no error"
-    """Why those that are None are not estimated."""
+    """Reason why errors that are None are not estimated."""
     kink_length: float = 0.0
     """Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
     infinite at the kink, the stated one 4/pi times the mean over this length.
@@ -86,7 +86,7 @@ class LoadDistribution:
     touch. Shape (P, N, K).
     """
     slice_width: float
-    """Of a stretch along the face, m."""
+    """Width of a stretch along the face, m."""
     base_helix_angle: float
     """beta_b of gear 1, rad."""
     scene: FlankScene
@@ -96,7 +96,7 @@ class LoadDistribution:
     at_edge: BoolArray | bool = False
     """Whether the strip reaches an edge of either flank; nowhere in files older than it. Shape (P, N, K)."""
     errors: FlankErrors = field(default_factory=FlankErrors)
-    """Of the largest line load, of K_Hbeta and of the largest pressure."""
+    """Relative errors of the largest line load, of K_Hbeta and of the largest pressure."""
 
     @property
     def clear_pressure(self) -> FloatArray:
@@ -166,7 +166,7 @@ class LoadDistribution:
 
     @property
     def load_centroid(self) -> FloatArray:
-        """Where along the face the load of all pairs acts (P,), m; `face_centroid` of the STE database."""
+        """Position along the face where the load of all pairs acts (P,), m; `face_centroid` of databases."""
         loaded = (self.force * self.lever).sum(axis=1)
         return np.asarray((loaded @ self.face_position) / loaded.sum(axis=1))
 

@@ -42,10 +42,13 @@ from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 
 PLANE_POSITIONS, FACE_POSITIONS = 192, 64
-"""Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
-handovers are steep, and positions cost little."""
+"""Equally spaced positions of a base pitch, in the plane and over the face. The compliance at them is
+assembled once for all flanks. In the plane handovers are steep, and positions cost little.
+"""
 MAX_ROWS, FEWEST_POSITIONS = 4096, 16
-"""Of longer periods, which repeat the positions in every base pitch."""
+"""Limits where teeth differ and the positions repeat in every base pitch: the most positions of the whole
+period, and the fewest of a base pitch.
+"""
 CACHED_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
 
@@ -60,11 +63,11 @@ class CondensedPair:
     """Gears with their compliance, as a table had them."""
 
     checked: Checked
-    """What the table was asked, its model bound to the bodies it had."""
+    """Request of the table, its model bound to the bodies of the table."""
     contacts: CondensedContacts
-    """At the nominal center distance; they keep what was assembled for the positions."""
+    """Contacts at the nominal center distance. They keep the assembled compliance of the positions."""
     neglected: Mapping[str, str] = field(default_factory=dict)
-    """Effects of the bodies that the tolerance of the table neglected, and why."""
+    """Effects of the bodies that the tolerance of the table neglected, each with the reason."""
     _by_distance: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
     _latest: _Latest = field(default_factory=_Latest, repr=False)
 

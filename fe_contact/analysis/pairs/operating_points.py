@@ -60,11 +60,11 @@ class OperatingPoints:
     shape: tuple[int, int]
     """Numbers of misalignments and center distances."""
     places: tuple[OperatingPoint, ...]
-    """Those of one center distance share their compliance."""
+    """Operating points, those of one center distance one after the other. They share its compliance."""
     nominal: PairContact
     """The pair at its nominal center distance, which may be no operating point of the table."""
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
-    """Who solves them."""
+    """Workers that solve the operating points."""
 
     @property
     def period(self) -> int:

@@ -52,20 +52,23 @@ Bodies = PlaneFlanks | FaceFlanks
 
 @dataclass(frozen=True)
 class PairContact:
-    """A pair whose flank compliances are known; every question about it is cheap."""
+    """A pair whose flank compliances are known. Only gaps and contact are left to compute."""
 
     pair: ParallelAxes
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
-    """`plane`, `face`: Of both gears, in the plane or over the face width; exactly one of the two."""
+    """`plane`, `face`: Compliances of both gears, in the plane or over the face width; exactly one of the
+    two.
+    """
     uncorrected: PlaneFlanks | None = None
-    """Those in the plane before they were corrected for the finite width, if they were."""
+    """Compliances in the plane before the correction for the finite width; None if there was no correction.
+    """
     varied: bool = False
     """Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not."""
     touches: dict[bytes, Touch] = field(default_factory=dict, repr=False)
-    """Where its flanks touch under the gaps of the only model it is used with, by the bytes of the positions;
-    where there is none it is found for every problem.
+    """Touching points of the flanks under the gaps of the one model that the pair is used with, by the bytes
+    of the positions. Where the mapping lacks positions, each problem finds its own touching points.
     """
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
@@ -77,7 +80,7 @@ class PairContact:
 
     @property
     def bodies(self) -> Bodies:
-        """Its compliances; the same object at every center distance."""
+        """Compliances of the gears; the same object at every center distance."""
         bodies = self.plane if self.face is None else self.face
         if bodies is None:
             raise ValueError("a pair contact needs the compliance of its gears")

@@ -33,7 +33,7 @@ from fe_contact.hertz import contact_modulus
 from fe_contact.types import FloatArray, IntArray, Status
 
 SLICES = 65
-"""Of the common face; uncoupled slices cost next to nothing."""
+"""Slices of the common face; uncoupled slices cost next to nothing."""
 
 
 @dataclass(frozen=True)

@@ -39,13 +39,15 @@ class Decision:
     """A request with its model and mesh."""
 
     checked: Checked
-    """With the chosen model, and a ledger that says why."""
+    """Request with the chosen model, and a ledger that states the reason."""
     mesh: MeshChoice
     plan: Plan
     wished: Decision | None = None
-    """What the tolerance needs, where the time does not allow it."""
+    """Decision that the tolerance needs, where the time does not allow it."""
     behind: Decision | None = None
-    """What is expected to follow, where a mesh that is expected to miss the tolerance is tried first."""
+    """Decision that is expected to follow, where a mesh that is expected to miss the tolerance is tried
+    first.
+    """
 
     @property
     def passes(self) -> tuple[Decision, ...]:

@@ -32,16 +32,17 @@ class Request:
     center_distance_change: FloatArray
     """`misalignment`, `center_distance_change`: Table axes, m."""
     pitches: int | None = None
-    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
+    """Number of base pitches of the table where teeth differ; None: until the contact of all teeth repeats.
+    """
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
     """`neglected`, `turned_on`: Automatic effects that are neglected because the accuracy does not need them,
     or on because a run without them showed that it does, and why.
     """
     loads_as: str = "torques"
-    """How the caller gave the load: "torques" or "normal_forces"."""
+    """Kind of loads in the request: "torques" or "normal_forces"."""
     registry: Sequence[Effect] = field(default_factory=lambda: EFFECTS)
-    """The effects that there are."""
+    """All effects that the request knows."""
     nodes_alone: bool = False
     """Whether the table is read at its nodes alone: nothing is inserted between them for a tolerance."""
 

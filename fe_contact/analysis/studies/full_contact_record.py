@@ -45,17 +45,17 @@ class FullContactRecord:
     solved_in: str
     """Plane strain or three dimensions."""
     misalignment: FloatArray
-    """m. Shape (M,)."""
+    """Misalignment, m. Shape (M,)."""
     position: FloatArray
-    """By the driving gear, base pitches. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     torque: FloatArray
-    """On the driving gear, N m. Shape (T,)."""
+    """Torque on the driving gear, N m. Shape (T,)."""
     transmission_error: FloatArray
-    """m; NaN where there is no solution. Shape (M, P, T)."""
+    """Transmission error, m; NaN where there is no solution. Shape (M, P, T)."""
     error_estimate: FloatArray
     """Error by the mesh of the record, m. Shape (M, P, T)."""
     unknowns: int
-    """Displacements of all nodes of both gears, at most."""
+    """Displacement unknowns of all nodes of both gears, upper bound."""
     seconds_per_solve: float
     """CPU seconds of a position and load, with its coarser mesh."""
 

@@ -1,4 +1,4 @@
-"""The influence of an effect: what neglecting it changes at the nominal load."""
+"""Influence of an effect: change of the results at the nominal load if the effect is neglected."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Influence:
     """Change by leaving an effect out: without it less with it."""
 
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     misalignment: float
-    """m."""
+    """Misalignment of the figures, m."""
     mean: float
     peak_to_peak: float
     """`mean`, `peak_to_peak`: Change of the static transmission error, m."""

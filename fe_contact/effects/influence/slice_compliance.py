@@ -47,11 +47,11 @@ class _GearCompliance(NamedTuple):
     """Normal approach (P, n, n) in m of each slice per N on each other, of one gear."""
 
     tooth: FloatArray
-    """Bending, shear and compression of the tooth, and what it is clamped in."""
+    """Bending, shear and compression of the tooth, and compliance of its foundation."""
     contact: FloatArray
-    """From under the load patch to the tooth's middle."""
+    """Approach between the load patch and the middle of the tooth."""
     body: FloatArray
-    """Body, web and seat."""
+    """Approach by body, web and seat."""
 
 
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
