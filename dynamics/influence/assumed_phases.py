@@ -1,4 +1,4 @@
-"""What the effect ledger says of phases that rest on assumptions: angles by what they change, thicknesses."""
+"""Phases that rest on assumptions, for the effect ledger: angles with their influence, and thicknesses."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from dynamics.mechanism.train_phases import AssumedAngle
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 
 SPEEDS = 16
-"""Of a run, at which a response is looked at."""
+"""Number of speeds of a run at which a response is computed."""
 ANGLES = 239
-"""Angles of a pitch at which a response is looked at: a prime, as orders then meet other phases at each."""
+"""Number of angles over a pitch at which a response is computed. It is a prime, so that every order meets a
+different phase at each angle.
+"""
 AUDIBLE = 0.01
-"""Amplitude of an order over the largest one below which its change is nobody's concern."""
+"""Least amplitude of an order, over the largest amplitude, of which a change is reported."""
 
 
 def with_assumed_phases(ledger: Json, system: System) -> Json:

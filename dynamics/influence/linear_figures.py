@@ -33,26 +33,30 @@ class LinearFigures:
 
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: Dynamic transmission error, m: over all speeds and loads together. Shape (m,)
-    each.
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak of the dynamic transmission error, over all speeds and
+    loads together, m. Shape (m,) each.
     """
     orders: FloatArray
     """Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m. Shape (m, 5)."""
     bearing_orders: FloatArray
-    """Of the bearing forces, root of the sum of squares of the directions, N. Shape (b, 5)."""
+    """Largest amplitudes of the mesh orders 1 to 5 of the bearing forces, root of the sum of squares of the
+    directions, N. Shape (b, 5).
+    """
     bearing_loads: FloatArray
-    """Root of the sum of squares of the largest amplitudes that loads excite beside those orders, N. Shape
-    (b,).
+    """Largest amplitudes that loads excite outside these orders, root of the sum of squares, N. Shape (b,).
     """
     parted: FloatArray
-    """How far a linear mesh would pull where flanks part, m; 0 where all stay pressed. Shape (m,)."""
+    """Largest tensile displacement of a linear mesh where flanks part, m; 0 where all stay pressed. Shape
+    (m,).
+    """
     freedoms: int
     rows: int
     """`freedoms`, `rows`: Size of the system: freedoms, and local coordinates of its force elements."""
     coasting: bool
     """Whether a mesh has its coast flank."""
     lines: Lines = field(default_factory=dict)
-    """Of the quantity that the scene is computed for, by order up to 10, as far as runs tell them."""
+    """Lines, by order up to 10, of the quantity for which the scene is computed, as far as a run states them.
+    """
 
     @property
     def bearing_force(self) -> FloatArray:

@@ -12,11 +12,11 @@ from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 MOMENTS = 24
-"""At which a run is looked at."""
+"""Number of moments of a run at which its speeds and loads are taken."""
 
 
 MIN_SPEED = 1e-9
-"""Of the largest: what is slower is at rest."""
+"""Speed over the largest speed, below which a shaft is at rest."""
 
 
 ORDERS = 24

@@ -34,17 +34,17 @@ class Control(NamedTuple):
     """Settings of the step size control."""
 
     implicit: bool
-    """Which method."""
+    """Whether the steps are implicit; False: explicit."""
     adaptive: bool
     """False: every step is accepted, and all have the size of the level at the start."""
     audit: bool
     """Whether to integrate the powers."""
     order: int
-    """Of the embedded error estimate."""
+    """Order of the embedded error estimate."""
     tolerance: float
     """Error allowed per step, m."""
     force_tolerance: float
-    """What Newton's method may leave, N; 0: to rounding."""
+    """Largest force that Newton's method may leave unbalanced, N; 0: rounding alone."""
     step_limit: int
 
 

@@ -173,7 +173,7 @@ def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
 
 
 class _Passed(NamedTuple):
-    """What compiled loops get, by address."""
+    """Arguments that compiled loops get by address."""
 
     arrays: SystemArrays
     work: Workspace
@@ -190,23 +190,23 @@ class March:
     work: Workspace
     """The state, changed in place."""
     ring: SampleRing
-    """The points that the anti-alias filter sees, likewise."""
+    """Points that the anti-alias filter sees, changed in place."""
     control: Control
     sampler: Sampler
     compiled: _Passed
     initial: FloatArray
     """Kinetic, bushing and mesh energy at the start, J; 0 without an audit. Shape (3,)."""
     samples: int
-    """Of the whole run."""
+    """Number of output samples of the whole run."""
 
     @property
     def state(self) -> tuple[Workspace, SampleRing]:
-        """All that changes on the way."""
+        """Arrays that change during the run."""
         return self.work, self.ring
 
     @property
     def structure(self) -> dict[Any, Known]:
-        """What `advance` gets by address, and what of it belongs to the structure of the run."""
+        """Arguments that `advance` gets by address, with what of each belongs to the structure of the run."""
         known = {"work": Known.DIMENSIONS, "ring": Known.DIMENSIONS}
         fixed = {function: known.get(name, Known.ALL) for name, function in self.compiled._asdict().items()}
         return {**fixed, by_address(self.widths.states(0)): Known.WIDTHS}
@@ -225,7 +225,7 @@ class Ending:
 
     status: RunStatus
     samples: int
-    """Of the output grid, as far as the run came."""
+    """Number of output samples that the run reached."""
     end: float
     """Time of the last step's end, s; the energies refer to it."""
     stored: FloatArray
@@ -233,13 +233,13 @@ class Ending:
     work: FloatArray
     """Works over the run, J, in the order of `Power`. Shape (7,)."""
     fallen: float
-    """How far a loss fell below its highest value at most, J."""
+    """Largest fall of a loss below its highest value before, J."""
     count: IntArray
     """Statistics, in the order of `Count`."""
     step_range: FloatArray
     """Smallest and largest accepted step, s. Shape (2,)."""
     taken: TimeTaken
-    """By the stepping; in a process's first run with reading or making the compiled code."""
+    """Time of the stepping. In the first run of a process it includes reading or making the compiled code."""
     figures: _SampleFigures
     """Peaks and rms over the run, and what the anti-alias filter took away."""
     modal_states: FloatArray

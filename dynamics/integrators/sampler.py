@@ -55,17 +55,17 @@ class Sampler(NamedTuple):
     factor: int
     """Points of the inner grid per output sample."""
     rate: float
-    """Points per second."""
+    """Points of the inner grid per second."""
     static: PackedTables
     """Tables of the static transmission error."""
     nominal_force: FloatArray
-    """N. Shape (m,)."""
+    """Nominal mesh forces, N. Shape (m,)."""
     level: IntArray
     """Level intervals of these forces in the tables. Shape (m,)."""
     bearings: BearingForce
-    """Of the channels of a point; without signals where no output has them."""
+    """Bearing forces from the channels of a point; without signals where no output holds bearing forces."""
     bodies: int
-    """Freedoms that are not modal."""
+    """Number of freedoms that are not modal."""
     freedoms: int
     """Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them."""
     filtered: int
@@ -135,9 +135,9 @@ class SampleRing(NamedTuple):
     a: FloatArray
     """`q`, `v`, `a`: Scratch: the state at a point, and accelerations. Shape (n,) each."""
     local: LocalState
-    """Of the elements there."""
+    """State of the force elements at a point."""
     motion: FloatArray
-    """Of the laws there. Shape (k, 4)."""
+    """Motion of the laws at a point. Shape (k, 4)."""
     quanta: IntArray
     """Scratch: quanta of free trains before a step's end. Shape (k,)."""
     peaks: _Peaks

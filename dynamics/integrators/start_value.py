@@ -19,9 +19,9 @@ STATE = (
     *("time", "time_rest", "error", "q", "v", "v_rest", "a", "quanta"),
     *("speed", "power", "work", "highest", "fallen", "counts"),
 )
-"""What a workspace carries from step to step beside what is per row of the force elements."""
+"""Fields of a workspace that go from step to step, apart from those per row of the force elements."""
 MAX_SAVED = 128
-"""In memory at once: when there are more, every second one is forgotten."""
+"""Most states in memory at once. When there are as many, every second one is dropped."""
 
 
 @dataclass(frozen=True)
@@ -29,24 +29,24 @@ class _SavedState:
     """State of a march between two steps."""
 
     state: dict[str, FloatArray]
-    """Fields `STATE` of its workspace."""
+    """Fields `STATE` of the workspace."""
     force: FloatArray
     """Local forces at the last step's end. Shape (R,)."""
     point: FloatArray
-    """Of its ring. Shape (L, C)."""
+    """Points of the sample ring. Shape (L, C)."""
     figures: tuple[FloatArray, ...]
-    """Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,)."""
+    """Running figures of the sample ring: the last two values, peaks and squares (..., P), sums (R,)."""
     modal_states: FloatArray
-    """Of its ring. Shape (W, 2, b)."""
+    """Modal states of the sample ring. Shape (W, 2, b)."""
 
     @property
     def time(self) -> float:
-        """Of the last step's end, s."""
+        """Time of the last step's end, s."""
         return float(self.state["time"][0])
 
     @property
     def samples(self) -> int:
-        """Output samples so far."""
+        """Number of output samples before the state."""
         return int(self.state["counts"][Count.OUTPUT])
 
 

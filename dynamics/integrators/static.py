@@ -82,11 +82,11 @@ class RestsBeside:
 
     time: float
     displacement: FloatArray
-    """Of the system at rest, m and rad. Shape (n,)."""
+    """Displacement of the system at rest, m and rad. Shape (n,)."""
     force: FloatArray
-    """Of its elements, N. Shape (R,)."""
+    """Local forces of the elements at rest, N. Shape (R,)."""
     residual: float
-    """Largest unbalanced force there, N."""
+    """Largest unbalanced force at rest, N."""
     compliance: FloatArray
     """Displacements per force on the freedoms. Shape (n, n)."""
 

@@ -77,7 +77,9 @@ class Workspace(NamedTuple):
     a_new: FloatArray
     q_error: FloatArray
     v_error: FloatArray
-    """`q_new`, `v_new`, `a_new`, `q_error`, `v_error`: At the end of the step tried. Shape (n,) each."""
+    """`q_new`, `v_new`, `a_new`, `q_error`, `v_error`: State and its error at the end of the step tried.
+    Shape (n,) each.
+    """
     external: FloatArray
     unloaded: FloatArray
     """`external`, `unloaded`: Scratch: external force; acceleration without the elements' forces. Shape (n,)
@@ -85,11 +87,11 @@ class Workspace(NamedTuple):
     """
     stage_v: FloatArray
     stage_a: FloatArray
-    """`stage_v`, `stage_a`: Shape (STAGES, n) each."""
+    """`stage_v`, `stage_a`: Rates and accelerations at the stages. Shape (STAGES, n) each."""
     force: FloatArray
     """Local forces at the current stage, as Newton's method found them, N. Shape (R,)."""
     local: LocalState
-    """Of the elements at the current stage."""
+    """State of the force elements at the current stage."""
     free: FloatArray
     free_rate: FloatArray
     free_acceleration: FloatArray
@@ -97,7 +99,7 @@ class Workspace(NamedTuple):
     elements' forces. Shape (R,) each.
     """
     free_position: FloatArray
-    """Positions without them. Shape (m,)."""
+    """Positions without the elements' forces. Shape (m,)."""
     linear: IntArray
     """Rows of linear elements, and the first and the end among these p of the element of each. Shape (p, 3).
     """
@@ -106,9 +108,9 @@ class Workspace(NamedTuple):
     response: FloatArray
     """Accelerations of coordinates and positions by the local forces in `force`. Shape (R + m,)."""
     motion: FloatArray
-    """Of the laws at the current stage. Shape (k, 4)."""
+    """Motion of the laws at the current stage. Shape (k, 4)."""
     speed: FloatArray
-    """Their speeds at the start of the step, rad/s, for the audit. Shape (k,)."""
+    """Speeds of the laws at the start of the step, rad/s, for the audit. Shape (k,)."""
     quanta: IntArray
     """Quanta of a revolution by which each free train's own rotation was moved into the reference. Shape
     (k,).
@@ -119,18 +121,18 @@ class Workspace(NamedTuple):
     solved: IntArray
     """Rows that Newton's method solves for in the current step, ended by -1. Shape (R + 1,)."""
     jacobian: FloatArray
-    """Its equations in these rows, transposed, and their inverse. Shape (R, 2 R)."""
+    """Newton's equations in the rows `solved`, transposed, and their inverse. Shape (R, 2 R)."""
     power: FloatArray
-    """Per stage; columns `Power`. Shape (STAGES, 7)."""
+    """Powers at each stage, W; columns `Power`. Shape (STAGES, 7)."""
     work: FloatArray
-    """Integrated, J. Shape (7,)."""
+    """Works so far, J, in the order of `Power`. Shape (7,)."""
     highest: FloatArray
     fallen: FloatArray
-    """`highest`, `fallen`: Highest value of each of `LOSSES` so far, J, and how far it fell below it at most.
-    Shape (3,) each.
+    """`highest`, `fallen`: Highest value of each of `LOSSES` so far, and its largest fall below the highest
+    value before, J. Shape (3,) each.
     """
     counts: IntArray
-    """See `Count`."""
+    """Counts of steps and samples, in the order of `Count`."""
     step_sizes: FloatArray
     """Step sizes, falling, s; then the one that lands on a law's knot. Shape (r,)."""
     matrix: FloatArray

@@ -28,20 +28,24 @@ class WhirlBranches:
     """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate."""
 
     speed: FloatArray
-    """Of the leading law, rad/s. Shape (S,)."""
+    """Speeds of the leading law, rad/s. Shape (S,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
-    """`frequency`, `damping_ratio`: Damped, Hz; -Re/|eigenvalue|. Shape (S, A) each."""
+    """`frequency`, `damping_ratio`: Damped natural frequency, Hz, and damping ratio -Re/|eigenvalue|. Shape
+    (S, A) each.
+    """
     whirl: FloatArray
-    """Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
-    plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation). Shape (S,
-    A).
+    """Whirl of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in
+    a plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation). Shape
+    (S, A).
     """
     shape: ComplexArray
-    """The largest entry in meters is 1. Shape (S, A, n)."""
+    """Mode shapes, whose largest entry in meters is 1. Shape (S, A, n)."""
     strain_energy: FloatArray
     kinetic_energy: FloatArray
-    """`strain_energy`, `kinetic_energy`: Shares, mean over a cycle. (S, A, p), (S, A, n) arrays."""
+    """`strain_energy`, `kinetic_energy`: Shares of springs and freedoms in the energies of a mode, mean over
+    a cycle. (S, A, p), (S, A, n) arrays.
+    """
 
 
 def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:

@@ -19,9 +19,9 @@ AGREEMENT = 1e-12
 
 @dataclass(frozen=True)
 class CommonPeriod:
-    """After how many base pitches all meshes are in phase again, with the laws' speeds in fixed proportion.
+    """Base pitches after which all meshes are in phase again, with the laws' speeds in fixed proportion.
 
-    Frames that a coupling crosses have turned by whole revolutions then, too, and loads by angle repeat.
+    After them, frames that a coupling crosses have turned by whole revolutions, and loads by angle repeat.
     """
 
     law: int
@@ -29,7 +29,7 @@ class CommonPeriod:
     proportion: FloatArray
     """Speed of each law over that of `law`. Shape (k,)."""
     revolutions: Fraction
-    """Of the law's shaft in one common period."""
+    """Revolutions of the law's shaft in one common period."""
     pitches: tuple[int, ...]
     """Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: at rest."""
 

@@ -1,4 +1,4 @@
-"""Critical speeds: where multiples of a mesh frequency meet the frequency of a mode."""
+"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode."""
 
 from __future__ import annotations
 
@@ -26,16 +26,18 @@ class CriticalSpeeds:
     """Crossings, C of them by rising speed."""
 
     speed: FloatArray
-    """Of the leading law, rad/s. Shape (C,)."""
+    """Speed of the leading law at each crossing, rad/s. Shape (C,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
-    """`frequency`, `damping_ratio`: Of the mode there, Hz. Shape (C,) each."""
+    """`frequency`, `damping_ratio`: Frequency, Hz, and damping ratio of the mode at the crossing. Shape (C,)
+    each.
+    """
     mode: IntArray
     mesh: IntArray
     order: IntArray
     """`mode`, `mesh`, `order`: Branch, mesh, and multiple of its mesh frequency. Shape (C,) each."""
     residual: FloatArray
-    """Of the eigenvalue problem there, as an error of the frequency, Hz. Shape (C,)."""
+    """Residual of the eigenvalue problem at the crossing, as an error of the frequency, Hz. Shape (C,)."""
 
 
 def critical_speeds(

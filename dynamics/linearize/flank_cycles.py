@@ -27,7 +27,7 @@ class FlankCycle:
     """A driving flank of p rows at T positions, uniform over one period of its table."""
 
     rows: slice
-    """Of its local coordinates."""
+    """Rows of the flank's local coordinates."""
     coordinate: FloatArray
     force: FloatArray
     """`coordinate`, `force`: Local coordinates in m: the transmission error that carries the static mesh

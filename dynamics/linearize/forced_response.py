@@ -50,14 +50,14 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
             "1", "change of the largest amplitude with the other excitation, relative", "mesh", "order"
         ),
     )
-    """By how much the largest dynamic transmission error over the speeds changes if the blocked force excites
-    instead of the static error, relative to the largest of all harmonics: what a theory of first order in the
-    ripple cannot tell. Shape (m, H).
+    """Change of the largest dynamic transmission error over the speeds, if the blocked force excites instead
+    of the static error, relative to the largest of all harmonics. It is of second order in the ripple, which
+    linear theory neglects. Shape (m, H).
     """
     natural_frequency: FloatArray = field(
         default_factory=lambda: np.empty(0), metadata=stored("Hz", "undamped natural frequency", "mode")
     )
-    """With the mean mesh stiffness. Shape (n,)."""
+    """Undamped natural frequencies with the mean mesh stiffness, Hz. Shape (n,)."""
     power_source: tuple[str, ...] = ()
     power_input: FloatArray = field(
         default_factory=lambda: np.empty((0, 0, 0)),
@@ -80,7 +80,9 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N2", "by how much it may be off", "bearing", "speed"),
     )
-    """`bearing_floor`, `bearing_floor_error`: Empty where no orders are left out. Shape (b, S) each."""
+    """`bearing_floor`, `bearing_floor_error`: Mean square bearing force of the orders left out, and its
+    error, N^2. Empty where no orders are left out. Shape (b, S) each.
+    """
     facts: Json = field(default_factory=dict)
     """Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`."""
 
@@ -96,7 +98,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
 
     @property
     def power(self) -> PowerBalance:
-        """Where the power of the vibration comes from and goes to, with the residual of the balance."""
+        """Sources and sinks of the power of the vibration, with the residual of the balance."""
         return PowerBalance(
             self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
         )
@@ -195,17 +197,19 @@ class _Peak:
     quantity: str
     """"mesh_force" or "bearing_force"."""
     name: str
-    """Of the mesh or bearing."""
+    """Name of the mesh or bearing."""
     order: float
     speed: float
     frequency: float
-    """`order`, `speed`, `frequency`: Multiple of the mesh frequency; rad/s; Hz."""
+    """`order`, `speed`, `frequency`: Multiple of the mesh frequency; speed, rad/s; frequency, Hz."""
     amplitude: float
-    """N; of a bearing the root of the sum of squares of x, y and z."""
+    """Amplitude of the force, N; of a bearing the root of the sum of squares of x, y and z."""
     amplification: float
-    """Dynamic over static transmission error there; of a bearing that of the mesh where it is largest."""
+    """Dynamic over static transmission error at the peak; of a bearing that of the mesh with the largest
+    ratio.
+    """
     natural_frequency: float
-    """The nearest, Hz."""
+    """Natural frequency nearest to the peak, Hz."""
 
 
 def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:

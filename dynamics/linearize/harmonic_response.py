@@ -55,14 +55,17 @@ class HarmonicResponse:
     order: FloatArray = field(
         metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
     )
-    """Those that are excited; fractions where tables or trains repeat after several pitches. Shape (H,)."""
+    """Excited multiples of the frequency of the first mesh that turns; fractions where tables or trains
+    repeat after several pitches. Shape (H,).
+    """
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
     static_transmission_error: ComplexArray = field(
         metadata=stored("m", "complex amplitude of the excitation", "mesh", "order")
     )
-    """`static_transmission_error`, `load_moment`, `friction_force`: At the static mesh forces: what excites.
-    The moment is that of the load as it travels, about the axis of a misalignment, the friction that along
-    the sliding at the pitch point; 0 of flanks without such rows. Empty in older files. Shape (m, H) each.
+    """`static_transmission_error`, `load_moment`, `friction_force`: Excitations at the static mesh forces.
+    The moment is that of the load as it travels along the face, about the axis of a misalignment. The
+    friction acts along the sliding at the pitch point. Flanks without such rows have 0. Empty in older files.
+    Shape (m, H) each.
     """
     dynamic_transmission_error: ComplexArray = field(metadata=stored("m", "complex amplitude", "mesh", *GRID))
     mesh_force: ComplexArray = field(metadata=stored("N", "complex amplitude, transverse", "mesh", *GRID))
@@ -71,8 +74,8 @@ class HarmonicResponse:
             "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", *GRID
         )
     )
-    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m. Shape
-    (b, 3, S, H).
+    """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
+    Shape (b, 3, S, H).
     """
     displacement: ComplexArray = field(metadata=stored("m or rad", "complex amplitude", "freedom", *GRID))
     mean_force: FloatArray = field(metadata=stored("N", "static mesh force", "mesh"))
@@ -82,9 +85,11 @@ class HarmonicResponse:
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
     )
-    """Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
+    """Least mesh force by mean and harmonics together, N. Where it is negative flanks part, and no linear
+    answer holds. Shape (m, S).
+    """
     residual: float = 0.0
-    """Largest force left by the linear solves, of the largest exciting force."""
+    """Largest force left by the linear solves, over the largest exciting force."""
     load_moment: ComplexArray = field(
         default_factory=_none, metadata=stored("N m", "complex amplitude of the excitation", "mesh", "order")
     )
@@ -92,7 +97,9 @@ class HarmonicResponse:
         default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
     )
     floor: LineFloor | None = None
-    """What the lines left out of a long period do together; None where none is, and of files."""
+    """Floor of the lines of a long period that are left out, in sum; None where none is left out, and in a
+    response from a file.
+    """
 
     @property
     def in_contact(self) -> BoolArray:

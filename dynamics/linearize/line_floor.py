@@ -1,4 +1,4 @@
-"""The floor of a long period: what the lines that a response leaves out do together, by transfer functions.
+"""The floor of a long period: the lines that a response leaves out, in sum, by transfer functions.
 
 Lines of different frequency add up in power. Over the frequency a unit force does the same at every speed, as
 long as no frame turns: its transfer functions are solved once, on frequencies that are close where modes are.
@@ -19,16 +19,20 @@ from dynamics.linearize.steady_vibration import Excited, flank_forces
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
 WIDEST = 0.01
-"""Of a step between frequencies, of the frequency: no wider where no mode is near."""
+"""Widest step between two frequencies, over the frequency, where no mode is near."""
 OF_MODE = 0.25
-"""Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
+"""Largest step over the damping ratio of the nearest mode, or over the relative distance from it where that
+is larger.
+"""
 LINE_ERROR = 1.0 / 7.0
-"""Of a second difference, that a straight line misses at most: an eighth of a parabola, more of others."""
+"""Largest error of a straight line between two frequencies, over second derivative times square of the step:
+1/8 for a parabola, more for other curves.
+"""
 MIN_RATIO = 1e-4
 COUNTED = 1e-10
-"""Of the power of all lines, that a direction of the rows has to have."""
+"""Least share of a direction of the rows in the power of all lines, from which the direction is an input."""
 BINS = 8
-"""In a third octave, in which powers are returned."""
+"""Number of bins in a third octave, in which powers are returned."""
 
 
 class FloorPower(NamedTuple):
@@ -60,15 +64,15 @@ class LineFloor:
     pace: FloatArray
     """Frequency of the common period at the speeds, Hz. Shape (S,)."""
     harmonic: IntArray
-    """Its multiples that the lines are. Shape (L,)."""
+    """Multiples of that frequency at which the lines are. Shape (L,)."""
     inputs: ComplexArray
-    """Complex peak amplitudes. Shape (e, L)."""
+    """Inputs in the lines, complex peak amplitudes. Shape (e, L)."""
     frequency: FloatArray
-    """Hz, rising; those of the lines at all speeds lie among them. Shape (G,)."""
+    """Frequencies of the transfer functions, Hz, rising. They cover the lines at all speeds. Shape (G,)."""
     bearing_force: ComplexArray
     """Forces of bearings per input. Shape (b, 3 or 6, G, e)."""
     changed: FloatArray
-    """What a stiffness that varies may change of the mean squares of forces, relative. Shape (b, S)."""
+    """Relative change of the mean squares of forces that a varying stiffness may make. Shape (b, S)."""
 
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).

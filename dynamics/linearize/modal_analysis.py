@@ -27,7 +27,7 @@ from host import cpu_seconds
 MAX_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
-"""What an analysis keeps of `Modes`."""
+"""Fields of `Modes` that an analysis keeps of the modes at rest."""
 
 
 def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:

@@ -12,7 +12,9 @@ from dynamics.arrays.modal_freedoms import ModalFreedoms
 from dynamics.types import ComplexArray, FloatArray
 
 ROUNDING = 1e-12
-"""Of the entries of modal freedoms, that the rows of their elements may fail to explain."""
+"""Largest error, over the largest entry of a matrix, with which the rows of the elements have to explain the
+entries of the modal freedoms; it is rounding.
+"""
 Values = TypeVar("Values", FloatArray, ComplexArray)
 
 

@@ -1,4 +1,4 @@
-"""Steady vibration about the static equilibrium: what excites it, and the displacements at every harmonic."""
+"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ SWEPT = 0.34
 
 @dataclass(frozen=True)
 class Excited:
-    """A system about its equilibrium under the loads at a time, and what excites it there."""
+    """A system about its equilibrium under the loads at a time, and its excitation."""
 
     system: System
     time: float
-    """s."""
+    """Time at which the loads are taken, s."""
     period: CommonPeriod
     linear: LinearSystem
-    """With the mean tangents of the flanks."""
+    """Linear system with the mean tangents of the flanks."""
     at_rest: LocalState
-    """The elements there."""
+    """State of the force elements at the equilibrium."""
     cycles: tuple[FlankCycle, ...]
     turning: bool = False
     """Whether rotating-frame elements act: gyroscopic and frame terms belong to the system."""
@@ -57,18 +57,18 @@ class Steady:
     harmonics: IntArray
     """Multiples of the common period's frequency. Shape (H,)."""
     omega: FloatArray
-    """rad/s. Shape (S, H)."""
+    """Circular frequencies, rad/s. Shape (S, H)."""
     static: ComplexArray
     """Static transmission errors, m. Shape (m, H)."""
     force: ComplexArray
-    """What excites the driving flanks' rows, N. Shape (1 or S, R', H)."""
+    """Exciting forces on the rows of the driving flanks, N. Shape (1 or S, R', H)."""
     displacement: ComplexArray
-    """m and rad. Shape (S, H, n)."""
+    """Displacements, m and rad. Shape (S, H, n)."""
     residual: float
-    """Largest force left by the linear solves, of the largest exciting force."""
+    """Largest force left by the linear solves, over the largest exciting force."""
     receptance: ComplexArray
-    """Displacements per force on f rows, those of `swept_vibration` of the driving flanks; empty where not
-    requested. Shape (S, H, n, f).
+    """Displacements per force on f rows: the rows of the driving flanks that `swept_vibration` is given;
+    empty where not requested. Shape (S, H, n, f).
     """
 
 

@@ -23,15 +23,16 @@ MAX_AMPLITUDES = 6e6
 
 
 class Lines(NamedTuple):
-    """What a response is solved in."""
+    """Lines in which a response is solved, and those that it leaves out."""
 
     harmonics: IntArray
     """Multiples of the common period's frequency, rising. Shape (H,)."""
     left_out: IntArray
-    """The others that excite, rising. Shape (L,)."""
+    """Other excited multiples, rising. Shape (L,)."""
     share: float = 0.0
-    """Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
-    the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
+    """Root of the sum of squares of the forces in the lines left out, over that of all lines, for the mesh
+    order and the row of the flanks with the largest ratio. Between the lines that count stands a floor of
+    many weak ones.
     """
 
     def to_json(self, in_totals: bool) -> Json:

@@ -119,11 +119,11 @@ class _Varying:
 
     rows: slice
     line_index: IntArray
-    """Where its lines are among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
+    """Indices of the table's lines among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
     line: IntArray
     """Multiples of the table's own frequency, 0 first. Shape (Q + 1,)."""
     tangent: FloatArray
-    """Less its mean, over the table's period in time, N/m. Shape (N, p, p)."""
+    """Tangents less their mean, over the table's period in time, N/m. Shape (N, p, p)."""
 
     def pressed(self, made: ComplexArray) -> ComplexArray:
         """Return the Fourier coefficients (Q + 1, p) of the forces by those of what makes them."""
@@ -140,7 +140,7 @@ class VaryingStiffness:
     """The tangents of flanks about an equilibrium less their means, in H harmonics."""
 
     parts: tuple[_Varying, ...]
-    """Of the flanks whose tangents vary."""
+    """Flanks whose tangents vary."""
     still: FloatArray
     """Static receptance of the rows of all driving flanks, m/N. Shape (R', R')."""
 

@@ -26,7 +26,7 @@ class ForceCourseLaws(NamedTuple):
     """
 
     kind: IntArray
-    """What the factor depends on. Shape (l,)."""
+    """Variable of the factor: time, speed or angle. Shape (l,)."""
     size: FloatArray
     lever: FloatArray
     sense: FloatArray
@@ -46,8 +46,8 @@ class ForceCourseLaws(NamedTuple):
     order: FloatArray
     amplitude: FloatArray
     angle: FloatArray
-    """`first_order`, `order`, `amplitude`, `angle`: Of factors by angle; rad. (l + 1,) int, (O,), (O,), (O,)
-    arrays.
+    """`first_order`, `order`, `amplitude`, `angle`: First order of each load in the flat arrays, then the
+    orders of factors by angle, their amplitudes and their angles, rad. (l + 1,) int, (O,), (O,), (O,) arrays.
     """
     constant: FloatArray
     """Constant part of factors by angle. Shape (l,)."""

@@ -1,4 +1,4 @@
-"""The flanks that touch in a mesh: where they leave their base circles when they touch at the pitch point.
+"""The flanks that touch in a mesh: their angles when they touch at the pitch point.
 
 Angles of flanks are in pitches of their gear about +z, at the gear's mid-face.
 """
@@ -22,11 +22,11 @@ class FlankAtMesh:
 
     gear: int
     sense: int
-    """+1 or -1, in which the gear turns about +z."""
+    """Sense in which the gear turns about +z, +1 or -1."""
     side: int
-    """+1 or -1, towards which the flank looks about +z."""
+    """Side of the teeth on which the flank is, +1 or -1 about +z."""
     at_pitch_point: float
-    """Its angle where it touches at the pitch point, pitches."""
+    """Angle of the flank when it touches at the pitch point, pitches."""
 
     @property
     def key(self) -> tuple[int, int]:

@@ -26,8 +26,8 @@ class Freedoms:
     kg^1/2).
     """
     column: IntArray
-    """Of each among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after all of these,
-    then the amplitudes of housings. Shape (n,).
+    """Column of each freedom among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after
+    all of these, then the amplitudes of housings. Shape (n,).
     """
     motion: FloatArray
     """All freedoms of all rotors per freedom: one at its index; planets go with their carrier where nothing

@@ -1,4 +1,4 @@
-"""What passes at which order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
+"""Excitations by their order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"
 TURNS, PASSINGS = 4, 3
 """Harmonics of shafts (unbalance, misalignment, ovality) and of bearings that are looked at."""
 SAME = 1e-9
-"""Relative difference of orders that are one."""
+"""Number of harmonics that are listed: of shafts (unbalance, misalignment, ovality), and of bearings."""
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """What repeats at a fixed order of a shaft."""
+    """An excitation that repeats at a fixed order of a shaft."""
 
     kind: str
     """`MESH`, `SIDEBAND`, `SHAFT` or `BEARING`."""
     name: str
-    """Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed, of a sideband
-    the side.
+    """`name`, `part`: Name of the mesh, shaft or bearing. The part is the ring or element of a bearing that
+    is passed, or the side of a sideband.
     """
     part: str
     rate: float
     """Repetitions per revolution of the shaft that orders are of, > 0."""
     harmonics: int
-    """Multiples of the rate that are looked at, from 1."""
+    """Number of multiples of the rate that are listed, from 1."""
     shift: tuple[float, ...] = ()
-    """Added to the order of each harmonic, of sidebands; empty: nothing."""
+    """Shift of the order of each harmonic, for sidebands; empty: no shift."""
 
     def order(self, harmonic: int) -> float:
         """Return the order of a harmonic."""

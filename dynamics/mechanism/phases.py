@@ -21,16 +21,16 @@ LARGEST_DENOMINATOR = 1_000_000
 
 @dataclass(frozen=True)
 class LoadPhase:
-    """An angle in turns."""
+    """An angle in turns, by which a load repeats or turns."""
 
     rate: tuple[Fraction, ...]
     """Turns per turn of each law; exact."""
     turns: int
-    """Turns after which what reads it repeats."""
+    """Turns after which the load repeats."""
     shaft: int | None
     """The shaft whose own rotation adds to it."""
     position: float = 0.0
-    """Where along that shaft, m."""
+    """Axial position on that shaft, m."""
 
 
 def angle_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce, course: Orders) -> LoadPhase:

@@ -33,7 +33,7 @@ class AssumedAngle:
     """An angle between two gears of one speed that no part of the scene states: tooth centers in line."""
 
     shaft: str
-    """That of the second gear; the first is on it, or on a shaft coupled to it."""
+    """Shaft of the second gear; the first gear is on it, or on a shaft coupled to it."""
     gears: tuple[str, str]
     moves: FloatArray
     """Base pitches by which the position of each mesh moves per pitch of the second gear. Shape (m,)."""

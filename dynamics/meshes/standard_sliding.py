@@ -12,9 +12,9 @@ from dynamics.types import FloatArray
 SMOOTHING = 0.01
 """Half width of the smoothed change of direction at the pitch point, base pitches; as in computed tables."""
 POSITIONS = 64
-"""Of a base pitch, at least."""
+"""Least number of positions in a base pitch."""
 POINTS = 33
-"""Over the face of helical teeth, at which contact is looked for."""
+"""Number of points over the face of helical teeth at which contact is searched."""
 ADDENDUM = 1.0
 """Modules on the operating pitch circle: tips of standard teeth (ISO 53)."""
 
@@ -24,9 +24,9 @@ class StandardTeeth:
     """The teeth of a pair as far as sliding depends on them; SI."""
 
     teeth: tuple[int, int]
-    """Of pinion and wheel."""
+    """Numbers of teeth of pinion and wheel."""
     base_radius: float
-    """Of the pinion."""
+    """Base radius of the pinion, m."""
     working_pressure_angle: float
     base_helix_angle: float
     face_width: float

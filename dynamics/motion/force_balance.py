@@ -21,7 +21,7 @@ class ForceBalance:
     """Forces on n freedoms in a state (q, v) at a time, without inertia."""
 
     force: FloatArray
-    """What accelerates: M q'' = external - C v - K q - G^T f, N and N m. Shape (n,)."""
+    """Accelerating force, M q'' = external - C v - K q - G^T f, N and N m. Shape (n,)."""
     stiffness: FloatArray
     damping: FloatArray
     """`stiffness`, `damping`: K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q
@@ -29,7 +29,7 @@ class ForceBalance:
     pitch. Shape (n, n) each.
     """
     local: LocalState
-    """Of the elements."""
+    """State of the force elements."""
 
 
 def force_balance(
