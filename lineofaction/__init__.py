@@ -89,7 +89,8 @@ _HOME = {
     "Wave": ("fe_contact", "Wave"),
     "write": ("lineofaction.report.document", "write"),
 }
-"""Of the names that are neither studies nor of the workbench: module, and name there."""
+"""Address, as module and name in it, of each public name that belongs neither to a study nor to the
+workbench."""
 
 __all__ = [
     "AsyncClient",

@@ -23,7 +23,7 @@ from lineofaction.report.run.view import RunView
 
 @dataclass(frozen=True)
 class FlankQuestion:
-    """What ``loa compare BEFORE AFTER --scene SCENE`` was called with, as typed."""
+    """Arguments of ``loa compare BEFORE AFTER --scene SCENE`` as the caller typed them."""
 
     scene: Path
     mesh: str | None

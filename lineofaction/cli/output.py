@@ -39,7 +39,7 @@ Report = Callable[[str, float], None]
 
 _MAX_HEADLINES = 2
 EMPHASIS = "bold"
-"""Style of the line that says what was found."""
+"""Style of the line that states the result."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
 _WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
 """Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
@@ -51,13 +51,13 @@ _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
 
 
 def print_json(answer: dict[str, Any]) -> None:
-    """Print one JSON object, with what the verb warns of; a number that is none is an error, never null."""
+    """Print one JSON object with the warnings of the verb; ValueError: a number is NaN or infinite."""
     sys.stdout.write(json.dumps({**answer, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
 class _Marks(RegexHighlighter):
-    """What is found in bold, errors in color, what is below its error or said beside the answer in grey."""
+    """Highlighter of printed lines: errors after ± in cyan, notes at the end of an answer in grey."""
 
     base_style = "loa."
     highlights: ClassVar[list[str]] = [

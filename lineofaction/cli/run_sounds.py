@@ -18,7 +18,7 @@ from lineofaction.report.run.sound import run_signals
 from lineofaction.report.run.view import RunView
 
 FAINT = 1e-3
-"""Of the overall level: weaker orders are not printed."""
+"""Share of the overall level below which an order is not printed."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class RunSound:
     figures: Json = field(default_factory=dict)
     """Plain JSON beside the recording's own."""
     cells: dict[str, str] = field(default_factory=dict)
-    """What is printed in the columns of these names."""
+    """Cells of the printed table by the names of their columns."""
 
 
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:

@@ -37,13 +37,13 @@ from service.worker.process import default_registry
 
 logger = structlog.get_logger(__name__)
 MIN_LIFE_S = 5.0
-"""Processes that end earlier are replaced only after so long: what they lack may be there by then."""
+"""Seconds in which a process that ends early is not replaced: what it lacks may be there by then."""
 STOPPING_S = 3.5
-"""After which serving processes that do not stop are killed."""
+"""Seconds after which serving processes that do not stop are killed."""
 _LOOK_S = 0.2
 _APPLICATION = "service.app"
 _METRICS = "PROMETHEUS_MULTIPROC_DIR"
-"""Where prometheus-client keeps the figures of all processes, by its own name."""
+"""Environment variable of prometheus-client that names the folder of the figures of all processes."""
 
 
 def _managed_work(
@@ -110,9 +110,9 @@ class ServingProcesses:
     """Processes that answer requests."""
 
     number: int
-    """How many there are to be."""
+    """Number of processes that are to run."""
     serve: Work
-    """What each does until it is stopped."""
+    """Work of each process until it is stopped."""
     _alive: list[BaseProcess] = field(default_factory=list)
     _starts: deque[float] = field(default_factory=deque)
 

@@ -25,17 +25,17 @@ _REMEDY = (
 
 @dataclass(frozen=True)
 class Offer:
-    """A process."""
+    """A process of the service, as the client offers it."""
 
     name: str
-    """On the service."""
+    """Name of the process on the service."""
     description: str
     signature: Signature
-    """Of the client's calls."""
+    """Signature of the client's calls."""
     subject: str
-    """What is computed: a case, a scene, or either."""
+    """Kind of input that the process computes from: a case, a scene, or either."""
     read: Callable[[Path], Any]
-    """The path of the result's file to the result; imports what it needs."""
+    """Function from the path of a result's file to the result; it imports what it needs."""
 
     @property
     def attribute(self) -> str:

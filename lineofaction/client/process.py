@@ -93,7 +93,7 @@ class _Mapping:
 
 
 class _Calls(Generic[P, T, F]):
-    """What both kinds of processes share."""
+    """Construction and signature that blocking and awaiting processes share."""
 
     def __init__(self, client: Any, offer: Offer) -> None:
         self._client, self._offer = client, offer

@@ -24,9 +24,10 @@ AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
 STOPS = (KeyboardInterrupt, CancelledError)
 """Raised where the caller stops an operation."""
 AWAY_PAUSE_S = 0.5
-"""Before a service that was away is asked again."""
+"""Seconds before a service that was away is asked again."""
 _GROWTH = 1.1
-"""Of each pause over the last: what is seen late is then about a tenth of the time waited."""
+"""Ratio of a pause to the pause before: the end of a job is then seen late by about a tenth of the time
+waited."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +52,9 @@ class JobState:
     """`created`, `started`, `finished`: RFC 3339, UTC; empty before."""
     title: str = ""
     tags: tuple[str, ...] = ()
-    """As given to the job."""
+    """Tags that the submission gave the job."""
     subject: str = ""
-    """What the job is about, in words."""
+    """Subject of the job in words."""
     differences: tuple[dict[str, Any], ...] = ()
     """The first inputs that differ from those of the caller's job before it of the same process, or from the
     defaults: field, before, value.
@@ -74,7 +75,7 @@ class JobState:
 
     @property
     def activity(self) -> str:
-        """What the job does now: its stage while it runs, else waits, done, failed or dismissed."""
+        """The job's present activity: its stage while it runs, else waits, done, failed or dismissed."""
         if self.status == "running":
             return self.stage or "starts"
         return {"accepted": "waits", "successful": "done"}.get(self.status, self.status)

@@ -1,4 +1,4 @@
-"""What the client wants of network and clock, as data: drivers perform it, blocking or awaiting.
+"""Actions that the client asks of network and clock, as data that a driver performs, blocking or awaiting.
 
 An operation of the client is a generator. It yields actions, receives their answers, or the exceptions they
 raised, and returns its result. It knows no socket and no event loop, so both clients run the same code.

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 Steps: TypeAlias = "Generator[Any, Any, T]"
-"""What is wanted of others on the way to a result: a source of tables that needs nobody yields nothing."""
+"""Generator that yields requests to others and returns a result. A source of tables that holds all it needs
+yields no request."""
 
 
 class _TableSource(Protocol):

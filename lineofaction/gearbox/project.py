@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SIGNS = {"scene": "shafts", "case": "pair"}
 _ENDINGS = (".toml", ".json")
 RUN, SOUND = f"run{SUFFIX}", "run.wav"
-"""Of a scene, in its project."""
+"""Names of the files of a scene's run and of its sound in a project."""
 
 Named = TypeVar("Named", InputFile, Path)
 

@@ -1,4 +1,4 @@
-"""What the files of results say of themselves: warnings, and the case that they were made of."""
+"""Facts that the files of results carry with them: warnings, and the case behind the result."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ _OF_SI = {
 """The ending of a declared field by its unit; depths are in um."""
 
 ENDINGS = (*BY_SUFFIX, *_OF_SI.values(), "_n_per_m_n", "_m_per_s2", "_matrix")
-"""What may follow the name of a field at the boundary."""
+"""Endings of names of fields at the boundary."""
 
 _RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}
 """Keys of effect ledgers in the files of runs and studies of former versions, and today's."""

@@ -1,4 +1,4 @@
-"""What a Python user does with a gearbox, without a server: open, read, analyze, simulate, study."""
+"""Functions of a Python user without a server: open, read, analyze, simulate, study."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from model_studies.workers.content_digest import content_digest
 
 
 class InputWarning(UserWarning):
-    """What is implausible about an input, or was left out of it."""
+    """Warning of an implausible input, or of a part that is left out of it."""
 
 
 def open_unit(

@@ -1,4 +1,4 @@
-"""From a case to a gear pair and the arguments of `fe_contact.analyze`."""
+"""Conversion of a case to a gear pair and the arguments of `fe_contact.analyze`."""
 
 from __future__ import annotations
 

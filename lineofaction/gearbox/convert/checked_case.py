@@ -44,17 +44,17 @@ class CheckedCase:
 
     @cached_property
     def pair(self) -> ParallelAxes:
-        """As `gear_pair`."""
+        """The gear pair of the case, as `gear_pair` returns it."""
         return gear_pair(self.case)
 
     @cached_property
     def axes(self) -> TableAxes:
-        """As `table_axes`."""
+        """The axes of the case's table, as `table_axes` returns them."""
         return table_axes(self.case)
 
     @cached_property
     def options(self) -> AnalysisOptions:
-        """As `analysis_options`."""
+        """The analysis options of the case, as `analysis_options` returns them."""
         return analysis_options(self.case)
 
     @property

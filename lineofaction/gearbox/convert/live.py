@@ -152,7 +152,7 @@ class CondensedCase:
 
     case: Case
     pair: ParallelAxes
-    """As the case states it."""
+    """Gear pair with the flanks that the case states."""
     bodies: CondensedPair
     drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
     """Pairs solved within tolerances, by question: every answer adds some."""

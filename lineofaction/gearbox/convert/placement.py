@@ -1,4 +1,4 @@
-"""Where the file of a housing stands in its scene, as the fields of the housing say it."""
+"""Placement of the file of a housing in its scene, as the fields of the housing state it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a scene file and its STE databases to the scene of dynamics."""
+"""Conversion of a scene file and its STE databases to the scene of dynamics."""
 
 from __future__ import annotations
 
@@ -108,15 +108,15 @@ class TabledScene:
     """A scene with its tables."""
 
     inputs: SceneInput
-    """As it was written, the cases of its meshes written out."""
+    """Scene as its author wrote it, with the cases of its meshes written out."""
     databases: Mapping[str, SteDatabase]
-    """By name of the mesh."""
+    """STE databases by name of their mesh."""
     scene: Scene
-    """What they make, in SI."""
+    """Scene of dynamics that inputs and databases make, in SI."""
     housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
-    """By name of the housing: of those that have a solid, or a file of modes on the caller's disk."""
+    """Reduced housings by name, of housings with a solid or with a file of modes on the caller's disk."""
     seconds: float = 0.0
-    """CPU seconds of tables and housings that were made for it."""
+    """CPU seconds of tables and housings that were made for the scene."""
 
     @property
     def steady(self) -> TabledScene:

@@ -271,7 +271,7 @@ _ALONE: Mapping[str, Callable[[Any], Any]] = {
     "forces": _force,
     "unbalances": _plain(Unbalance),
 }
-"""What makes a part of each kind that follows from its table alone."""
+"""Functions that make a part from its table alone, by kind of part."""
 _LISTS = {kind: _parts_of_kind(kind, made) for kind, made in _ALONE.items()}
 
 

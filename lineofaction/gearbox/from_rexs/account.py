@@ -19,7 +19,7 @@ UNUSED = "no analysis uses it"
 
 @dataclass(frozen=True)
 class Line:
-    """What became of a component, an attribute of it, or a value that it lacks."""
+    """Fate of a component, of an attribute of it, or of a value that it lacks."""
 
     place: str
     """The component, with its load case."""
@@ -32,9 +32,9 @@ class Line:
     """The attribute; empty for the component itself."""
     fate: Fate
     words: str
-    """Its name here, the formula it follows from, or the reason."""
+    """Name of the field in the case or scene, the formula that the value follows from, or the reason."""
     line: int | None = None
-    """Of the component in an XML file, from 1."""
+    """Line of the component in an XML file, counted from 1."""
 
 
 class Account:

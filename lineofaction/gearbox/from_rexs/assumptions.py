@@ -31,9 +31,10 @@ class Assumption:
     component: int
     """Id of the component."""
     attribute: str
-    """Its name in the newest version of REXS."""
+    """Name of the attribute in the newest version of REXS."""
     value: str
-    """As XML writes it, in the unit of the file, else in that of REXS; numbers of an array apart by commas.
+    """Value as XML writes it, in the unit of the file, else in the unit of REXS; commas separate numbers of
+    an array.
     """
 
     @classmethod

@@ -38,7 +38,7 @@ induces, Y = 0.4 cot(alpha) (ISO 281). Half of its elements carry; with much les
 _TILTS = (3, 4)
 
 COPIES = 8
-"""Of each element: stiffness as the average over the passing of an element."""
+"""Number of positions of a rolling element, spread over one pitch, over which the stiffness is averaged."""
 
 _FIXED = ("both_directions", "positive", "negative")
 
@@ -57,7 +57,8 @@ class BearingStiffness:
     tilt: float
     """N m/rad."""
     matrix: FloatArray | None = None
-    """In u, v, w, rotation about v, about w; N, m, rad; instead of the others. Shape (5, 5)."""
+    """Stiffness matrix in u, v, w, rotation about v, about w; N, m, rad. It replaces the other fields. Shape
+    (5, 5)."""
 
     @classmethod
     def of(cls, part: Part) -> BearingStiffness:

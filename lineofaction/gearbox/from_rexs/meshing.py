@@ -1,4 +1,4 @@
-"""How two gears of a stage turn and mesh, and which of them drives."""
+"""Senses of rotation and hands of two gears in mesh, and which gear drives."""
 
 from __future__ import annotations
 

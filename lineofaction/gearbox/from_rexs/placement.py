@@ -1,4 +1,4 @@
-"""Where components stand: points and axes u, v, w, composed over the components they refer to."""
+"""Placement of components: points and axes u, v, w, composed over the components they refer to."""
 
 from __future__ import annotations
 

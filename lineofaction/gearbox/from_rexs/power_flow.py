@@ -30,7 +30,7 @@ class PowerFlow:
     layout: Layout
     train: Train
     speeds: FloatArray
-    """rad/s. Shape (rotors,)."""
+    """Speeds of the rotors, rad/s. Shape (rotors,)."""
     loads: Mapping[int, float]
     """Torque from outside by external load, N m; by shaft where the train's open end has no load that states
     or leaves open its torque.
@@ -38,11 +38,12 @@ class PowerFlow:
     flow: Flow
     """Torques of the stages on the rotors."""
     remarks: tuple[str, ...]
-    """What was assumed."""
+    """Sentences about assumed values."""
     joined: frozenset[int]
     """The rotors that the train joins to a speed that is known."""
     replaced: tuple[int, ...] = ()
-    """The loads whose stated torques do not balance the first; theirs follow from it."""
+    """Loads whose stated torques do not balance the first load. The torques used for them follow from the
+    balance."""
 
     def moves(self, stage: GearStage) -> bool:
         """Return whether the train joins a stage to a speed that is known."""

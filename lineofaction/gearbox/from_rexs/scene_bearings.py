@@ -1,4 +1,4 @@
-"""What holds the shafts of the scene: bearings, and couplings between shafts."""
+"""Supports of the scene's shafts: bearings, and couplings between shafts."""
 
 from __future__ import annotations
 

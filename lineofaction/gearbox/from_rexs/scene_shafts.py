@@ -23,11 +23,11 @@ class SceneShaft:
     """A shaft of the scene."""
 
     name: str
-    """Its name there."""
+    """Name of the shaft in the scene."""
     rotor: int
-    """The rotor that it is, or belongs to."""
+    """Rotor that the shaft is, or belongs to."""
     table: dict[str, Any]
-    """Its table in a scene file."""
+    """Table of the shaft in a scene file."""
 
     @property
     def begin(self) -> float:
@@ -52,7 +52,8 @@ class SceneShafts:
     stages: tuple[GearStage, ...]
     """The stages that the scene has: of equal planets those of the first."""
     stubs: dict[int, SceneShaft] = field(default_factory=dict)
-    """By gear: the stub on which a gear of a set stands whose shaft also meshes outside of the set."""
+    """Stubs by gear: a gear of a planetary set whose shaft also meshes outside of the set stands on a stub.
+    """
 
     @classmethod
     def of(cls, layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:

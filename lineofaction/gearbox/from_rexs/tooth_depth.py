@@ -34,7 +34,7 @@ class ToothDepth:
     thickness_allowance: float
     """Normal tooth thickness removed at the reference circle, m."""
     tooth_thinning: str
-    """What removes it: the cutter, or grinding of the flanks."""
+    """Way in which the allowance is removed: by the cutter, or by grinding of the flanks."""
     cutter: Mapping[str, int | float] = field(default_factory=dict)
     """Fields of the pinion cutter of a ring gear; none where the file has none."""
 

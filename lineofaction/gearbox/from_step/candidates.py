@@ -18,7 +18,7 @@ PARALLEL = 1e-4
 """Sine of the angle between axes that are parallel."""
 
 Bearings = Mapping[str, FloatArray]
-"""By name where they are in the scene."""
+"""Positions of the bearings in the scene, m, by name of the bearing. Shape (3,) each."""
 
 
 def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]:

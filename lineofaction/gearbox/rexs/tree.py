@@ -24,7 +24,7 @@ MAX_ENTRIES = 300_000
 
 
 class Element(ABC):
-    """An element as read. What is taken of its fields leaves them; what stays is none of REXS, and kept.
+    """An element as read. Taking a field removes it; fields that remain are none of REXS and are kept.
 
     Every method raises `BadInput` with the place in the file where a field or a part is missing or is of
     another type.
@@ -33,7 +33,7 @@ class Element(ABC):
     __slots__ = ()
     fields: dict[str, Any]
     line: int | None
-    """In the file, from 1; None in forms without."""
+    """Line of the element in the file, from 1; None in forms without lines."""
 
     @abstractmethod
     def text(self, name: str) -> str:

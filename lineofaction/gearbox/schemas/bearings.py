@@ -74,10 +74,10 @@ class RollingBearingInput(BoundaryModel):
 
 
 class BearingInput(BoundaryModel):
-    """Springs and dampers of a bearing, and what it does that is not linear."""
+    """Springs and dampers of a bearing, and its nonlinear laws."""
 
     class BearingLawInput(BoundaryModel):
-        """What a bearing does that is not linear."""
+        """A nonlinear law of a bearing."""
 
         @property
         def renamed(self) -> dict[str, Any]:
@@ -214,7 +214,7 @@ class BearingInput(BoundaryModel):
 
     @property
     def laws(self) -> Mapping[str, Mapping[str, BearingLawInput]]:
-        """What it does that is not linear, by kind and by field."""
+        """The nonlinear laws of the bearing, by kind and by field."""
         contact = {} if self.rolling_contact is None else {"rolling_contact": self.rolling_contact}
         curves = {f"spring_curves[{index}]": curve for index, curve in enumerate(self.spring_curves)}
         return {"rolling_contacts": contact, "spring_curves": curves}

@@ -10,16 +10,16 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Point, refuse
 from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of, exactly_one_of
 
 WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
-"""What is heard, and at which speed: one of each."""
+"""Fields of what the complaint names, a frequency or an order, and fields of its speed: at most one each."""
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
-"""What a road speed alone needs."""
+"""Fields that a road speed needs and a shaft speed does not."""
 
 _MIN = (
     ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
     ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
     ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
 )
-"""Fields, the least value of each, and what is said of lower ones: they are in another unit."""
+"""Fields, the least value of each, and the message about a lower value, which is in another unit."""
 
 
 class ComplaintFields(BoundaryModel):

@@ -16,7 +16,7 @@ from lineofaction.gearbox.schemas.model import refuse
 from lineofaction.gearbox.schemas.rules import all_of, both, left_out, required
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
-"""What is a ring gear's own, or otherwise than an external gear's."""
+"""Fields that only a ring gear has, or that differ from those of an external gear."""
 _DEFAULTS = {
     figure.field: figure.boundary_value(figure.default) for figure in RING if figure.default is not MISSING
 }

@@ -1,4 +1,4 @@
-"""From pydantic's errors to faults: field, value, bound, suggestion."""
+"""Conversion of pydantic's errors to faults: field, value, bound, suggestion."""
 
 from __future__ import annotations
 

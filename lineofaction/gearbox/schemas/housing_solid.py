@@ -40,7 +40,7 @@ def _figures_of(value: object, *, later: bool) -> object:
 
 
 MATERIAL: Any = Literal[tuple(MATERIALS)] | HousingMaterialInput
-"""What a scene may write for a material."""
+"""Type of a material in a scene: the name of a known material, or a table."""
 
 
 @with_fields(declared_in(Temperatures))

@@ -41,7 +41,7 @@ _FOREIGN = {
     _BY_SOLID: {_BY_MATRICES: _MATRICES, RESPONSES: _NODES},
     RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
 }
-"""By what a housing is given by: the fields that belong to other kinds, by these."""
+"""Fields that a housing must leave out, by the kind of housing and by the kind that the fields belong to."""
 
 
 def _left_out(value: object) -> bool:

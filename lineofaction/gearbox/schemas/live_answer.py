@@ -112,7 +112,7 @@ class LiveCurve(BoundaryModel):
         worst_position: float = Field(description="That position in base pitches", examples=[0.25])
 
     class LivePassage(BoundaryModel):
-        """What a pair of teeth meets on its way through the mesh; rows by place, columns over the face.
+        """Pressure and load of a pair of teeth through the mesh; rows by place, columns over the face.
 
         The place of a pair is the position plus the index of the pair. Its contact line is where the roll
         length of the driving gear is that of the pitch point, plus place times base pitch, less face
@@ -120,7 +120,7 @@ class LiveCurve(BoundaryModel):
         """
 
         first_place: float = Field(description="Place of the first row, base pitches", examples=[-1.5])
-        step: float = Field(description="Of the place between rows", examples=[0.03125])
+        step: float = Field(description="Step of the place between rows", examples=[0.03125])
         face_position_mm: list[float] = Field(
             description="Columns: distance from the driving gear's mid-face", examples=[[-5.0, 5.0]]
         )
@@ -130,10 +130,10 @@ class LiveCurve(BoundaryModel):
         )
 
     class LiveBand(BoundaryModel):
-        """What nine of ten pairs have whose flanks deviate within a class, 5 % below and 5 % above."""
+        """The range of nine in ten pairs whose flanks deviate within a class: 5 % lie below, 5 % above."""
 
         class Spread(BoundaryModel):
-            """The ends of a figure, and what they may be wrong by."""
+            """The ends of the range of a figure, and the error of the ends."""
 
             low_um: float = Field(description="A twentieth of the pairs has less, in µm", examples=[0.26])
             high_um: float = Field(description="A twentieth of the pairs has more, in µm", examples=[1.31])

@@ -10,7 +10,8 @@ from typing import Any, TypeAlias
 from lineofaction.gearbox.problems import BadInput
 
 Find: TypeAlias = Callable[[str, str], Path]
-"""From the name of a file and the field that has it to where it is; raises `BadInput`."""
+"""Function from the name of a file and the field with that name to the path of the file; raises `BadInput`.
+"""
 _FOLDERS = re.compile(r"[/\\]")
 Table = dict[str, Any]
 _LARGEST_FILE = 16_000_000

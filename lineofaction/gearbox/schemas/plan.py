@@ -1,4 +1,4 @@
-"""What is said of an input before anything is computed: warnings, the plan of a run, its cost."""
+"""Statements about an input before anything is computed: warnings, the plan of a run, its cost."""
 
 from __future__ import annotations
 
@@ -48,18 +48,24 @@ class PlannedCost(BaseModel):
     cpu_seconds: float
     correction: dict[str, float] = Field(description="Factor by stage from earlier runs on this machine")
     memory_bytes: int = Field(description="Largest resident memory of the process")
-    positions: int = Field(description="Of the table; expected where they are adaptive")
+    positions: int = Field(
+        description="Number of positions of the table; an expected number where positions are adaptive"
+    )
 
 
 class ModelBias(BaseModel):
-    """By how much the gears exceed a plane model; parts of its own figures, with sign."""
+    """Amount by which the gears exceed a plane model; ratios to the plane model's figures, with sign."""
 
     subject: str = Field(description="Plane model and face width in words")
     mean: float
-    peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
-    either_way_um: float = Field(description="Then the largest change of peak-to-peak in µm, else 0")
-    error: float = Field(description="Error of the bias in parts of it")
-    visible_peak_to_peak: float = Field(description="Of flanks whose ripple no relief hides")
+    peak_to_peak: float | None = Field(description="Null where reliefs leave its sign open")
+    either_way_um: float = Field(
+        description="Largest change of peak-to-peak in µm if peak_to_peak is null, else 0"
+    )
+    error: float = Field(description="Error of the bias over the bias")
+    visible_peak_to_peak: float = Field(
+        description="Ratio for the peak-to-peak of flanks whose ripple no relief hides"
+    )
     bending_ripple: float = Field(description="Peak-to-peak over the mean of unmodified flanks")
     words: str
 

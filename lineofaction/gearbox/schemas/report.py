@@ -17,7 +17,7 @@ ShortText = Annotated[str, Field(min_length=1, max_length=200)]
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a figure must reach: the beginning of its name, a limit and its unit as the report writes it."""
+    """A limit on a figure of the report: the beginning of its name, the limit, the unit as in the report."""
 
     text: str
     figure: str

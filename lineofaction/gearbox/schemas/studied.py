@@ -1,4 +1,4 @@
-"""What studies take and vary: a case or a scene, speeds, orders."""
+"""The subjects and variables of studies: a case or a scene, speeds, orders."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ RANGES = (
     "bearing_stiffness",
     "mesh_damping",
 )
-"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
+"""Copy of the names in `dynamics.noise.GUESSES`. Importing that module takes longer than a service takes to
+start."""
 
 
 class OverSpeeds(BoundaryModel):

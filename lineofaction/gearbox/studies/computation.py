@@ -41,19 +41,19 @@ class ResultFile:
     """The netCDF file of a result."""
 
     attribute: str
-    """By which such a file is known."""
+    """Attribute of the file by which its kind is known."""
     values: tuple[str, ...]
-    """That it has in such files."""
+    """Values of the attribute that such files have."""
     write: Callable[[Any, Path], object]
     read: Callable[[Path], Any]
-    """`write`, `read`: Result and path to the file, and back; `read` raises the libraries' errors or
-    ValueError.
+    """`write`, `read`: Functions from result and path to the file, and from the path to the result; `read`
+    raises the libraries' errors or ValueError.
     """
     result: Any
-    """What `read` returns, as an annotation: the client's types are written from it."""
+    """Type that `read` returns, as an annotation: the client's types are written from it."""
 
     def holds(self, attributes: Mapping[str, object]) -> bool:
-        """Whether a file with these attributes is one."""
+        """Whether a file with these attributes is a file of this kind."""
         return attributes.get(self.attribute) in self.values
 
 
@@ -83,17 +83,17 @@ class Means:
     report: Callable[[str, float], None]
     """Called as report(stage, fraction)."""
     workers: Workers = field(default_factory=InProcess)
-    """Who does the tasks."""
+    """Executor of the tasks."""
     cancel: Callable[[], bool] | None = None
-    """Says whether to end with the best so far."""
+    """Function that returns whether to end with the best so far; None: never."""
     folder: Path | None = None
-    """Where to put the runs that a study keeps in full; None: nowhere."""
+    """Folder for the runs that a study stores in full; None: no run is stored."""
     run: RunResult | None = None
-    """Whose bearing forces a study takes in place of the linear response."""
+    """Run whose bearing forces replace those of the linear response; None: the linear response."""
 
     @property
     def analysis(self) -> Run:
-        """How analyses of gear pairs are run: shared by the workers, condensed gears kept."""
+        """The settings of analyses of gear pairs: shared workers, and a cache of condensed gears."""
         return Run(self.workers, self.home / "compliance", self.report)
 
 
@@ -110,7 +110,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     answer: type[Answer]
     """Model of the figures of a result."""
     file: ResultFile
-    """How a result is written and read back."""
+    """File format of a result."""
     tables: ClassVar[bool] = True
     """Whether a scene comes with the tables of its meshes."""
     interruptible: ClassVar[bool] = False

@@ -1,4 +1,4 @@
-"""What a study is predicted to cost before it begins, and how large a scene is that is not computed yet."""
+"""Predicted cost of a study before it begins, and the size of a scene whose tables are not computed yet."""
 
 from __future__ import annotations
 

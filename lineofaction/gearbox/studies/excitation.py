@@ -1,4 +1,4 @@
-"""What excites a linear response in one harmonic of a mesh, each amplitude with its error."""
+"""Excitation of a linear response by one harmonic of a mesh, each amplitude with its error."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ class Excitation:
 
     mesh: str
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     harmonic: int | None
-    """None: an order beside the harmonics of the mesh."""
+    """Harmonic of the mesh; None: an order beside the harmonics."""
     order: float
     transmission_error: float
     error_of_transmission_error: float | None

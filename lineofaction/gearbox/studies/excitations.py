@@ -1,4 +1,4 @@
-"""What a result says of its scene: what excites it, each with its error, its complaint, its reductions."""
+"""Facts of a result about its scene: excitations with their errors, complaint, reductions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What studies of housings start from: surfaces, the bearing forces of the response or of a run, costs."""
+"""Inputs of studies of housings: surfaces, bearing forces of the response or of a run, and costs."""
 
 from __future__ import annotations
 

@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     pass
 
 CASES = CheckedCases(16)
-"""Cases whose costs were predicted last: those of a scene and of several verbs are checked once."""
+"""Cases whose costs were predicted last: cases that a scene or several verbs share are checked once."""
 
 _SINGLE_STIFFNESS = 14e9
-"""Of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
+"""Stiffness of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
 
 _POSITIONS = 48
-"""Of a table in a base pitch, about as many as a computed one has."""
+"""Number of positions of a table in a base pitch, about as many as a computed table has."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a reader hands on: channels as they stand in a file, and the fault of a file that holds none."""
+"""Channels as a reader of recordings returns them, and the error for a file without usable channels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 MAX_CHANNELS = 1024
 MAX_SAMPLES = 20_000_000
-"""Of all channels that are read together: half a GB with their times."""
+"""Most samples of all channels that are read together: half a GB with their times."""
 
 
 class UnusableFile(Exception):

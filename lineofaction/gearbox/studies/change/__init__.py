@@ -32,7 +32,7 @@ _AFTER = {
 
 
 class HeardInput(BoundaryModel):
-    """What is compared: a quantity, and what is made of it over the speeds."""
+    """Quantity whose levels are compared, and the figure that is formed from its levels over the speeds."""
 
     quantity: Literal["sound_power", "sound_pressure", "surface_velocity", "bearing_force"] | None = Field(
         default=None,

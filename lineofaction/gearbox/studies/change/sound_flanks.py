@@ -79,11 +79,11 @@ class FlankLevels(NamedTuple):
 
 @dataclass(frozen=True)
 class HeardLoad:
-    """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics."""
+    """A load case: transfer functions, quantity of sound or vibration, and lines of the harmonics."""
 
     load: LoadCase
     others: OtherFlanks = field(repr=False)
-    """Of the mesh, about the flanks about which the transfer functions are."""
+    """Scene at rest with other flanks of the mesh, linear about the flanks of the transfer functions."""
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
@@ -136,18 +136,18 @@ class HeardLoad:
 
 @dataclass(frozen=True)
 class HeardFlanks:
-    """A scene in which flanks of one mesh are heard."""
+    """A scene prepared to compute levels for other flanks of one mesh."""
 
     known: SteDatabase = field(repr=False)
-    """Table of the mesh in the scene: at its forces, misalignment and center distance flanks are solved."""
+    """Table of the mesh in the scene: flanks are solved at its forces, misalignment and center distance."""
     bodies: CondensedPair
-    """Of the mesh: both designs are flanks on them."""
+    """Condensed gears of the mesh, on which the flanks of both designs are solved."""
     worst_speed: bool
     load_cases: tuple[HeardLoad, ...] = ()
 
     @property
     def torque(self) -> FloatArray:
-        """On the driving gear of the mesh (L,), N m."""
+        """The torque on the driving gear of the mesh (L,), N m."""
         force = [case.others.excitation.mean_force[case.others.mesh] for case in self.load_cases]
         return np.array(force) * self.known.facts.base_radius[0]
 

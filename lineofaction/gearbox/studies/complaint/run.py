@@ -78,13 +78,13 @@ class OrderForce:
 @brief
 @dataclass(frozen=True)
 class AnsweredComplaint:
-    """The answer."""
+    """The answer to a complaint: forces and modes near its order."""
 
     complaint: Complaint
     forces: tuple[OrderForce, ...]
-    """Of all that passes within the tolerance, in its sequence."""
+    """Forces of the orders within the tolerance, in the sequence of the complaint."""
     modes: tuple[NearMode, ...]
-    """The most amplified first; empty without a speed, and of a case."""
+    """Modes near the frequency, the most amplified first; empty without a speed, and for a case."""
     facts: Json
 
 

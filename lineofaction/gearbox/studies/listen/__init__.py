@@ -1,4 +1,4 @@
-"""A run that is heard through the housings of a scene, and where."""
+"""Inputs and figures of a run that is heard through the housings of a scene."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Inputs(BoundaryModel):
 
 
 class SoundPressure(Part):
-    """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
+    """Figures of hearing a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
 
     class Tone(Part):
         """A prominent tone of a steady sound."""

@@ -32,7 +32,7 @@ class Inputs(OverSpeeds):
 
 
 class Mode(Part):
-    """What a mode is: where its strain and kinetic energy are, in parts; parts below 0.1 % are left out."""
+    """Shares of the strain and the kinetic energy of a mode by part; shares below 0.1 % are left out."""
 
     mode: int
     kind: str

@@ -51,7 +51,7 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
 
 
 class ExactLineFigures(Part):
-    """A line that boundary elements correct: its level by the estimate and by them, and what it cost."""
+    """A line that boundary elements correct: its level by the estimate, its corrected level, and the cost."""
 
     frequency_hz: float
     estimate_db: Annotated[float, Source("estimate")]
@@ -61,7 +61,7 @@ class ExactLineFigures(Part):
 
 
 class HousingSound(Part):
-    """How a housing radiates: outer hull, radiation model, the models where it is loudest, and what it cost.
+    """Radiation of a housing: outer hull, radiation model, models at the loudest lines, and their cost.
 
     Stated error and predicted cost are those of all models, computed or not.
     """
@@ -135,7 +135,7 @@ class SoundBandFigures(Part):
 
 
 class SensitivityFigures(Part):
-    """What steps of a figure change of the largest level; None: without end."""
+    """Changes of the largest level by steps of a figure; None: without limit."""
 
     figure: Annotated[str, Source("figure.name")]
     unit: Annotated[str, Source("figure.unit")]

@@ -21,7 +21,7 @@ from lineofaction.gearbox.studies.noise import (
 from lineofaction.gearbox.studies.noise.uncertainty import SoundUncertainty
 
 RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_left_out")
-"""What a sound takes over from its response or run."""
+"""Facts that a sound copies from its response or run."""
 
 
 def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:

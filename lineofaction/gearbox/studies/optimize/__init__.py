@@ -97,7 +97,7 @@ class ScatterInput(BoundaryModel):
 
 
 class SearchInput(BoundaryModel):
-    """How the best design is searched."""
+    """Method and settings of the search for the best design."""
 
     method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
         default="sequential_linear_programming",
@@ -148,7 +148,7 @@ class SearchInput(BoundaryModel):
 
 
 class HeardObjectiveInput(OverOrders, HeardInput):
-    """What is heard of a scene: a level over speeds and load cases, which is minimized."""
+    """Level of a scene over speeds and load cases, which is minimized."""
 
     mesh: Name | None = Field(
         default=None,
@@ -188,7 +188,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
     @property
     def heard(self) -> HeardInput:
-        """What is made of the scene's vibration."""
+        """The quantity of the scene's vibration whose level is minimized."""
         return self
 
     @model_validator(mode="after")
@@ -228,7 +228,7 @@ class Inputs(BoundaryModel):
         )
 
     class ObjectiveInput(BoundaryModel):
-        """What is made of the expected peak-to-peak at the torques."""
+        """Objective from the expected peak-to-peak at the torques."""
 
         kind: Literal["weighted_mean", "worst"] = Field(
             default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
@@ -241,7 +241,7 @@ class Inputs(BoundaryModel):
         )
 
     class LimitsInput(BoundaryModel):
-        """What a design has to keep at every torque and deviation."""
+        """Limits that a design keeps at every torque and deviation."""
 
         max_pressure_mpa: float | None = Field(
             default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
@@ -341,7 +341,7 @@ class HeardDesignFigures(Part):
 
 
 class WithinFigures(Part):
-    """Levels of pairs within tolerances: what 5, 50 and 95 % are below, and the share that gets louder."""
+    """Levels of pairs within tolerances: quantiles of 5, 50 and 95 %, and the share that gets louder."""
 
     tolerance_class: int
     pairs: int
@@ -352,7 +352,7 @@ class WithinFigures(Part):
 
 
 class HeardFigures(Part):
-    """What is heard before and after, by load case then by order ("all": all of them together)."""
+    """Levels before and after, by load case then by order ("all": all orders together)."""
 
     class LineFigures(Part):
         """An order of the mesh, or all orders together."""
@@ -382,10 +382,10 @@ class HeardFigures(Part):
 
 
 class OptimizeFigures(Figures):
-    """The start and the optimum, what was free, and how the search ended; of a scene what is heard."""
+    """The start and the optimum, the variables, and the end of the search; for a scene the levels."""
 
     class VariableFigures(Part):
-        """What was free, between bounds in the unit of its name."""
+        """A variable of the search, with bounds in the unit of its name."""
 
         name: str
         bounds: tuple[float, float]

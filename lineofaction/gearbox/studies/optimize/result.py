@@ -1,4 +1,4 @@
-"""Flanks that are heard least in a scene: levels before and after, and what gets worse."""
+"""Quietest flanks of a mesh in a scene: levels before and after the search, and figures that get worse."""
 
 from __future__ import annotations
 
@@ -38,24 +38,25 @@ class HeardDesign:
     """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
-    """`peak_to_peak`, `peak_to_peak_error`: Of the transmission error without scatter, m. Shape (L,) each."""
+    """`peak_to_peak`, `peak_to_peak_error`: Peak-to-peak of the transmission error without scatter, and its
+    error, m. Shape (L,) each."""
     pressure: FloatArray = field(metadata=in_unit("pa", "load_case"))
     """Largest Hertzian pressure at any node of the scatter, Pa. Shape (L,)."""
     face_load_factor: FloatArray
     edge_load_share: FloatArray
-    """`face_load_factor`, `edge_load_share`: Shape (L,) each."""
+    """`face_load_factor`, `edge_load_share`: K_Hbeta, and share of the load at edges. Shape (L,) each."""
     parting: FloatArray
     """Largest share of the static mesh force by which flanks part at a speed, 0: they do not. Shape (L,)."""
     violation: float
-    """Of the limits, in parts of them."""
+    """Relative amount by which the limits are exceeded; 0: all limits hold."""
     root_stress: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
-    """`root_stress`, `root_stress_error`: Largest in the tension roots at any node of the scatter, Pa; NaN
-    without a limit of it. Shape (L,) each.
+    """`root_stress`, `root_stress_error`: Largest stress in the tension roots at any node of the scatter, and
+    its error, Pa; NaN without a limit on root stress. Shape (L,) each.
     """
     pressure_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
@@ -75,45 +76,46 @@ class HeardOptimization:
     unit: str
     over_speeds: str
     over_loads: str
-    """`mesh`, `quantity`, `unit`, `over_speeds`, `over_loads`: What is minimized, in words; the unit with its
-    reference.
+    """`mesh`, `quantity`, `unit`, `over_speeds`, `over_loads`: Words for the minimized figure; the unit with
+    its reference.
     """
     lines: tuple[str, ...]
-    """`ALL` orders that count together, then the orders of the mesh."""
+    """Names of the lines: `ALL` orders that count together, then the orders of the mesh."""
     variables: tuple[DesignVariable, ...]
     load_case: tuple[str, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
     misalignment: FloatArray = field(metadata=in_unit("m", "load_case"))
-    """`torque`, `misalignment`: On the driving gear of the mesh, N m, and of the mesh, m. Shape (L,) each."""
+    """`torque`, `misalignment`: Torque on the driving gear of the mesh, N m, and misalignment of the mesh, m.
+    Shape (L,) each."""
     speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
-    """Of the leading shaft, rad/s. Shape (S,)."""
+    """Speed of the leading shaft, rad/s. Shape (S,)."""
     start: HeardDesign
     optimum: HeardDesign
     runs: tuple[SearchRun, ...]
     best_run: int
     tolerance_class: int
     pairs: FloatArray = field(metadata=in_unit("dB", "design", "pair"))
-    """Levels of start and optimum with the same deviations within that class, dB; none where it has none.
-    Shape (2, N).
+    """Levels of start and optimum with the same deviations within the tolerance class, dB; empty without a
+    class. Shape (2, N).
     """
     case: Json
-    """Of the mesh, as a case file has it."""
+    """Case of the mesh, as a case file has it."""
     cost: Json
     """Evaluations, and CPU seconds by stage."""
 
     @property
     def gain(self) -> Estimate:
-        """By how much the level falls, dB; the errors are added, although both designs have one mesh."""
+        """The fall of the level, dB; the errors of both designs are added, although they share a mesh."""
         return gain_of(self.start, self.optimum)
 
     @property
     def evaluations(self) -> int:
-        """Designs that the search evaluated."""
+        """The number of designs that the search evaluated."""
         return sum(run.evaluations for run in self.runs)
 
     @property
     def outcome(self) -> Outcome:
-        """What came of it: ties within the errors are ties."""
+        """The outcome of the search; designs whose levels differ by less than the errors are tied."""
         return outcome_of(self.start, self.optimum)
 
     @property

@@ -1,4 +1,4 @@
-"""Search the flanks of a mesh that are heard least in a scene."""
+"""Search for the quietest flanks of a mesh in a scene."""
 
 from __future__ import annotations
 
@@ -69,16 +69,16 @@ WALK, FINISH, LINEARIZED = 20, 8, 2.5
 
 @dataclass(frozen=True)
 class SoundSearch:
-    """What a search and its confirmation work on."""
+    """Problem, bodies and load cases that a search and its confirmation work on."""
 
     problem: HeardProblem
     sample: HeardProblem | None
-    """The same problem over pairs within tolerances; None where the standard has none for these gears."""
+    """The same problem over pairs within tolerances; None: the standard has no tolerances for these gears."""
     bodies: CondensedPair
     torque: FloatArray
     misalignment: FloatArray
-    """`torque`, `misalignment`: Of the load cases on the driving gear, N m, and of the mesh, m. Shape (L,)
-    each.
+    """`torque`, `misalignment`: Torque of the load cases on the driving gear, N m, and misalignment of the
+    mesh, m. Shape (L,) each.
     """
 
 

@@ -34,7 +34,7 @@ _DRAWN_TEETH = 2.2
 
 2.1 and 2.4 of a helical pair 23/67, hobbed, over its revolutions, 2.3 of a spur pair 19/28 in the plane."""
 MAX_SAMPLES = 100_000
-"""Of a job: its result holds every pair, 10 to 100 MB."""
+"""Most samples of a job: its result holds every pair, 10 to 100 MB."""
 
 _TOLERATED = {
     f"{gear}.{figure.field}": f"{gear}.{figure.name}"

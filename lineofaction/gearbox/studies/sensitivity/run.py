@@ -34,12 +34,14 @@ _USUAL: tuple[tuple[float, ...], ...] = (
     (0.0, 0.05, 0.1, 0.15, 0.2),
     (-0.2, -0.15, -0.1, -0.05, 0.0),
 )
-"""Changes of the center distance in per cent where none are named: the first at which a pair meshes.
+"""Changes of the center distance in per cent if none are named: the first row at which a pair meshes.
+
+All rows have equally many changes, so that the pairs of one study have equally many.
 
 As many of each: pairs of one study have equally many.
 """
 TABLES = 4
-"""Of a pair: over each deviation, without and with corner contact."""
+"""Number of tables of a pair: over each of two deviations, without and with corner contact."""
 
 
 @brief

@@ -200,7 +200,7 @@ class StudyFigures(Figures):
     """Factors, statistics of all responses, worst and failed points."""
 
     class FactorFigures(Part):
-        """What was varied, and how."""
+        """A factor by its path, and the kind of its values."""
 
         path: str
         kind: str
@@ -222,15 +222,17 @@ class StudyFigures(Figures):
         unit: str
         mean: list[float | None]
         standard_error: list[float | None]
-        """`mean`, `standard_error`: Of the response over the samples, one entry a combination."""
+        """`mean`, `standard_error`: Mean of the response over the samples and its standard error, one entry a
+        combination."""
         confidence: float
         """Confidence level of the bounds of the quantiles."""
         quantiles: list[QuantileFigures]
         spread_of_level_means: dict[str, float | None]
-        """By factor of the grid or the list: largest less smallest mean of the response at one of its values.
+        """Largest less smallest mean of the response over the values of a factor, by factor of the grid or
+        the list.
         """
         rank_correlation: dict[str, float | None]
-        """By factor with a distribution: rank correlation of its values with the response, -1..1."""
+        """Rank correlation of a factor's values with the response, -1..1, by factor with a distribution."""
 
     class PointFigures(Part):
         """A point: the values of the factors and its responses."""
@@ -245,7 +247,7 @@ class StudyFigures(Figures):
         point: int
         """Number of the point, from 0."""
         values: dict[str, float]
-        """By path of the factor."""
+        """Values of the factors by path."""
         responses: dict[str, PointResponse]
 
     class FailedPoint(Part):

@@ -68,7 +68,7 @@ class VibrationFigures(Figures):
         """Contributions at one speed and order."""
 
         class Contribution(Part):
-            """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+            """Share of a bearing or mode in the mean square of points and hull; the shares sum to 1."""
 
             name: str
             frequency_hz: float | None

@@ -1,4 +1,4 @@
-"""What a vibration tells of each point, and of what contributes at one speed and order, in SI."""
+"""Figures of a vibration at each point, and contributions to it at one speed and order, in SI."""
 
 from __future__ import annotations
 
@@ -37,19 +37,19 @@ def root_mean_square(velocity: ComplexArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+    """Share of a bearing or mode in the mean square of points and hull; the shares sum to 1."""
 
     name: str
     frequency: float
-    """Natural frequency, Hz; NaN of what is no mode."""
+    """Natural frequency, Hz; NaN for a bearing."""
     points: dict[str, float]
     surface: float
-    """NaN without a surface."""
+    """Share in the mean square of the outer hull; NaN without a surface."""
 
 
 @dataclass(frozen=True)
 class Contributions:
-    """What contributes at one speed, rad/s, and order, of a frequency, Hz."""
+    """Contributions at one speed, rad/s, and order, whose frequency is in Hz."""
 
     speed: float
     order: float

@@ -58,11 +58,11 @@ class MeasuredHousingVibration:
     bearing: tuple[str, ...]
     """e bearings whose seats were pushed."""
     share: FloatArray
-    """What each contributes there to the mean square velocity of each point; NaN of one at rest. Shape (e,
-    k).
+    """Share of each bearing, at this speed and order, in the mean square velocity of each point; NaN for a
+    point at rest. Shape (e, k).
     """
     facts: Json = field(default_factory=dict)
-    """Plain JSON, of the response."""
+    """Facts of the response as plain JSON."""
 
     @property
     def axes(self) -> dict[str, str]:

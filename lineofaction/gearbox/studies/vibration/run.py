@@ -1,4 +1,4 @@
-"""Vibration of a scene's housing: by order over speed, and what makes it."""
+"""Vibration of a scene's housing: levels by order over speed, and their causes."""
 
 from __future__ import annotations
 
@@ -62,19 +62,19 @@ class HousingVibrationResult:
 
     analysis: VibrationAnalysis
     natural_frequency: FloatArray
-    """Of the housing with its seats free, Hz; those kept. Shape (m,)."""
+    """Natural frequencies of the modes of the reduced housing with free seats, Hz. Shape (m,)."""
     mode: int = 0
-    """From 1; 0: none is drawn."""
+    """Number of the drawn mode from 1; 0: no mode is drawn."""
     mode_shape: SurfaceShape | None = None
 
     @property
     def facts(self) -> Json:
-        """Return those of the analysis."""
+        """Return the facts of the analysis."""
         return self.analysis.facts
 
     @property
     def shape(self) -> SurfaceShape | None:
-        """Return what is drawn: the mode, or the velocity of the operating deflection; None: no surface."""
+        """Return the drawn shape: the mode, or the velocity of the operating deflection; None: no surface."""
         return self.mode_shape or self.analysis.deflection
 
 
