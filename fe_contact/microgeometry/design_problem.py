@@ -19,13 +19,16 @@ from fe_contact.types import FloatArray
 from model_studies.workers import InProcess, Workers
 
 PENALTY = 10.0
-"""Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
+"""Merit of a limit that is exceeded by its own size, over the scale: an excess of 1 % costs a tenth of the
+scale.
+"""
 
 SLACK = 0.005
-"""Limits exceeded by less, in parts of them, are kept: a full analysis has more positions than a search."""
+"""Largest relative excess over a limit that counts as kept. A full analysis has more positions than a search.
+"""
 
 USUAL_DESIGNS = 100
-"""Of all walks of a search: workers that are woken by its first designs serve the others, too."""
+"""Designs of all walks of a usual search. The cost of waking workers is shared among them."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +41,7 @@ class Assessed:
 
     @property
     def order(self) -> tuple[float, float]:
-        """By which designs are ranked: first those that keep the limits, then by the objective."""
+        """Sort key of designs: first those that keep the limits, then by the objective."""
         return self.violation, self.objective
 
 
@@ -67,9 +70,9 @@ class SearchProblem(ABC):
     variables: tuple[DesignVariable, ...]
     limits: Limits
     scale: float
-    """Objective of the start; merits are relative to it."""
+    """Objective of the start design; merits are relative to it."""
     memory: _Memory | None = None
-    """Of designs that were assessed before."""
+    """Memory of designs that were assessed before; None without such a memory."""
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the memory behind: it is a file of this machine, for one writer."""
@@ -82,7 +85,7 @@ class SearchProblem(ABC):
 
     @property
     def ranges(self) -> FloatArray:
-        """What the variables reach over (d,), m."""
+        """Widths of the variables' ranges (d,), m."""
         return np.array([variable.high - variable.low for variable in self.variables])
 
     def values(self, point: FloatArray) -> dict[str, float]:

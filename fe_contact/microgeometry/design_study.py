@@ -32,15 +32,15 @@ class DesignStudy:
     """A pair whose designs can be assessed."""
 
     decision: Decision
-    """Model and discretization, of all designs and all torques."""
+    """Model and discretization of all designs and all torques."""
     loads: DesignLoads
-    """All T of them: those of the full analysis."""
+    """All T loads of the full analysis."""
     force: FloatArray
-    """Their normal forces, N. Shape (T,)."""
+    """Normal forces of the loads, N. Shape (T,)."""
     counted: IntArray
-    """Which of them count; the others are for maps. Shape (L,)."""
+    """Indices of the loads that count for the objective; the others are for maps. Shape (L,)."""
     evaluator: Evaluator
-    """At the loads that count."""
+    """Evaluator at the loads that count."""
 
     @property
     def torque(self) -> FloatArray:
@@ -54,25 +54,23 @@ class DesignSpace:
 
     pair: ParallelAxes
     varied: Mapping[str, float]
-    """``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
-    decided.
-    """
+    """Design by which effects are decided, ``gear.quantity`` to m: no varied quantity of it is zero."""
     scatter: Scatter
     misalignment: Misalignments
-    """About which it scatters, m: one value, or one for each torque."""
+    """Mean misalignment, m: one value, or one for each torque."""
     positions: int
-    """Equally spaced in a base pitch."""
+    """Number of equally spaced positions in a base pitch."""
     options: AnalysisOptions
-    """Their `positions`, `receipt` and `on_violation` do not count."""
+    """Options of the analysis. Their `positions`, `receipt` and `on_violation` are ignored."""
     minimum: Mapping[str, float] = field(default_factory=dict)
-    """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
+    """Design with the least material removed, ``gear.quantity`` to m. Effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
 
-        `torques`, `further_torques`: those that count, each with its misalignment, and others that the table
-        has, N m. Raises `InputError`: a value that cannot be used, or something is varied whose effect is
-        off.
+        `torques`, `further_torques`: Torques that count, each with its misalignment, and further torques of
+        the table, N m. Raises `InputError`: a value that cannot be used, or a quantity is varied whose effect
+        is off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
         loads = DesignLoads.of(torques, self.misalignment)
@@ -126,13 +124,13 @@ def design_study(
     Parameters
     ----------
     torques, further_torques : sequence of float
-        Those that count, and those that only maps show, N m.
+        Torques that count, and torques that only maps show, N m.
     run : Run
-        Only this process works.
+        Cache and progress; its workers are not used.
     checked : Checked, optional
-        Of `DesignSpace.check`, where that is done.
+        Result of `DesignSpace.check`, if it was called before.
     limits : Limits
-        One of the root stress has its unit loads solved.
+        Limits of the search. A limit of the root stress needs the solution of its unit loads.
     """
     design_loads = DesignLoads.of(torques, space.misalignment)
     loads, counted = design_loads.with_torques(further_torques)

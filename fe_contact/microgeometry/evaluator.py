@@ -1,4 +1,4 @@
-"""Assess designs of one pair on one compliance: only the gaps are new, and the contact is solved."""
+"""Assessment of designs of one pair on one compliance: contact is solved under the gaps of each design."""
 
 from __future__ import annotations
 
@@ -93,18 +93,18 @@ class Evaluator:
     """
 
     contact: PairContact
-    """Its compliance does not depend on the modification."""
+    """Contact of the pair. Its compliance does not depend on the modification."""
     choices: Mapping[str, str]
-    """Every effect "on" or "off"."""
+    """Choice of every effect, "on" or "off"."""
     position: FloatArray
-    """In one base pitch. Shape (P,)."""
+    """Positions in one base pitch. Shape (P,)."""
     load: FloatArray
     """Normal forces, N. Shape (L,)."""
     misalignment: FloatArray
-    """Of each load, about which it scatters, m. Shape (L,)."""
+    """Mean misalignment at each load, m. Shape (L,)."""
     nodes: ScatterNodes
     roots: RootInfluence | None = None
-    """By which the stress of the roots is followed."""
+    """Unit-load stress of the roots; None where root stress is not followed."""
 
     @property
     def misalignments(self) -> FloatArray:
@@ -226,9 +226,9 @@ class LoadFigures:
     """The figures of L loads of one misalignment at one node of the scatter."""
 
     ste: FloatArray
-    """m; NaN where the contact was not solved. Shape (P, L)."""
+    """Transmission error, m; NaN where the contact was not solved. Shape (P, L)."""
     pressure: FloatArray
-    """Of every candidate, Pa. Shape (P, L, m)."""
+    """Pressure of every candidate, Pa. Shape (P, L, m)."""
     face_load: FloatArray
     """Mean over the positions at the points of the face, over its mean over the face. Shape (L, Z)."""
     edge_load_share: FloatArray

@@ -45,31 +45,31 @@ from fe_contact.options import Run
 from fe_contact.types import ComplexArray, FloatArray
 
 IN_A_TASK = 4
-"""Pairs of a task."""
+"""Number of pairs in a task of a worker."""
 _MIN = 1e-15
 """Amplitude in m below which there is no level."""
 
 
 @dataclass(frozen=True)
 class ToothPassing:
-    """What the teeth of a gear add to one order at L loads, to first order."""
+    """First-order contribution of the teeth of a gear to one order at L loads."""
 
     line: int
-    """The order, per revolution of the gear."""
+    """Order in periods per revolution of the gear."""
     turns: int
-    """By how many turns of the gear it is beside the mesh."""
+    """Turns of the gear between the order and the mesh order."""
     by_tooth: Mapping[str, ComplexArray]
     """Complex amplitude by the Fourier sum of a deviation over the teeth, m/m. Mapping of str to ndarray,
     shape (L,).
     """
     by_wobble: ComplexArray
-    """By the amount of wobble at the angle 0, m/m: where the load is off mid-face as a pitch passes. Shape
-    (L,).
+    """Complex amplitude per amount of wobble at the angle 0, m/m. Wobble acts where the load is off mid-face
+    as a tooth passes. Shape (L,).
     """
 
     @classmethod
     def of(cls, evaluator: Evaluator, limit: OrderLimit, names: Sequence[str]) -> ToothPassing:
-        """Find it about the flanks as designed."""
+        """Return the contribution about the flanks as designed."""
         pair, problem, solution = next(iter(evaluator.solved({}, range(1))))
         c, teeth = problem.candidates, limit.teeth(pair)
         weight, _ = load_weights(problem, solution, np.empty((0, *c.gap.shape)))

@@ -1,4 +1,4 @@
-"""A sweep: ripple, pressure and K_Hbeta over one or two things that a pair declares, on one compliance."""
+"""A sweep: ripple, pressure and K_Hbeta over one or two quantities of a pair, on one compliance."""
 
 from __future__ import annotations
 
@@ -62,14 +62,14 @@ class Sweep:
     axes: tuple[str, ...]
     """Names of one or two `SweepAxis`."""
     point: FloatArray = field(metadata=in_unit("1", "point", "axis"))
-    """N m of the torque, m of all others. Shape (N, axes)."""
+    """Values of the axes at each point: N m of the torque, m of all others. Shape (N, axes)."""
     quantities: tuple[SweptQuantity, ...]
     reason: tuple[str, ...]
-    """Why a point has no figures, empty if it has (N,)."""
+    """Reason why a point has no figures; empty if it has figures (N,)."""
     held: Json
-    """What was not swept of torque, misalignment and change of the center distance; SI units."""
+    """Values of torque, misalignment and change of the center distance that were not swept, in SI units."""
     cost: Json
-    """CPU seconds of all who worked and wall seconds, by stage."""
+    """CPU seconds of all processes and wall seconds, by stage."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -123,9 +123,9 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
 
 @dataclass(frozen=True)
 class _SweptPair:
-    """What the designs of a sweep share: a request, and the folder of compliances.
+    """Task data that all designs of a sweep share: the request, and the folder of compliances.
 
-    The condensed bodies are made when first needed; they are no field, and no part of what identifies a task.
+    The condensed bodies are computed when first needed. They are no field and no part of the task's key.
     """
 
     request: SweepRequest

@@ -1,4 +1,4 @@
-"""What is assessed of a pair and of its mesh, by nominal figures."""
+"""Plausibility checks of a pair and of its mesh, by nominal figures."""
 
 from __future__ import annotations
 

@@ -112,15 +112,15 @@ class Curve:
     point: OperatingPoint
     """Normal force in N, misalignment and center-distance change in m."""
     torque: float
-    """The load as torque on gear 1, N m."""
+    """Torque on gear 1 of the load, N m."""
     position: FloatArray
-    """Base pitches, as requested (not wrapped). Shape (Q,)."""
+    """Position of the driving gear, base pitches, as requested (not wrapped). Shape (Q,)."""
     ste: FloatArray
     """Static transmission error, m. Shape (Q,)."""
     error: FloatArray
-    """Half-width of its error band, m. Shape (Q,)."""
+    """Half-width of the error band of the transmission error, m. Shape (Q,)."""
     interval_error: float
-    """Part of every band that interpolation between the nodes of load, misalignment and center distance has,
+    """Part of every error band by interpolation between the nodes of load, misalignment and center distance,
     m: 0 on nodes, NaN where not estimated.
     """
     pair: NDArray[np.int64]
@@ -131,21 +131,22 @@ class Curve:
     """Part of the load on each pair. Shape (Q, N)."""
     mean: Estimate
     peak_to_peak: Estimate
-    """`mean`, `peak_to_peak`: Over one period, whatever `position` holds. An error of NaN was not estimated.
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak over one period, independent of `position`. An error of
+    NaN was not estimated.
     """
     harmonics: tuple[Estimate, ...]
     """Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20."""
     harmonic_phases: FloatArray
-    """phi_n in rad. Shape (20,)."""
+    """Phases phi_n of the mesh harmonics, rad. Shape (20,)."""
     spectrum: Spectrum
-    """All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the mesh
+    """All orders up to the 20th mesh harmonic; with a period of many pitches also the orders between the mesh
     harmonics.
     """
     period: int
-    """Of the table, base pitches."""
+    """Period of the table, base pitches."""
     over_face: OverFace | None = None
-    """Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
-    corrected: the errors above are towards the plane model.
+    """Mean and peak-to-peak of the gears of finite width, where the table is that of a plane without
+    correction. The errors of the other fields are then those towards the plane model.
     """
 
 

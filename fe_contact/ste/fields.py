@@ -210,7 +210,7 @@ class SteFields:
 
     @property
     def inserted_center_distance_change(self) -> FloatArray:
-        """Changes of the center distance that nobody requested, m, likewise."""
+        """Changes of the center distance that were inserted, not requested, m."""
         return self.center_distance_change[~self.requested_rows(CENTER_DISTANCE)]
 
     def requested_nodes(self, axis: str) -> FloatArray:
@@ -219,7 +219,7 @@ class SteFields:
         return nodes
 
     def requested_rows(self, axis: str) -> BoolArray:
-        """Which nodes of an axis of alignments were requested; `axis` is its name."""
+        """Return whether each node of an axis of alignments was requested; `axis` is its name."""
         inserted = getattr(self, INSERTED[axis])
         return np.asarray(inserted == 0) if inserted.size else np.ones(getattr(self, axis).size, bool)
 

@@ -133,7 +133,7 @@ class Metadata:
     case: Json = field(default_factory=dict)
     """The case with all defaults echoed."""
     effect_ledger: Json | list[Any] = field(default_factory=dict)
-    """For each registered effect: on or off, why, influence and cost."""
+    """State of each registered effect: on or off, why, influence and cost."""
     receipt: Json = field(default_factory=dict)
     """Time and memory by stage, error estimate by source."""
     content_hash: str = ""
@@ -143,7 +143,7 @@ class Metadata:
     schema_version: int = SCHEMA_VERSION
     """Version of the file layout."""
     warnings: list[Any] = field(default_factory=list)
-    """What is implausible about the case or its results; empty where nothing is."""
+    """Implausible values of the case or its results, with reasons; empty where there are none."""
 
     def __post_init__(self) -> None:
         for entry in fields(self):

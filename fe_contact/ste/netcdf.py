@@ -99,19 +99,19 @@ def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A kind of result files, as what it must hold."""
+    """Kind of result files, declared by the arrays and attributes that it must hold."""
 
     name: str
-    """The attribute ``format``."""
+    """Value of the attribute ``format``."""
     content: str
-    """What it holds, in words."""
+    """Content of the file, in words."""
     schema_version: int
-    """The newest that is read."""
+    """Newest schema version that is read."""
     arrays: tuple[str, ...]
     attributes: tuple[str, ...] = ()
-    """`arrays`, `attributes`: Those that every file has; the checksum is over the arrays in their order."""
+    """`arrays`, `attributes`: Names that every file has; the checksum is over the arrays in their order."""
     optional: tuple[str, ...] = ()
-    """Arrays that some have."""
+    """Names of arrays that some files have."""
 
     def read(self, path: Path, before: Callable[[Json], str] = lambda _: "") -> tuple[dict[str, Any], Json]:
         """Return the arrays and the attributes of a file; the checksum is over `before` of these, too.

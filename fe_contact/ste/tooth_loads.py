@@ -1,7 +1,7 @@
-"""Loads of each tooth, from a table over the pitches in which the teeth of a gear meet in turn.
+"""Loads of each tooth of a gear, from a table over the pitches in which its teeth mesh in turn.
 
 Pair j in whole pitch p is meeting p - j: the pair of teeth that touches at the pitch point at position p - j.
-The teeth of a gear of z teeth are told apart where the period is a multiple of z.
+The teeth of a gear of z teeth have loads of their own where the period is a multiple of z.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray, IntArray
 
 _ALIKE = 5e-4
-"""Of the largest load: teeth that differ by less are alike, three decimals tell none apart."""
+"""Difference of loads over the largest load below which teeth count as alike. Three decimals do not show it.
+"""
 _SAME = 1e-9
-"""Base pitches between two phases that are one."""
+"""Distance of two phases below which they are equal, base pitches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,13 +27,13 @@ class ToothLoads:
     """Largest loads on each tooth of a gear at one load and alignment, over all its mates."""
 
     gear: int
-    """0: the driving gear, 1: the driven one."""
+    """Number of the gear: 0 is the driving gear, 1 the driven one."""
     phase: FloatArray
-    """Where the pair is on its way through mesh, base pitches; 0: at the pitch point in mid-face. Shape (W,).
+    """Phase of the pair on its way through mesh, base pitches; 0: at the pitch point in mid-face. Shape (W,).
     """
     force_over_phase: FloatArray
-    """Normal force on each tooth there, N; teeth in the order of meshing, tooth 1 first. NaN: not stored.
-    Shape (z, W).
+    """Normal force on each tooth at each phase, N; teeth in the order of meshing, tooth 1 first. NaN: not
+    stored. Shape (z, W).
     """
     pressure_over_phase: FloatArray
     """Largest contact pressure away from edges, Pa; (z, 0) of tables without `pair_pressure`. Shape (z, W).
