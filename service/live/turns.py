@@ -23,7 +23,7 @@ _RETRY_S = 1
 
 @dataclass(frozen=True)
 class Asker:
-    """Who asks a question."""
+    """The sender of a question."""
 
     key: str = NOBODY
     """Name of the access key."""

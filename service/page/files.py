@@ -30,7 +30,7 @@ _FROM_PACKAGES = {
 
 @dataclass(frozen=True)
 class PageFile:
-    """One file in memory."""
+    """A file in memory."""
 
     content: bytes
     media_type: str

@@ -1,4 +1,4 @@
-"""Ended jobs that nobody asks for, and what computations leave on disk."""
+"""Retention: removal of ended jobs without requests, and of files that computations leave on disk."""
 
 from __future__ import annotations
 

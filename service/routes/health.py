@@ -51,7 +51,7 @@ class Readiness(BaseModel):
     )
     missing_protections: tuple[str, ...] | None = Field(
         None,
-        description="What the system lacks to confine readers of files; left out where nothing is missing",
+        description="Protections for readers of files that the system lacks; left out where none is missing",
     )
 
 

@@ -29,7 +29,7 @@ class InspectionInput(BoundaryModel):
     )
     gear: Literal["pinion", "wheel"] = Field(description="The gear that was inspected", examples=["pinion"])
     loaded: Literal["left", "right"] = Field(
-        default="right", description="Which of its flanks carry", examples=["right"]
+        default="right", description="Flanks of the inspected gear that carry the load", examples=["right"]
     )
     cutoff_mm: float | None = Field(
         default=None,

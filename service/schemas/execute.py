@@ -139,8 +139,11 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
             Priority,
             Field(0, description="Turn of the job: the oldest of the highest is next", examples=[1]),
         ),
-        "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
-        "subscriber": (Subscriber | None, Field(None, description="Who is told about the job")),
+        "tags": (
+            Tags,
+            Field([], description="Tags by which lists find the job", examples=[["ev-3", "draft"]]),
+        ),
+        "subscriber": (Subscriber | None, Field(None, description="Addresses that are called about the job")),
         "max_cost_s": (
             Cost | None,
             Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
@@ -168,13 +171,13 @@ class BatchRequest(BoundaryModel):
         examples=[[{"case": {"load": {"torque_n_m": [100.0]}}}]],
     )
     title: Title = Field("", description="Name of the batch", examples=["Tip reliefs"])
-    tags: Tags = Field([], description="What the batch is found by", examples=[["ev-3", "draft"]])
+    tags: Tags = Field([], description="Tags by which lists find the batch", examples=[["ev-3", "draft"]])
     priority: Priority = Field(0, description="Turn of its jobs", examples=[1])
     max_cost_s: Cost | None = Field(
         None, description="CPU seconds that each of its jobs may take; default: no limit", examples=[600.0]
     )
 
-    subscriber: Subscriber | None = Field(None, description="Who is told about the batch")
+    subscriber: Subscriber | None = Field(None, description="Addresses that are called about the batch")
 
     def inputs_of(self, index: int) -> dict[str, Any]:
         """Return the inputs of one job: the shared ones with the differences of the job."""

@@ -36,11 +36,11 @@ class ResultName:
 
     kind: str
     key: str
-    """`kind`, `key`: As in the index."""
+    """`kind`, `key`: Kind and hash of the result, the same as in the index."""
     digest: str
     """Beginning of the SHA-256 of its bytes; empty in names that older versions gave."""
     project: str = COMMON
-    """Whose result it is."""
+    """Project of the result."""
 
     @classmethod
     def of(cls, file: str) -> ResultName | None:

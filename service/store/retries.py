@@ -20,7 +20,8 @@ from service.store.writers import TurnTimeout
 logger = structlog.get_logger(__name__)
 _ATTEMPTS = 6
 _PATIENCE_S = 5.0
-"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
+"""Seconds after which a step is not tried again: an attempt may already have waited for a lock as long as it
+may."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
 _KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
     ROOM: ("no space", NoSpace),

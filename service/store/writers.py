@@ -22,7 +22,7 @@ class TurnTimeout(SQLAlchemyError):
 
 
 class WriterQueue:
-    """Who writes, and who waits to; for all threads of a process."""
+    """The queue of writers for all threads of a process: one writes, the others wait."""
 
     def __init__(self) -> None:
         self._lock = Lock()
