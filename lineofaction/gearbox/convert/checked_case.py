@@ -59,7 +59,7 @@ class CheckedCase:
 
     @property
     def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
-        """All three, as the library takes them."""
+        """Pair, axes and options, as the library takes them."""
         return self.pair, self.axes, self.options
 
     @cached_property

@@ -26,10 +26,10 @@ class Modification:
     part: Part
     removed: Removed
     fields: Mapping[str, Any] = field(default_factory=dict)
-    """Empty where the case has none for it."""
+    """Fields of the case that state the modification; empty if no field does."""
     rolls: tuple[float, ...] = ()
     faces: tuple[float, ...] = ()
-    """`rolls`, `faces`: Where it has kinks: roll lengths, coordinates from the datum face, m."""
+    """`rolls`, `faces`: Kinks of the modification: roll lengths, and coordinates from the datum face, m."""
 
 
 @dataclass(frozen=True)

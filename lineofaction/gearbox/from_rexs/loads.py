@@ -30,7 +30,7 @@ class AppliedTorque:
     z: float
     """Place of the torque along z, m."""
     torque: float
-    """N m about z."""
+    """Torque about z, N m."""
 
 
 class SceneMotion:

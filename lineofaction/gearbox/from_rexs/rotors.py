@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from lineofaction.gearbox.from_rexs.gear_unit import Connection, GearUnit, PlanetarySet
 
 _RIGID_ROTATION = 1e12
-"""N m/rad; no coupling of a gear unit is as stiff: files write 1e17 and more for one that does not yield."""
+"""Torsional stiffness in N m/rad from which a coupling counts as rigid. No coupling of a gear unit is as
+stiff: files write 1e17 and more for a coupling that does not yield."""
 
 
 @dataclass(frozen=True)

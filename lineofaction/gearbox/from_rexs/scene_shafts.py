@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.placed_shafts import PlacedShaft
 from lineofaction.gearbox.units import MM
 
 STUB = 1e-3
-"""m; a stub has neither mass nor an elastic part, so its length is of no account."""
+"""Length of a stub, m. A stub has neither mass nor an elastic part, so its length has no effect."""
 
 
 @dataclass(frozen=True)

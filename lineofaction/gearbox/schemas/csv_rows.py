@@ -23,9 +23,10 @@ class CsvRows:
 
     heading: list[str]
     data_lines: list[tuple[int, str]]
-    """The others that are neither blank nor comments, which start with #, after their number from 1."""
+    """Number from 1 and text of each line after the heading that is neither blank nor a comment, which starts
+    with #."""
     lines: int
-    """All of them."""
+    """Number of all lines."""
 
     @property
     def silent(self) -> int:

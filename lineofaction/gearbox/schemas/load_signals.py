@@ -39,13 +39,16 @@ class LoadSignalInput(BoundaryModel):
     channel: str = Field(
         default="",
         max_length=255,
-        description="Its channel; left out: the only one of a speed or of a torque",
+        description="Channel of the recording; left out: the only one of a speed or of a torque",
         examples=["Speed"],
     )
     unit: str = Field(
-        default="", max_length=20, description="Its unit; left out: that of the file", examples=["rpm"]
+        default="",
+        max_length=20,
+        description="Unit of the channel; left out: the unit in the file",
+        examples=["rpm"],
     )
-    scale: Number = Field(default=1.0, description="What the values are multiplied by", examples=[-1.0])
+    scale: Number = Field(default=1.0, description="Factor of the values", examples=[-1.0])
     start_s: Number | None = Field(
         default=None,
         description="Time of the recording that is 0 in the run; left out: its first",

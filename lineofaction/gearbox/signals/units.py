@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from lineofaction.gearbox.problems import BadInput
 
 STANDARD_GRAVITY = 9.80665
-"""m/s^2 (ISO 80000-3)."""
+"""Standard gravity, m/s^2 (ISO 80000-3)."""
 _TURN = 2.0 * math.pi
 ACCELERATION, VELOCITY, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
     "acceleration",

@@ -81,7 +81,7 @@ class Means:
     home: Path
     """Folder of the caches."""
     report: Callable[[str, float], None]
-    """Called as report(stage, fraction)."""
+    """Function that is called as report(stage, fraction) on progress."""
     workers: Workers = field(default_factory=InProcess)
     """Executor of the tasks."""
     cancel: Callable[[], bool] | None = None

@@ -48,7 +48,7 @@ class HeardInput(BoundaryModel):
     )
     microphone_mm: Position | None = Field(
         default=None,
-        description="Where the sound pressure is heard, x, y, z in mm in the frame of the scene",
+        description="Microphone of the sound pressure, x, y, z in mm in the frame of the scene",
         examples=[[0.0, 1000.0, 0.0]],
     )
     bearing: Name | None = Field(
@@ -81,7 +81,7 @@ class Inputs(OverOrders):
         description="Load cases on the driving flanks; default: the loads of the scene at t = 0",
         examples=[[{"name": "cruise", "torque_n_m": 60.0, "speed_rpm": 3000.0}]],
     )
-    heard: HeardInput = Field(default=HeardInput(), description="What is compared")
+    heard: HeardInput = Field(default=HeardInput(), description="Quantity that is compared")
     tolerances: ToleranceInputs = Field(
         default=ToleranceInputs(samples=PAIRS),
         description="Tolerances of both designs and the sample, drawn once: each pair takes two contact "

@@ -189,5 +189,5 @@ class DeflectFigures(Figures):
     meshes: list[MeshOverCases]
     bearings: list[BearingOverCases]
     cpu_seconds: Annotated[float, Source("seconds")] = Field(
-        description="With the tables and housings that were made for it"
+        description="CPU time, including the tables and housings that were made for the study"
     )

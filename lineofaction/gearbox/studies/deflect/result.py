@@ -48,8 +48,8 @@ class MeshFlanks:
     """Largest pressure on the flanks, Pa."""
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
-    """`face_position`, `face_load`: Along the face from the pinion's mid-face, m; mean load over the cycle
-    there, N/m. Shape (41,) each.
+    """`face_position`, `face_load`: Positions along the face from the pinion's mid-face, m, and mean load
+    over the cycle there, N/m. Shape (41,) each.
     """
     roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
     """Roll length of the pinion, m. Shape (40,)."""

@@ -43,7 +43,7 @@ class FrontierFigures(Figures):
     """Error against time; the reference is the finest fidelity, the knee where time buys least."""
 
     class FidelityFigures(Part):
-        """One fidelity: its CPU time, and its errors against the finest one, relative."""
+        """One fidelity: its CPU time, and its relative errors against the finest fidelity."""
 
         name: str
         title: str

@@ -28,8 +28,8 @@ class Inputs(BoundaryModel):
     )
     microphone_mm: Position | None = Field(
         default=None,
-        description="Where the sound pressure is heard, in mm in the frame of the scene: free field; default "
-        "without a point: the microphone of the scene's complaint",
+        description="Microphone of the sound pressure in a free field, in mm in the frame of the scene; "
+        "default without a point: the microphone of the scene's complaint",
         examples=[[40.0, 60.0, 1000.0]],
     )
     point: str | None = Field(

@@ -44,8 +44,8 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
     )
     microphone_mm: Point | None = Field(
         default=None,
-        description="Where the sound pressure is found too, x, y, z in mm in the frame of the scene: free "
-        "field; default: the microphone of the scene's complaint, if it has one",
+        description="Microphone of the sound pressure in a free field, x, y, z in mm in the frame of the "
+        "scene; default: the microphone of the scene's complaint, if it has one",
         examples=[[40.0, 60.0, 1000.0]],
     )
 

@@ -21,7 +21,7 @@ from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, SOUND_TRIALS = 3, 8
 PAIRS = 32
-"""Over which start and optimum are told: a few CPU seconds."""
+"""Number of pairs over which start and optimum are compared: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _LIST = (Strict(False), Field(min_length=1, max_length=64))
 Torques = Annotated[tuple[Load, ...], *_LIST]
@@ -292,7 +292,7 @@ class Inputs(BoundaryModel):
     limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
     heard: HeardObjectiveInput | None = Field(
         default=None,
-        description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
+        description="Level of a scene that is minimized in place of the peak-to-peak",
         examples=[None],
         exclude_if=lambda value: value is None,
     )

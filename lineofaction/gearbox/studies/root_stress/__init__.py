@@ -9,7 +9,7 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 
 
 class Inputs(FlankPoint):
-    """One load and one alignment; what is left out is taken from the case."""
+    """One load and one alignment; the case supplies the fields that are left out."""
 
 
 class RootStressFigures(Figures):

@@ -32,8 +32,8 @@ class ToleranceInputs(BoundaryModel):
     )
     finishing: Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"] = Field(
         default="any",
-        description="How flanks are finished, from which follows, as an assumption, the part of their "
-        "tolerances that all teeth have in common; any: the whole",
+        description="Finishing of the flanks. The part of the tolerances that all teeth have in common "
+        "follows from it, as an assumption; any: the whole",
         examples=["generating_grinding"],
     )
     drawing: Row[Drawn] = Field(

@@ -118,7 +118,7 @@ class Inputs(BoundaryModel):
         quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
         part: Name | None = Field(
             default=None,
-            description="Its mesh or bearing; left out: the largest over all",
+            description="Mesh or bearing of the response; left out: the largest over all",
             examples=["input left"],
         )
         order: int | None = Field(
