@@ -28,7 +28,7 @@ class RunSound:
     name: str
     recording: Recording
     figures: Json = field(default_factory=dict)
-    """Plain JSON beside the recording's own."""
+    """Figures as plain JSON, in addition to the figures of the recording."""
     cells: dict[str, str] = field(default_factory=dict)
     """Cells of the printed table by the names of their columns."""
 

@@ -32,7 +32,7 @@ class Session:
     patience: float
     """Seconds for which the service may be away while a job is waited for."""
     progress: Watch | None
-    """Called with every state seen of any job that is waited for."""
+    """Function that is called with every new state of any job that the client waits for; None: none."""
     terms: Mapping[str, Any] = field(default_factory=dict)
     """Terms of every submission beside its inputs, such as title and tags, as the body of the request has
     them."""

@@ -226,7 +226,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Track:
-    """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
+    """A sound of a plot, with its place on the horizontal axis of the first panel as it plays.
 
     `time` (n,), s, increases; `along` (n,) are values on the axis. `query` names it to the service's path of
     the sound of a result. `mesh_frequency` (n,), Hz, is that of mesh order 1; None: no mesh is heard alone.
