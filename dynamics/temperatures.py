@@ -29,14 +29,14 @@ class WarmBearing:
 
 @dataclass(frozen=True)
 class WarmMesh:
-    """What steady temperatures change of a mesh, m."""
+    """Changes of a mesh by steady temperatures, m."""
 
     distance_change: float
     """Growth of the center distance less that of the gears' pitch radii."""
     backlash: float
-    """Along the transverse line of action."""
+    """Change of the backlash along the transverse line of action."""
     misalignment: float
-    """As the table counts it: from seats of unlike temperature."""
+    """Misalignment by seats of unlike temperature, as the table counts it."""
 
 
 @described

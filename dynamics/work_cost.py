@@ -40,13 +40,13 @@ class WorkCost:
     """Predicted and measured cost of work that was done."""
 
     predicted_seconds: float
-    """`predicted_seconds`, `seconds`: CPU seconds; predicted for this host."""
+    """`predicted_seconds`, `seconds`: CPU seconds, predicted for this host and measured."""
     predicted_bytes: float
-    """Of the largest working set."""
+    """Predicted bytes of the largest working set."""
     seconds: float
     bytes: float | None = None
-    """By how much the process grew above what it held before; None where it had been as large before, and
-    nobody can tell.
+    """Growth of the process above its largest memory before; None where it had been as large before, so that
+    the growth is unknown.
     """
 
 

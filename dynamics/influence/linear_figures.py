@@ -43,7 +43,7 @@ class LinearFigures:
     directions, N. Shape (b, 5).
     """
     bearing_loads: FloatArray
-    """Largest amplitudes that loads excite outside these orders, root of the sum of squares, N. Shape (b,).
+    """Largest amplitudes that loads excite at other orders, root of the sum of squares, N. Shape (b,).
     """
     parted: FloatArray
     """Largest tensile displacement of a linear mesh where flanks part, m; 0 where all stay pressed. Shape

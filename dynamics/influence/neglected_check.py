@@ -372,7 +372,7 @@ class _Allowance:
     text: str
     """Tolerance as text, with its unit."""
     alone: float
-    """Largest change by one effect at which the effect may stay off."""
+    """Change by one effect, above which the effect is turned on though the scene does not call for it."""
     together: float
     """Largest sum of the changes by all neglected effects."""
     size: Callable[[Influence], float]

@@ -67,7 +67,7 @@ class Steady:
     residual: float
     """Largest force left by the linear solves, over the largest exciting force."""
     receptance: ComplexArray
-    """Displacements per force on f rows: the rows of the driving flanks that `swept_vibration` is given;
+    """Displacements per force on f rows: in `swept_vibration` those of the driving flanks;
     empty where not requested. Shape (S, H, n, f).
     """
 

@@ -1,4 +1,4 @@
-"""The flanks that touch in a mesh: their angles when they touch at the pitch point.
+"""The flanks that touch in a mesh: their angles on the base circles when they touch at the pitch point.
 
 Angles of flanks are in pitches of their gear about +z, at the gear's mid-face.
 """
@@ -24,7 +24,7 @@ class FlankAtMesh:
     sense: int
     """Sense in which the gear turns about +z, +1 or -1."""
     side: int
-    """Side of the teeth on which the flank is, +1 or -1 about +z."""
+    """Side to which the flank faces about +z, +1 or -1."""
     at_pitch_point: float
     """Angle of the flank when it touches at the pitch point, pitches."""
 

@@ -16,9 +16,9 @@ from dynamics.types import FloatArray
 
 MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"
 TURNS, PASSINGS = 4, 3
-"""Harmonics of shafts (unbalance, misalignment, ovality) and of bearings that are looked at."""
-SAME = 1e-9
 """Number of harmonics that are listed: of shafts (unbalance, misalignment, ovality), and of bearings."""
+SAME = 1e-9
+"""Relative difference of orders, below which they are the same."""
 
 
 @dataclass(frozen=True)

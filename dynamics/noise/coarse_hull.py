@@ -18,7 +18,9 @@ STEPS = 6
 FLAT = 0.02
 """Eigenvalue, relative to the largest, below which faces do not say where along its direction a node lies."""
 FARTHEST = 1.0
-"""From the middle of a cell to its node, over the largest distance of the middle to a node of the surface."""
+"""Distance from the middle of a cell to its node, over the largest distance from the middle to a node of the
+surface.
+"""
 
 THIN = 0.05
 """Height over longest edge below which a panel is thin."""
@@ -27,7 +29,7 @@ ROUNDS = 4
 LONGEST = 2.0
 """Longest edge of a coarse hull over its mean distance of nodes."""
 ATTEMPTS = 16
-"""To split cells; walls of gear cases took up to six."""
+"""Most attempts to split cells; walls of gear cases took up to six."""
 FEWER = 0.5
 """Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
 
@@ -158,14 +160,14 @@ def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
 
 @dataclass(frozen=True)
 class Coarseness:
-    """How coarse a hull may be: least longest edges in a wavelength, least cells for the shape of a body."""
+    """Coarseness of a hull: least longest edges in a wavelength, least cells for the shape of a body."""
 
     edges: float = PANELS_PER_WAVELENGTH
     cells: int = 800
 
 
 OF_PANELS = Coarseness()
-"""Of models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
+"""Coarseness for models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
 
 
 @dataclass(frozen=True)

@@ -64,14 +64,13 @@ class EstimatedRadiation(HousingRadiation):
     """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite."""
 
     correction: FloatArray
-    """What the velocity of the coordinates is multiplied with before monopoles radiate it. Shape (F, r, r).
-    """
+    """Factor on the velocity of the coordinates, before monopoles radiate it. Shape (F, r, r)."""
     mode_error: FloatArray
-    """From and to where the level of each mode of `ReducedHousing.modes` is off, dB; below 0: too quiet.
-    Shape (2, F, m).
+    """Bounds of the error of the level of each mode of `ReducedHousing.modes`, dB: lower and upper; a
+    negative error is a level that is too low. Shape (2, F, m).
     """
     by_velocity: BoolArray
-    """Where monopoles say nothing of a mode. Shape (F, m)."""
+    """Whether monopoles state nothing of a mode, so that its velocity alone decides. Shape (F, m)."""
 
     def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
         """Return the velocity (r,) that the model radiates at a computed frequency, Hz."""

@@ -67,9 +67,9 @@ class CorrectedRadiation:
 
     radiation: EstimatedRadiation
     lines: tuple[ExactLine, ...]
-    """In the order in which they were corrected."""
+    """Lines in the order in which they were corrected."""
     left_out: tuple[str, ...]
-    """Why further lines were not; none: no other line may be as loud."""
+    """Reasons why further lines are not corrected; empty: no other line may be as loud."""
 
 
 def corrected_radiation(
@@ -179,7 +179,7 @@ def _exact_line(
 
 
 class _Knot(NamedTuple):
-    """What an estimate has at a frequency, Hz."""
+    """Arrays of an estimate at a frequency, Hz."""
 
     frequency: float
     matrix: ComplexArray

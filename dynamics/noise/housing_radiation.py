@@ -185,19 +185,21 @@ def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, f
 
 @dataclass(frozen=True)
 class RadiationFacts:
-    """How a radiation resistance was computed."""
+    """Panels, cost and errors of a radiation resistance."""
 
     panels: int
-    """Of the finest hull."""
+    """Number of panels of the finest hull."""
     cost: WorkCost
-    """Without that of the hulls."""
+    """Cost of the resistance, without the cost of the hulls."""
     resolved_frequency: float
-    """Hz; above it panels move as parts of a plane (ERP)."""
+    """Frequency up to which the hulls resolve the waves, Hz; above it panels radiate as parts of a plane
+    (ERP).
+    """
     interpolation_error: float
-    """dB."""
+    """Error of the level by interpolation over the frequency, dB."""
     inner_area: float
     cap_area: float
-    """`inner_area`, `cap_area`: As of `OuterHull`, m^2."""
+    """`inner_area`, `cap_area`: Areas of the inner faces and the caps of `OuterHull`, m^2."""
 
 
 @dataclass(frozen=True)
@@ -216,11 +218,11 @@ class HousingRadiation(ModalResistance, ArrayFile):
     velocities is the integral of the mean square in time. Shape (r, r).
     """
     area: float
-    """Of the outer hull with its caps, m^2."""
+    """Area of the outer hull with its caps, m^2."""
     impedance: float
     """rho c of the air, Pa s/m."""
     model_name: str
-    """Of the radiation model."""
+    """Name of the radiation model."""
     facts: RadiationFacts
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:

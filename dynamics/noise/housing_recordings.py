@@ -40,7 +40,9 @@ from model_studies.progress import Progress, silent
 NEAREST = 2.0
 """Least distance of a microphone over the longest edge of a panel: nearer it is no point source."""
 HALF_LENGTH, KAISER = 12, 8.0
-"""Of the interpolation between samples: up to a quarter of their rate delays are exact within 1e-4."""
+"""Half length in samples, and parameter of the Kaiser window, of the interpolation between samples: up to a
+quarter of their rate delays are exact within 1e-4.
+"""
 BLOCK = 4_000_000  # phases that are held at a time
 MONOPOLES = ElementalRadiators()
 RESOLUTION = 20.0

@@ -81,10 +81,10 @@ class PanelSound:
     """Sound power of the panels of a hull."""
 
     hull: Hull
-    """That the radiation model takes at this frequency."""
+    """Hull that the radiation model takes at this frequency."""
     power: FloatArray
-    """W, negative where a panel takes power that others radiate; the sum is the power of the hull. Shape
-    (T,).
+    """Sound power of each panel, W; negative where a panel takes power that others radiate. The sum is the
+    power of the hull. Shape (T,).
     """
 
     @classmethod

@@ -108,9 +108,11 @@ class RadiatedSound(ArrayFile):
     natural_frequency: FloatArray = field(
         metadata=stored("Hz", "natural frequency of the housing, seats free", "mode")
     )
-    """Of the housing on its feet. Shape (m,)."""
+    """Natural frequencies of the housing on its feet, Hz. Shape (m,)."""
     in_contact: BoolArray = field(metadata=stored("1", "whether all flanks stay in contact", "speed"))
-    """Where flanks part, no linear answer holds. Shape (S,)."""
+    """Whether all flanks stay in contact at each speed. Where flanks part, no linear answer holds. Shape
+    (S,).
+    """
     facts: Json = field(default_factory=dict)
     """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
     `valid_frequency` in Hz, to which the modes kept carry the motion).
@@ -290,10 +292,12 @@ class LoudPoint:
     order: float
     speed: float
     frequency: float
-    """`order`, `speed`, `frequency`: Multiple of the frequency of the first mesh; rad/s; Hz."""
+    """`order`, `speed`, `frequency`: Multiple of the frequency of the first mesh; speed, rad/s; frequency,
+    Hz.
+    """
     level: float
     weighted_level: float
-    """`level`, `weighted_level`: dB and dB(A) re 1e-12 W."""
+    """`level`, `weighted_level`: Sound power level, dB and dB(A) re 1e-12 W."""
     efficiency: float
     """Radiation efficiency."""
     mode: int
@@ -302,13 +306,15 @@ class LoudPoint:
     largest share.
     """
     mode_share: float
-    """Of it, of the power."""
+    """Share of that mode in the power."""
     mode_housing: str
     bearing: str
-    """With the largest share."""
+    """Bearing with the largest share in the power."""
     bearing_level: float
     level_without_bearing: float
-    """`bearing_level`, `level_without_bearing`: dB(A): of its force alone, and of what is left without it."""
+    """`bearing_level`, `level_without_bearing`: Level by the force of that bearing alone, and level without
+    it, dB(A).
+    """
     in_contact: bool
     """Whether all flanks stay in contact there; where not, no linear answer holds."""
 

@@ -1,4 +1,4 @@
-"""What a change of a design costs or gains in dB(A): sensitivities of the largest sound power level."""
+"""Sensitivities of the largest sound power level to the design: change in dB(A) per change of a figure."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from model_studies.variants import run_variants
 
 STEPS = {"housing_frequency": 0.02}
 STEP = 0.1
-"""Of factors."""
+"""Relative step of factors."""
 CURVED = 0.25
 """Share of the change by slope that the curvature may add where a level counts as linear."""
 

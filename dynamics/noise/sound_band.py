@@ -42,14 +42,14 @@ Levels = Callable[[Mapping[str, float]], FloatArray]
 
 @dataclass(frozen=True)
 class SoundModel:
-    """A scene with what its housings are and radiate."""
+    """A scene with its radiating housings and their radiation resistances."""
 
     scene: Scene
-    """With the matrices of the housings."""
+    """Scene with the matrices of the housings."""
     housings: Mapping[str, ReducedHousing]
-    """By name, those that radiate."""
+    """Radiating housings by name."""
     resistance: Mapping[str, ModalResistance]
-    """Of the same, over their reduced coordinates."""
+    """Radiation resistances of these housings, over their reduced coordinates."""
 
     def with_housing(self, name: str, housing: ReducedHousing) -> SoundModel:
         """Return the model with another reduction of a housing, over the same coordinates."""
@@ -96,11 +96,13 @@ class _Guess:
 
     name: str
     title: str
-    """In words."""
+    """Name of the figure in words."""
     usual: Range
-    """Of the factor on what the scene states."""
+    """Usual range of the factor on the value that the scene states."""
     varied: Callable[[SoundModel, float], SoundModel]
-    """``varied(model, factor)``: the model with it; the same object where the scene has no such figure."""
+    """``varied(model, factor)`` returns the model with the figure times `factor`, or the same object where
+    the scene has no such figure.
+    """
 
 
 def _with_housings(
@@ -172,8 +174,9 @@ GUESSES = {
         _Guess("mesh_damping", "damping of the meshes", Range(0.5, 1.0, 2.0), _mesh_damping),
     )
 }
-"""By name. Cast iron with bolted joints has ratios of 0.002 to 0.01 about 0.005; a mesh reads natural
-frequencies too high, and walls of castings vary by some per cent."""
+"""Guessed figures by name. Cast iron with bolted joints has damping ratios of 0.002 to 0.01, most often
+0.005. A finite-element mesh reads natural frequencies too high, and walls of castings vary by some per cent.
+"""
 USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
@@ -195,26 +198,29 @@ class SoundBand:
     """A-weighted sound power levels of a linear response with their bands, dB(A) re 1e-12 W."""
 
     speed: FloatArray
-    """rad/s. Shape (S,)."""
+    """Speeds of the leading drive, rad/s. Shape (S,)."""
     order: FloatArray
-    """Shape (H,)."""
+    """Multiples of the frequency of the first mesh that turns. Shape (H,)."""
     largest_total: LevelBand
-    """Of all orders together, the largest over the speeds, wherever it is; above it `speed_steps`, what a
-    peak between the speeds may have.
+    """Largest level of all orders together over the speeds, at whichever speed it occurs. `speed_steps` above
+    it is the error by a peak between the speeds.
     """
     mean_total: LevelBand
-    """Of all orders together, the mean of the power over the speeds: what a run-up of constant acceleration
-    radiates. Narrower, as a resonance that moves is counted once wherever it is, and one of twice the damping
-    has half the power, not a quarter. `speed_steps` is what every other speed misses.
+    """Level of the mean power of all orders together over the speeds, which a run-up of constant acceleration
+    radiates. Its band is narrower than that of the largest level: a resonance that moves counts once at any
+    speed, and twice the damping halves its power instead of quartering it. `speed_steps` is the error without
+    every other speed.
     """
     largest: tuple[LevelBand, ...]
-    """Of each order as `largest_total`."""
+    """Largest level of each order over the speeds, as `largest_total`."""
     loudest_speed: FloatArray
-    """Where each order is largest with the nominal values, rad/s. Shape (H,)."""
+    """Speed at which each order is largest with the nominal values, rad/s. Shape (H,)."""
     there: tuple[LevelBand, ...]
-    """Of each order at this speed: much wider than `largest`, as a resonance moves away from it."""
+    """Level of each order at this speed. Its band is much wider than that of `largest`, as a resonance moves
+    away from the speed.
+    """
     total: tuple[LevelBand, ...]
-    """Of all orders together at each speed."""
+    """Level of all orders together at each speed."""
 
     @property
     def _bands(self) -> list[LevelBand]:
@@ -294,8 +300,8 @@ def sound_band(
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     ranges : mapping of str to Range, optional
-        Of factors, by name in `GUESSES`; default: their usual ones. Those of what a scene does not have, e.g.
-        mounts, contribute nothing.
+        Ranges of factors, by name in `GUESSES`; default: their usual ranges. Figures that a scene does not
+        have, e.g. mounts, contribute nothing.
     cases : int
         As of `level_bands`.
     alternatives : mapping of str to SoundModel, optional

@@ -36,10 +36,12 @@ class Waterfall:
     amplitude: FloatArray
     """Peak amplitude under the window, in `unit`; the mean at line 0. Shape (..., B, K)."""
     rms: FloatArray
-    """Of each block about its mean, of all that the signal holds, in `unit`. Shape (..., B)."""
+    """Root mean square of each block about its mean, over the whole content of the signal, in `unit`. Shape
+    (..., B).
+    """
     unit: str
     noise_bandwidth: float
-    """Of the window, in lines."""
+    """Noise bandwidth of the window, in lines."""
 
     def cut(self, line: float) -> FloatArray:
         """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
@@ -160,9 +162,9 @@ class ThirdOctaves:
     band: IntArray
     """Number of each band, 0 at 1 kHz. Shape (K,)."""
     edges: FloatArray
-    """Hz. Shape (K + 1,)."""
+    """Edges of the bands, Hz. Shape (K + 1,)."""
     rms: FloatArray
-    """In `unit`, of each block of the run. Shape (..., B, K)."""
+    """Root mean square of each band in each block of the run, in `unit`. Shape (..., B, K)."""
     unit: str
 
     @property

@@ -68,7 +68,7 @@ class Branch:
 
     @property
     def speed(self) -> FloatArray:
-        """Of all motions, rad/s."""
+        """Speeds of all motions, rad/s."""
         return np.array([orbit.speed for orbit in self.orbits])
 
     @property

@@ -1,4 +1,4 @@
-"""The state one common period later, and its derivatives: what shooting and Floquet theory work on."""
+"""The map of a state over one common period, and its derivatives, for shooting and Floquet theory."""
 
 from __future__ import annotations
 
@@ -134,9 +134,9 @@ class PeriodGrid:
     phase: FloatArray
     """Ends of the steps, from 0 to 1. Shape (N + 1,)."""
     size: FloatArray
-    """Of the steps, and 0 after them. Shape (U,)."""
+    """Different sizes of the steps, in common periods; the last is 0. Shape (U,)."""
     level: IntArray
-    """Which size each step has. Shape (N,)."""
+    """Index in `size` of each step. Shape (N,)."""
 
     @classmethod
     def of(cls, system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
@@ -264,17 +264,17 @@ class PeriodicProblem:
     """Steps of one period, the same at all speeds, so that the map depends smoothly on speed."""
     rate: float
     minimum: float
-    """`rate`, `minimum`: Steps that a period has at least: so many a second, and so many in all."""
+    """`rate`, `minimum`: Least number of steps in a period: per second, and in all."""
     repeat: int
-    """Common periods after which the motion is to repeat; 2 finds what period doubling leads to."""
+    """Common periods after which the motion is to repeat; 2 finds motions after period doubling."""
     time: float
-    """When loads are taken, s."""
+    """Time at which loads are taken, s."""
     rest: FloatArray
     """Static equilibrium, m. Shape (2n,)."""
     size: float
-    """Of a state, for tolerances and differences: the largest static displacement, m."""
+    """Size of a state, for tolerances and differences: the largest static displacement, m."""
     force_tolerance: float
-    """Of the implicit stages, N."""
+    """Force tolerance of the implicit stages, N."""
 
     @cached_property
     def scale(self) -> FloatArray:
@@ -367,7 +367,7 @@ class PeriodMap:
 
     @cached_property
     def duration(self) -> float:
-        """Of `repeat` common periods, s."""
+        """Duration of `repeat` common periods, s."""
         return self.problem.repeat * self.problem.period.duration(self.speed)
 
     @cached_property

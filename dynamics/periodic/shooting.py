@@ -50,17 +50,17 @@ class Orbit:
     """Largest change of the state over the period, m."""
     iterations: int
     speed: float
-    """Of the leading law, rad/s."""
+    """Speed of the leading law, rad/s."""
     duration: float
-    """Of the period sought, s."""
+    """Duration of the period sought, s."""
     state: FloatArray
-    """At t = 0, in meters, as `PeriodicProblem` scales them. Shape (2n,)."""
+    """State at t = 0, in meters, as `PeriodicProblem` scales it. Shape (2n,)."""
     monodromy: FloatArray
     """Derivative of the state after a period in the state before it, in the same scale. Shape (2n, 2n)."""
     multipliers: ComplexArray
-    """Floquet's, by falling size. Shape (2n,)."""
+    """Floquet multipliers, by falling size. Shape (2n,)."""
     step_error: float
-    """Estimate of what the steps' errors move the motion by at t = 0, m; close to a fold it grows without
+    """Estimated change of the motion at t = 0 by the errors of the steps, m; close to a fold it grows without
     limit, as the motion does.
     """
 

@@ -1,4 +1,4 @@
-"""What steady states over speed will cost: the periods that are integrated, counted, times steps measured."""
+"""The cost of steady states over speed: number of integrated periods times measured cost of a step."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ PROBED, AFFORDED = 9, 0.5
 RESPONSES, ORDERS = 400, 10
 """Speeds of the linear response, and orders of the meshes in it."""
 SAMPLED_SPEEDS = 30
-"""Speeds at most whose steps are counted."""
+"""Most speeds whose steps are counted."""
 CHANGE = 5e-3
-"""Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
+"""Change of a state over a period after a step of a sweep, over the size of the state: 2e-3 to 1e-2 measured.
+"""
 BRANCH_ITERATIONS, BRANCH_DERIVATIONS, BRANCH_MAPS = 5, 1.25, 10
 """Iterations of a point of a branch, on average 3.5 to 5.4, how often it is derived, 1 to 1.4, and how many
 maps are laid out for that: one a speed, and one of half the steps."""

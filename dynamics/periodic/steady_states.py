@@ -47,9 +47,9 @@ class _PeriodicMotion:
     """Series over one period on a uniform grid of T samples, its end left out; m meshes, b bearings."""
 
     time: FloatArray
-    """s. Shape (T,)."""
+    """Times, s. Shape (T,)."""
     position: FloatArray
-    """Base pitches in [0, period of the table). Shape (m, T)."""
+    """Positions of the meshes, base pitches in [0, period of the table). Shape (m, T)."""
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
     """`dynamic_transmission_error`, `static_transmission_error`: m; the static one at the nominal force,
@@ -61,17 +61,17 @@ class _PeriodicMotion:
     T), (c, T) arrays.
     """
     bearing_force: FloatArray
-    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m. Shape
-    (b, 3, T).
+    """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m.
+    Shape (b, 3, T).
     """
     displacement: FloatArray
     velocity: FloatArray
-    """`displacement`, `velocity`: Deviations from the kinematic motion, m and rad (and per s). Shape (n, T)
-    each.
+    """`displacement`, `velocity`: Deviations from the kinematic motion, m and rad, and their rates. Shape
+    (n, T) each.
     """
     order: FloatArray
-    """Of the lines of `spectrum`: multiples of the frequency of the first mesh that turns. Shape (T // 2 +
-    1,).
+    """Orders of the lines of `spectrum`: multiples of the frequency of the first mesh that turns. Shape
+    (T // 2 + 1,).
     """
 
     @property

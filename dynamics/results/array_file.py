@@ -1,4 +1,4 @@
-"""Results that are arrays and names as netCDF-4 files: a field says what is stored how."""
+"""Results that are arrays and names as netCDF-4 files: each field declares how it is stored."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class ArrayFile:
     """
 
     SCHEMA: ClassVar[str]
-    """What a file of it is."""
+    """Name of the kind of result, which a file states."""
     RECORDS: ClassVar[Mapping[str, Callable[[Json], Any]]] = {}
-    """The fields that are dataclasses, and what makes one of its JSON."""
+    """Fields that are dataclasses, each with the function that makes it from JSON."""
 
     @classmethod
     def arrays(cls) -> dict[str, Stored]:

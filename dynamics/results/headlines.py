@@ -16,7 +16,7 @@ MAX_PARTS = 3
 
 
 class Run(Protocol):
-    """What is shown of a run, as `RunResult` has it."""
+    """Fields of a run that its headlines show, as `RunResult` has them."""
 
     @property
     def time(self) -> FloatArray: ...  # noqa: D102

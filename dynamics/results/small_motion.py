@@ -26,12 +26,12 @@ WORKING_DEPTH = 2.0
 
 @dataclass(frozen=True)
 class _Limit:
-    """What a part may move at most."""
+    """Limit of the motion of a part."""
 
     quantity: str
     part: str
     bound: float
-    """SI; times `size` in the `unit`."""
+    """Largest motion in SI; times `size` it is in the `unit`."""
     unit: str = "mm"
     size: float = 1e3
     rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))

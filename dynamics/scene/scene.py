@@ -299,7 +299,7 @@ class Scene(BearingLawParts):
     meshes: tuple[GearMesh, ...]
     drives: tuple[ImposedRotation, ...]
     duration: float
-    """s."""
+    """Duration of the run, s."""
     bushings: tuple[Bushing, ...] = ()
     loads: tuple[LoadTorque, ...] = ()
     planet_bearings: tuple[PlanetBearing, ...] = ()
@@ -316,33 +316,37 @@ class Scene(BearingLawParts):
     for each independent speed of the gearing.
     """
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Its acceleration in the fixed frame, m/s^2. Across the axis only without rotating frames."""
+    """Acceleration of gravity in the fixed frame, m/s^2. A component across the axis needs a scene without
+    rotating frames.
+    """
     effects: Mapping[str, str] = field(default_factory=dict)
     """Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``."""
     outputs: Outputs = field(default_factory=Outputs)
     integration: Integration = field(default_factory=Integration)
     on_violation: str = "repeat"
-    """If a run or a study violates an assumption: ``"repeat"`` runs again with the automatic effect that it
-    needs, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at any violation,
-    ``"report"`` reports it in the ledger's checks.
+    """Reaction to a violated assumption of a run or a study. ``"repeat"`` runs again with the automatic
+    effect that is needed, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at
+    any violation, ``"report"`` reports it in the ledger's checks.
     """
     tolerance: float | None = None
     """Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
     automatic effects may cause in a run; None: effects are as the scene calls for them.
     """
     highest_frequency: float | None = None
-    """Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
-    times the band of the output.
+    """Frequency to which flexible shafts are resolved, Hz; None: half the rate that all wanted orders need,
+    up to 2.56 times the band of the output.
     """
     temperatures: Temperatures | None = None
-    """Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn."""
+    """Temperatures of the housing and, as far as stated, of shafts, gears and rings of rolling bearings.
+    None: all parts as drawn.
+    """
     quantity: LevelQuantity | None = None
-    """What the scene is computed for: by the change of its level effects are sized, and with a tolerance
-    decided. None: bearing forces, decided beside transmission errors.
+    """Quantity for which the scene is computed. The change of its level sizes effects, and with a tolerance
+    decides on them. None: bearing forces; transmission errors then decide too.
     """
     level_tolerance: float | None = None
-    """Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
-    of what the scene is computed for, by default of bearing forces and transmission errors.
+    """Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None.
+    It is the level of `quantity`, by default of bearing forces and transmission errors.
     """
 
     def __post_init__(self) -> None:

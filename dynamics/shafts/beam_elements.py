@@ -50,7 +50,7 @@ class ElementMatrices(NamedTuple):
 
 
 class _Along(NamedTuple):
-    """Of k pieces at n points along them: stiffnesses and masses per length, (k, n)."""
+    """Stiffnesses and masses per length of k pieces at n points along them, (k, n)."""
 
     bent: FloatArray
     sheared: FloatArray

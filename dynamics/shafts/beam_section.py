@@ -73,13 +73,13 @@ class BeamSection:
 
     @property
     def outer_diameters(self) -> tuple[float, float]:
-        """At the left and the right end, m."""
+        """Outer diameters at the left and the right end, m."""
         end = self.end_outer_diameter
         return self.outer_diameter, self.outer_diameter if end is None else end
 
     @property
     def bore_diameters(self) -> tuple[float, float]:
-        """At the left and the right end, m; 0 where it is solid."""
+        """Bore diameters at the left and the right end, m; 0 where the piece is solid."""
         end = self.end_bore_diameter
         return self.bore_diameter, self.bore_diameter if end is None else end
 
@@ -116,12 +116,12 @@ class BeamSection:
 
     @property
     def area(self) -> float:
-        """At the left end, m^2."""
+        """Area of the cross section at the left end, m^2."""
         return float(self.cross_section().area)
 
     @property
     def second_moment(self) -> float:
-        """Of the area about an axis across, at the left end, m^4."""
+        """Second moment of area about an axis across, at the left end, m^4."""
         return float(self.cross_section().second_moment)
 
     @property

@@ -103,7 +103,7 @@ class ElasticModes:
 
     @property
     def frequency(self) -> FloatArray:
-        """Of the free body, or of that with its held freedom at rest, Hz."""
+        """Natural frequencies of the free body, or of the body with its held freedom at rest, Hz."""
         return _hertz(self.stiffness / self.mass)
 
 

@@ -116,7 +116,7 @@ class ElasticShaft:
     highest: float
     """Frequency of interest, Hz."""
     damping_ratio: float
-    """Of every elastic coordinate."""
+    """Damping ratio of every elastic coordinate."""
     mesh_error: float
     """Estimated relative error of the frequencies of interest by the lengths of the elements."""
 

@@ -60,21 +60,21 @@ IMPLICIT_STAGES_PER_STEP = 5
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What is known of a run beside its series."""
+    """Facts of a run beside its series."""
 
     system: System
     scene: Scene
-    """Its effects as decided."""
+    """Scene with its effects as decided."""
     audit: EnergyAudit | None
-    """None if not requested."""
+    """Energy audit; None if not requested."""
     checks: Sequence[Check]
-    """Of the run on its own model."""
+    """Checks of the run on its own model."""
     automatic: Mapping[str, str]
-    """Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
-    or because a run without them showed that they are needed.
+    """Effects that were left to "auto" and are not as the scene calls for them, each with the reason: the
+    tolerance, or a run without them that showed the need.
     """
     influences: Mapping[str, Influence]
-    """What leaving effects out in all their parts is estimated to change."""
+    """Estimated change by each effect, if it were left out in all its parts."""
 
     @classmethod
     def of(

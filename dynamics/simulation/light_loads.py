@@ -17,7 +17,7 @@ A tolerance of 1 nm is then a thousandth of what moves, as it is at 1 um; loaded
 
 
 FINEST = 1e-6
-"""Of the largest transmission error: no tolerance is lowered below it, where rounding comes near."""
+"""Least tolerance over the largest transmission error: below it rounding comes near."""
 
 
 def with_tolerance_to_scale(system: System) -> System:

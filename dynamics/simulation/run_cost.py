@@ -1,4 +1,4 @@
-"""What a run will cost: some steps of it at several times, measured, and counted over its duration."""
+"""The cost of a run: steps measured at several times of it, and counted over its duration."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from dynamics.simulation.long_run_error import outlives_windows
 from host import cpu_seconds
 
 PARTS = (0.05, 0.5, 0.95)
-"""Of the duration: where a run is probed."""
+"""Times at which a run is probed, over its duration."""
 ENOUGH = 0.02
 """CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
 MIN_STEPS = 32
-"""Of a stretch that counts, however long a step takes."""
+"""Least steps of a stretch that counts, however long a step takes."""
 FINER = 10.0**0.2
 """Steps at a tenth of the tolerance over those of the run; those by half the positions are as many."""
 FASTER, MAKING = 2.3, 2.0

@@ -1,4 +1,4 @@
-"""From a scene to its result in a file: states stream to disk, checkpoints let the run be taken up again."""
+"""A run from its scene to a result file: states stream to disk, checkpoints let a later process go on."""
 
 from __future__ import annotations
 
@@ -296,7 +296,7 @@ def _of_errors(progress: Progress | None) -> Progress | None:
 
 @dataclass(frozen=True)
 class _Errors:
-    """What measures the errors of a run: its samples, and a finer run to its end by settings."""
+    """Measurement of the errors of a run: by its samples, and by a finer run to its end."""
 
     start: _Start
     states_of: StatesOf

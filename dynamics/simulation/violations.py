@@ -19,7 +19,9 @@ StatesOf = Callable[[int, int], States]
 
 
 REPEATED = "repeated.json"
-"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
+"""File in the folder of a run that repeats another: effects that are on for that reason, and the earlier
+cost.
+"""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class EarlierRun:
     turned_on: Mapping[str, str] = field(default_factory=dict)
     """Automatic effects that it showed to be needed, and why."""
     seconds: float = 0.0
-    """What it took, s of CPU time."""
+    """CPU time of the earlier run, s."""
     since: float = 0.0
     """Time from which on it is repeated, s: before that the effects carry no force."""
 

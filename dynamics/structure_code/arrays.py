@@ -20,7 +20,7 @@ LONGEST = 256
 
 
 class Known(Enum):
-    """What of a tuple belongs to the structure."""
+    """Part of a tuple that belongs to the structure of a run."""
 
     ALL = "integers and dimensions"
     DIMENSIONS = "all dimensions"
@@ -47,9 +47,10 @@ class Array:
     """Integers, and `Value` where it is not part of the structure."""
     item: Any
     alias: Any
-    """What tells its accesses from those of other arrays; None: a table of constants."""
+    """Mark by which the compiler tells its accesses from those of other arrays; None: a table of constants.
+    """
     content: Any = None
-    """Its items, where they are known."""
+    """Items, where they are known."""
     first: Any = 0
 
 

@@ -17,9 +17,11 @@ from dynamics.structure_code.statements import Statements
 
 POINTER = WORD.as_pointer()
 MAX_EXPRESSIONS = 150_000
-"""Beyond it compiling takes longer than runs do."""
+"""Most expressions of a module: beyond them compiling takes longer than runs do."""
 FEW_EXPRESSIONS = 500
-"""Of a function that is written for known numbers though it could be for any: a frame's terms have 300."""
+"""Most expressions of a function that is written anew for known numbers, though it could be for any: a
+frame's terms have 300.
+"""
 
 
 class Module:

@@ -20,18 +20,18 @@ MAX_AXES = 3
 
 
 class _Layout(NamedTuple):
-    """Where the words of a tuple are what: A arrays, I numbers."""
+    """Layout of the words of a tuple: A arrays, I numbers."""
 
     address: IntArray
-    """Shape (A,)."""
+    """Word with the address of each array. Shape (A,)."""
     dimensions: IntArray
-    """-1: the array has no such axis. Shape (A, 3)."""
+    """Words with the dimensions of each array; -1: the array has no such axis. Shape (A, 3)."""
     bytes: IntArray
-    """Of an item. Shape (A,)."""
+    """Bytes of an item. Shape (A,)."""
     known: BoolArray
     """Whether it holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
-    """Integers and flags. Shape (I,)."""
+    """Words with integers and flags. Shape (I,)."""
 
 
 @cache

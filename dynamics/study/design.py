@@ -101,11 +101,11 @@ class Design:
     """
 
     factors: Mapping[str, Factor]
-    """By name. Levels form a grid, the last factor changing fastest; listed values change together;
+    """Factors by name. Levels form a grid, the last factor changing fastest; listed values change together;
     distributions are sampled.
     """
     samples: int = 1
-    """Of the distributions; 1 without any."""
+    """Number of samples of the distributions; 1 without any."""
     seed: int = 0
     """Equal seeds give equal samples; a larger sample begins with a smaller one."""
 

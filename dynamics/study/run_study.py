@@ -1,4 +1,4 @@
-"""From a design to the figures of all its runs."""
+"""The figures of all runs of a design."""
 
 from __future__ import annotations
 
@@ -27,11 +27,13 @@ from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
 FRACTIONS = (0.05, 0.5, 0.95)
 RUNS = 8
-"""At most in a batch: what an interruption loses of each worker. It does not depend on who does the tasks."""
+"""Most runs in a batch, which an interruption loses of each worker. The number is the same for all kinds of
+workers.
+"""
 NAN = float("nan")
 Batch = tuple[tuple[float, ...], ...]
 NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
-"""What runs of a minimal receipt do without."""
+"""Work that runs with a minimal receipt leave out."""
 
 
 @dataclass(frozen=True)
@@ -67,26 +69,26 @@ class Study(ArrayFile):
     value: FloatArray = field(
         metadata=stored("", "values of the factors, in the units of their names", "point", "factor")
     )
-    """Of the factors, in the units of their names. Shape (N, f)."""
+    """Values of the factors, in the units of their names. Shape (N, f)."""
     figure: FloatArray = field(metadata=stored("", "responses, in their SI units", "point", "response"))
     error: FloatArray = field(metadata=stored("", "stated errors of the responses", "point", "response"))
-    """`figure`, `error`: Responses, and their errors where the run states them, else NaN. Of a failed run all
-    are NaN. Shape (N, r) each.
+    """`figure`, `error`: Responses, and their errors where the run states them, else NaN. A failed run has
+    NaN in all. Shape (N, r) each.
     """
     reason: tuple[str, ...]
-    """Why a run has no figures; empty where it has."""
+    """Reason why a run has no figures; empty where it has them."""
     seconds: FloatArray = field(
         metadata=stored("s", "CPU time in all, and of the integration", "point", "cost")
     )
     """CPU time of each run in all, and of its integration, s. Shape (N, 2)."""
     samples: int
-    """Of each combination of grid and list, in a row."""
+    """Number of samples of each combination of grid and list, in a row."""
     confidence: float
-    """Of the bounds of quantiles."""
+    """Confidence of the bounds of quantiles."""
     worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
     """Points whose first response is largest, which are kept as full runs. Shape (k,)."""
     facts: Json
-    """Plain JSON: design, start, receipt, what the runs do without."""
+    """Plain JSON: design, start, receipt, and the work that the runs leave out."""
 
     SCHEMA: ClassVar[str] = "lineofaction study"
 
@@ -170,16 +172,16 @@ class Scenes(Protocol):
 
 @dataclass(frozen=True)
 class StudyTask:
-    """What all batches of a study share."""
+    """Task that all batches of a study share."""
 
     scenes: Scenes
     factors: tuple[str, ...]
-    """Their names."""
+    """Names of the factors."""
     responses: tuple[Response, ...]
     start: float = 0.0
     """Time from which on responses are taken, s."""
     receipt: str = "minimal"
-    """Of each run; "full" measures its errors."""
+    """Receipt of each run; "full" measures its errors."""
 
     def scene(self, values: tuple[float, ...]) -> Scene:
         """Return the scene at a point, as it is run on its own."""
@@ -188,15 +190,15 @@ class StudyTask:
 
 @dataclass(frozen=True)
 class _PointResult:
-    """What a study keeps of one run."""
+    """Figures of one run that a study keeps."""
 
     figures: list[float]
     errors: list[float]
-    """`figures`, `errors`: Of the responses, in SI; NaN where there is none."""
+    """`figures`, `errors`: Responses and their errors, SI; NaN where there is none."""
     reason: str
-    """Why the run has no figures; empty where it has."""
+    """Reason why the run has no figures; empty where it has them."""
     seconds: list[float]
-    """CPU time of all of it and of the time integration, s."""
+    """CPU time of the whole run and of its time integration, s."""
 
 
 def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], Batch]]:

@@ -1,4 +1,4 @@
-"""Forces of bearings on the seats of a housing, from a response or a run, and how it moves under them."""
+"""Forces of bearings on the seats of a housing, from a response or a run, and its motion under them."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ from dynamics.results import RunResult
 from dynamics.types import BoolArray, ComplexArray, FloatArray, Json
 
 HALF_LENGTH = 24
-"""Of the filter of `finer_seat_forces`, in samples of the run."""
+"""Half length of the filter of `finer_seat_forces`, in samples of the run."""
 ROUNDING = 1e-9
-"""Of the damping of two modes: what couples them by less is rounding."""
+"""Coupling of two modes over the damping of both, below which it is rounding."""
 UNDAMPED = 1e-12
-"""Of the stiffness of a mode: what is left of it in a resonance without damping is rounding."""
+"""Dynamic stiffness of a mode over its stiffness and inertia, below which it is rounding: a resonance without
+damping.
+"""
 BLOCK = 64
 """Frequencies whose matrices are held at a time, where modes are coupled by damping."""
 
@@ -49,7 +51,7 @@ class BearingHarmonics(BearingForces, Protocol):
 
     @property
     def speed(self) -> FloatArray:
-        """Of the leading drive, rad/s, (S,)."""
+        """Speed of the leading drive, rad/s, (S,)."""
 
     @property
     def order(self) -> FloatArray:

@@ -168,8 +168,8 @@ class MeasuredVibration:
     speed: FloatArray
     order: FloatArray
     frequency: FloatArray
-    """`speed`, `order`, `frequency`: Of the leading drive in rad/s, multiples of the frequency of the first
-    mesh that turns, Hz. (S,), (H,), (S, H) arrays.
+    """`speed`, `order`, `frequency`: Speed of the leading drive, rad/s; multiple of the frequency of the
+    first mesh that turns; frequency, Hz. (S,), (H,), (S, H) arrays.
     """
     velocity: ComplexArray
     """Peak amplitudes along the axes of the measurement, m/s; NaN outside the measured band and along axes
@@ -180,7 +180,9 @@ class MeasuredVibration:
     omitted: tuple[Direction, ...]
     """Forces of bearings without a mobility, by the axes of the measurement."""
     omitted_force: FloatArray
-    """Their part of the sum of the squared forces of all bearings, 0 to 1; 0 without forces. Shape (S, H)."""
+    """Share of the omitted forces in the sum of the squared forces of all bearings, 0 to 1; 0 without forces.
+    Shape (S, H).
+    """
     moments: bool
     """Whether the bearings press moments on their seats, which are left out."""
     floor: bool

@@ -21,7 +21,7 @@ from dynamics.vibration.housing_vibration import MotionQuantity, named_points
 UNIFORM = 1e-6
 """Largest deviation of a sample's time from a uniform grid, in steps."""
 LOOSE = 1e-6
-"""Of the highest natural frequency: what is below moves freely, to rounding."""
+"""Natural frequency over the highest one, below which it is rounding and the mode moves freely."""
 PIECE = 4096
 """Samples whose states are held at a time."""
 REACH = 32
@@ -50,11 +50,13 @@ class _CoupledModes:
     """Modes that damping couples."""
 
     transition: FloatArray
-    """Of the state: modal amplitudes times `scale`, then their rates times the step. Shape (2 m, 2 m)."""
+    """Transition of the state over a step. State: modal amplitudes times `scale`, then their rates times the
+    step. Shape (2 m, 2 m).
+    """
     gain: FloatArray
     """State per derivative of the force at the sample, in steps. Shape (4, 2 m, s)."""
     scale: FloatArray
-    """Shape (m,)."""
+    """Scale of the modal amplitudes. Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _CoupledModes:
@@ -90,13 +92,15 @@ class _SeparateModes:
     """Modes each by itself: damping couples none."""
 
     transition: FloatArray
-    """Of the state of a mode: amplitude times `scale`, rate times the step. Shape (2, 2, m)."""
+    """Transition of the state of each mode over a step. State: amplitude times `scale`, rate times the step.
+    Shape (2, 2, m).
+    """
     gain: FloatArray
     """State of a mode per derivative of its modal force, in steps. Shape (2, 4, m)."""
     push: FloatArray
     """Modal forces per force. Shape (m, s)."""
     scale: FloatArray
-    """Shape (m,)."""
+    """Scale of the modal amplitudes. Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _SeparateModes:

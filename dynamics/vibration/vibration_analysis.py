@@ -1,4 +1,4 @@
-"""How a housing vibrates under its bearings, and through what where it does most."""
+"""Vibration of a housing under its bearings, and its largest parts by bearings and modes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ RESIDUAL = "residual"
 """Name of what the modes that are not kept contribute: static flexibility of the seats."""
 
 FREQUENCIES = 800
-"""Of the transfer functions, evenly spaced; resonances kept are among them."""
+"""Number of evenly spaced frequencies of the transfer functions, to which the natural frequencies are added.
+"""
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,8 @@ class Parts:
     frequency: FloatArray
     """Natural frequencies in Hz; NaN of what is no mode. Shape (p,)."""
     motion: ComplexArray
-    """Of the reduced coordinates, m and rad; their sum is the whole motion. Shape (p, r)."""
+    """Motion of the reduced coordinates by each part, m and rad; the sum is the whole motion. Shape (p, r).
+    """
 
     @classmethod
     def of_bearings(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
@@ -218,9 +220,9 @@ class Shares:
     frequency: FloatArray
     """Natural frequencies, Hz; NaN of what is no mode. Shape (p,)."""
     point: FloatArray
-    """To the mean square velocity of each point. Shape (k, p)."""
+    """Contributions to the mean square velocity of each point. Shape (k, p)."""
     surface: FloatArray
-    """To that of the outer hull; NaN without a surface. Shape (p,)."""
+    """Contributions to the mean square velocity of the outer hull; NaN without a surface. Shape (p,)."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""From result files to the report: what is read, the page, its JSON, and the files written."""
+"""The report from result files: reading, the page, its JSON, and the written files."""
 
 from __future__ import annotations
 

@@ -337,7 +337,7 @@ class Entry:
 
     @property
     def name(self) -> str:
-        """Its name in JSON, with the unit."""
+        """The name of the quantity in JSON, with the unit."""
         label = self.term.replace(" ", "_").replace("-", "_")
         return f"{label}_{self.unit}" if self.unit else label
 

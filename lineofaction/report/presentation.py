@@ -1,4 +1,4 @@
-"""How a study shows its result: its figure, its page, its text, each in the file of its name."""
+"""Presentation of a study's result: its figure, its page, its text, each in the file of its name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is implausible about normalized inputs, and what they are predicted to cost."""
+"""Expectations of normalized inputs: implausible values, and the predicted cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is complained of, marked in every plot whose axes or orders have it."""
+"""Marks of a complaint in every plot whose axes or orders contain it."""
 
 from __future__ import annotations
 

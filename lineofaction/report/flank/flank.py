@@ -36,7 +36,7 @@ from lineofaction.report.ste.curves import POSITION_LABEL
 from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
 
 N_PER_MM = 1e3
-"""In N/m."""
+"""One N/mm in N/m."""
 
 MAX_LINES = 8  # positions
 Gear = Literal["pinion", "wheel"]
@@ -45,7 +45,7 @@ PRESSURE = "Hertz pressure, MPa"
 _MAX_ISOLINES = 6
 _HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
 _Map = tuple[FloatArray, FloatArray]
-"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
+"""Roll lengths (R,) in mm and pressures (R, K) in MPa of a contact pattern."""
 MAX_CURVES = 4  # positions
 _VISIBLE_GAP = 0.01
 """um; a plot of less shows nothing."""
