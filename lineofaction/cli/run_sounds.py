@@ -23,7 +23,7 @@ FAINT = 1e-3
 
 @dataclass(frozen=True)
 class RunSound:
-    """A run as it is heard."""
+    """A run with its recording, its figures, and its row of the printed table."""
 
     name: str
     recording: Recording

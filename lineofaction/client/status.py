@@ -57,8 +57,8 @@ class JobState:
     subject: str = ""
     """Subject of the job in words."""
     differences: tuple[dict[str, Any], ...] = ()
-    """The first inputs that differ from those of the caller's job before it of the same process, or from the
-    defaults: field, before, value.
+    """The first inputs that differ from the inputs of the caller's job before it of the same process, or from
+    the defaults: field, before, value.
     """
     priority: int = 0
     remaining_s: float | None = None

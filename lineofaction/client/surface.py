@@ -120,5 +120,6 @@ class Listing(_Method, Generic[P, T]):
 
 
 operation, listing = Operation, Listing
-"""The two classes as decorators: `operation` of generators of steps, `listing` of those of steps and items.
+"""The two classes as decorators of generators: `operation` of a generator of steps, `listing` of a generator
+of steps and items.
 """

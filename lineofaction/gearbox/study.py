@@ -105,7 +105,8 @@ class Study:
     """Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     """
     further: tuple[str, ...] = ()
-    """Endings of files that the verb writes beside those of all studies. CSV can be printed too."""
+    """Endings of files that the verb writes in addition to the files of all studies. CSV can be printed too.
+    """
     several: bool = False
     """Whether the verb takes several files."""
     housed: bool = False

@@ -1,4 +1,4 @@
-"""Cases that can be computed: what a schema cannot check and a request can afford."""
+"""Cases with the checks that a schema cannot do: feasibility and predicted cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The account of an import: what became of every component and attribute of a file."""
+"""The account of an import: the fate of every component and attribute of a file."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class Line:
 
 
 class Account:
-    """The account of one model. Whoever reads a value states what becomes of it; the last word counts.
+    """The account of one model. A reader of a value states the fate of the value; the last statement counts.
 
-    `model`: of the newest version.
+    `model` has the newest version of REXS.
     """
 
     def __init__(self, model: Model) -> None:

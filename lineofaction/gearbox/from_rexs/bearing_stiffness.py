@@ -52,7 +52,7 @@ _ROWS = ("f_u", "f_v", "f_w", "m_v", "m_w")
 
 @dataclass(frozen=True)
 class BearingStiffness:
-    """Stiffness of a bearing along its own axis and across."""
+    """Stiffness of a bearing along and across its axis."""
 
     radial: float
     axial: float

@@ -1,4 +1,4 @@
-"""A modification of a flank: what it removes, and the flank that it is on."""
+"""A modification of a flank: the removed material, and the flank that is modified."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SAME = 1e-6  # of the flank: places that a writer's rounding sets apart are one
 
 @dataclass(frozen=True)
 class Modification:
-    """A modification of a flank: what it removes, and fields of the case that say the same."""
+    """A modification of a flank: the removed material, and equivalent fields of the case."""
 
     part: Part
     removed: Removed

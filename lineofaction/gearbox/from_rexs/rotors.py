@@ -1,4 +1,4 @@
-"""Rotors: what turns as one body, a shaft by itself or all parts of a planet carrier."""
+"""Rotors: bodies that turn as one, a single shaft or all parts of a planet carrier."""
 
 from __future__ import annotations
 

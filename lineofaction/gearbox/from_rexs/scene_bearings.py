@@ -27,7 +27,7 @@ _CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_c
 
 
 class SceneBearings:
-    """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
+    """Tables of bearings and couplings as a scene file has them; the account says what is left out and why.
 
     `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
     """

@@ -124,7 +124,7 @@ class ErrorsInput(BoundaryModel):
 
 @in_brief
 class Case(BoundaryModel):
-    """A gear pair and what is to be computed for it."""
+    """A gear pair, its loads and alignment, and the requested accuracy."""
 
     class AccuracyInput(BoundaryModel):
         """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""

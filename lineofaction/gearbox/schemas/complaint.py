@@ -1,4 +1,4 @@
-"""A complaint: which frequency, or order, is heard at which speed, and where."""
+"""A complaint about a sound: its frequency or order, the speed, and the place."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Point, refuse
 from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of, exactly_one_of
 
 WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
-"""Fields of what the complaint names, a frequency or an order, and fields of its speed: at most one each."""
+"""Fields of the sound, a frequency or an order, and fields of the speed: at most one each."""
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
 """Fields that a road speed needs and a shaft speed does not."""
 

@@ -1,4 +1,4 @@
-"""Rows of a CSV file from outside: a heading, then one row per point; what is wrong is named by its line.
+"""Rows of a CSV file from outside: a heading, then one row per point; a fault names its line.
 
 Every function raises `ValueError`, which says what the file must hold and which line does not.
 """

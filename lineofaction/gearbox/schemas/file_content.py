@@ -1,4 +1,4 @@
-"""A file inside a scene: its name, and what it holds, compressed."""
+"""A file inside a scene: its name, and its compressed content."""
 
 from __future__ import annotations
 

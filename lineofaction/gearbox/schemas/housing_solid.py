@@ -66,7 +66,7 @@ class HousingSeatInput(BoundaryModel):
 
 
 class SeatNodeInput(BoundaryModel):
-    """A reference node of measured responses: where and along what the seat of a bearing was pushed."""
+    """A reference node of measured responses: node and direction in which a bearing's seat was excited."""
 
     bearing: Name = Field(description="The bushing or rolling bearing in the seat", examples=["input left"])
     node: Node = Field(description="Reference node of the seat in the file", examples=[1])

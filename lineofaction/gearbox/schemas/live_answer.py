@@ -11,7 +11,7 @@ from lineofaction.gearbox.schemas.plan import ModelBias
 
 
 class LiveCurve(BoundaryModel):
-    """Transmission error over one period at one load, with what it may be wrong by.
+    """Transmission error over one period at one load, with its errors.
 
     An error covers the discretization of the same model, all sources together; see docs/accuracy.md.
     """

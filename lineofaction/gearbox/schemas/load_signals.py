@@ -1,4 +1,4 @@
-"""Speeds of drives and torques of loads as channels of recordings beside a scene file, written out in it."""
+"""Speeds of drives and torques of loads from channels of recordings, written out in the scene."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class LoadSignalInput(BoundaryModel):
 
 
 class _Course(NamedTuple):
-    """The field of a part that a channel becomes, what it measures, and what one of the field is in SI."""
+    """Field of a part that takes a channel: its name, the quantity, and the SI value of one unit."""
 
     field: str
     quantity: str

@@ -130,7 +130,7 @@ class PlanBody(BaseModel):
         reason: str
 
     class PlannedLevel(BaseModel):
-        """A mesh level of the model, or what the tolerance needs beyond the time: cost and error."""
+        """A mesh level, or the level that the tolerance needs without the time budget: cost and error."""
 
         model: str
         level: str

@@ -1,4 +1,4 @@
-"""The table ``[report]``: what a report is about, and what its figures must reach."""
+"""The table ``[report]``: the subject of a report, and requirements on its figures."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class Toggled(Part):
 
 
 class Level(Part):
-    """Change of the level of what a scene is computed for, at the order that changes most."""
+    """Change of the level of the scene's quantity at the order that changes most."""
 
     quantity: str
     unit: str

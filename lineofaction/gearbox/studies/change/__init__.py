@@ -1,4 +1,4 @@
-"""Two flanks of a mesh, the speeds and loads at which they are heard, and the tolerances of both."""
+"""Inputs of a change of flanks: two designs of a mesh, speeds, loads, and tolerances of both."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class Inputs(OverOrders):
 
 
 class QuantileFigures(Part):
-    """A level of all pairs: the nominal one, and what 5, 50 and 95 % of the pairs are below."""
+    """A level of all pairs: the nominal one, and the quantiles of 5, 50 and 95 %."""
 
     nominal_db: float
     low_db: float

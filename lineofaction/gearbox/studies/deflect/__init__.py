@@ -147,7 +147,7 @@ class DeflectFigures(Figures):
             flanks: Flanks | None
 
         class Bearing(Part):
-            """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
+            """A bearing under a load case, in x, y, z; without a life `rating_life` has the reason."""
 
             name: str
             shaft: str

@@ -42,8 +42,8 @@ class MeshFlanks:
     face_load_factor: float
     """K_Hbeta over the cycle; NaN in the plane."""
     load_arm_difference: float = field(metadata=in_unit("m"))
-    """Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
-    plane.
+    """Arm of the load on the flanks less the arm in the table by which the shafts were deflected, m; NaN in
+    the plane.
     """
     largest_pressure: float = field(metadata=in_unit("pa"))
     """Largest pressure on the flanks, Pa."""

@@ -13,7 +13,7 @@ MAX_FULL_CONTACT = 64
 
 
 class Inputs(BoundaryModel):
-    """The fidelities to run, and full contact beside those of a case."""
+    """The fidelities to run, and whether full contact is run too for a case."""
 
     rungs: Row[Name] | None = Field(
         default=None,

@@ -19,7 +19,7 @@ _TONE = ("frequency", "tone_to_noise")
 
 
 class Inputs(BoundaryModel):
-    """A run that is heard through the housings of a scene, and where."""
+    """A run, the scene whose housings it moves, and the microphone or point."""
 
     model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of(*_PLACES)))
 

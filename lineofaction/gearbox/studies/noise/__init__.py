@@ -191,13 +191,13 @@ class NoiseFigures(Figures):
     """
 
     class BearingSound(Part):
-        """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
+        """Levels by order, then by speed: by the force of a bearing alone, and without this force."""
 
         alone_db_a: Annotated[list[list[float]], Source("bearing_alone_level")]
         without_db_a: Annotated[list[list[float]], Source("level_without_bearing")]
 
     class LoudPoint(Part):
-        """An order at a speed at which it is louder than at the speeds beside it."""
+        """An order at a speed at which it is louder than at the neighboring speeds."""
 
         order: float
         speed_rpm: float

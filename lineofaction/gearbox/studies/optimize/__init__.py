@@ -63,11 +63,11 @@ class GearVariablesInput(BoundaryModel):
 
 @with_fields({figure.field: _deviation(figure) for figure in _FREE})
 class GearScatterInput(BoundaryModel):
-    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+    """Standard deviations of one gear's modifications as manufactured; one that is left out is 0."""
 
 
 class ScatterInput(BoundaryModel):
-    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+    """Independent normal deviations from the design, and the quadrature rule of their expectation."""
 
     misalignment_um: float = Field(
         default=0.0,
@@ -205,7 +205,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
 
 class Inputs(BoundaryModel):
-    """An optimization of flank modifications: of a case by its ripple, of a scene by what is heard."""
+    """Inputs of an optimization of flank modifications: of a case by its ripple, of a scene by its level."""
 
     class VariablesInput(BoundaryModel):
         """Design variables of both gears."""

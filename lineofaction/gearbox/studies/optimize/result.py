@@ -34,7 +34,8 @@ class HeardDesign:
     """Level that is minimized, with its error, dB."""
     level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
-    """`level`, `level_error`: dB; the error is that of the discretization of the contact. Shape (L, K) each.
+    """`level`, `level_error`: Levels and the errors of the contact's discretization in them, dB. Shape (L, K)
+    each.
     """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
