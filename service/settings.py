@@ -63,7 +63,7 @@ class Settings(BaseSettings):
     results_access_key_id: SecretStr | None = None
     results_secret_access_key: SecretStr | None = Field(None, validate_default=True)
     """`results_access_key_id`, `results_secret_access_key`: Credentials of that bucket, both or none; None:
-    those of the AWS_ variables.
+    the AWS_ variables.
     """
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
     """Largest size of the cache of files from another place, MB."""

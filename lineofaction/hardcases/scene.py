@@ -1,4 +1,4 @@
-"""Hard scenes: why they are hard, what they must obey, what was measured."""
+"""Hard scenes: the reason why each is hard, its law, and its measured figures."""
 
 from __future__ import annotations
 

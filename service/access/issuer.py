@@ -1,4 +1,4 @@
-"""The public keys of an OpenID Connect issuer: fetched from it alone, and anew when they change."""
+"""The public keys of an OpenID Connect issuer: fetched from the issuer, and anew when they change."""
 
 from __future__ import annotations
 

@@ -28,7 +28,8 @@ class Asker:
     key: str = NOBODY
     """Name of the access key."""
     slider: str | None = None
-    """Name that the caller gives to questions of which the newest counts; it is one of the key's alone."""
+    """Name that the caller gives to questions of which only the newest counts; each key has names of its own.
+    """
     submits: bool = False
     """Whether a submission waits for the answer. Such a question has a line of its own, before all others."""
 

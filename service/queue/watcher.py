@@ -30,7 +30,7 @@ logger = structlog.get_logger(__name__)
 
 @dataclass
 class _Followed(Generic[T]):
-    """A job, when it changed last as far as is known, and who is told."""
+    """A job, the time of its last known change, and its followers."""
 
     updated: str
     followers: list[Follower[T]] = field(default_factory=list)

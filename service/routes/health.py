@@ -1,4 +1,4 @@
-"""Is it alive, can it work, what are its figures."""
+"""Health, readiness and figures of the service."""
 
 from __future__ import annotations
 

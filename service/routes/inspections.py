@@ -41,7 +41,7 @@ class InspectionInput(BoundaryModel):
 
 
 class AsMadeRequest(CaseRequest):
-    """A case, and what its gears are as made: measured, or else drawn within a class."""
+    """A case, and its gears as made: measured, or drawn within a class."""
 
     measured: InspectionInput | None = Field(
         default=None, description="The inspection of one gear; left out: both are drawn", examples=[None]

@@ -64,7 +64,7 @@ class Landing(BaseModel):
 
 
 class Conformance(BaseModel):
-    """The conformance classes met."""
+    """The conformance classes of the service."""
 
     conformsTo: list[str]  # noqa: N815 (name of the standard)
 
@@ -123,7 +123,7 @@ class ProcessDescription(ProcessSummary):
 
 
 class Difference(BaseModel):
-    """An input that differs from that of the job before, or from its default."""
+    """An input that differs from the job before, or from its default."""
 
     field: str = Field(description="Path of the input", examples=["case.load.torque_n_m"])
     before: Value = Field(description="Value before; null: not stated; of a long list its length")
@@ -333,7 +333,7 @@ class ReportSound(BaseModel):
 
 
 class ReportFigure(BaseModel):
-    """A plot, with what stands in for it where it cannot be seen."""
+    """A plot, with a text and a table for readers who cannot see it."""
 
     key: str
     title: str

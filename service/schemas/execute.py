@@ -26,7 +26,7 @@ Tags = Annotated[list[Tag], Field(max_length=16)]
 Priority = Annotated[int, Field(ge=-9, le=9)]
 Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _FORMAT = {"mediaType", "encoding", "schema"}
-"""Members of a qualified value beside "value"."""
+"""Members of a qualified value in addition to "value"."""
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 """Members of a link."""
 MAX_JOBS = 200
@@ -36,7 +36,7 @@ _DEEPEST = 32
 
 
 class LabelChange(BoundaryModel):
-    """A change of a job's label; what is left out stays."""
+    """A change of a job's label; a member that is left out stays."""
 
     title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 µm"])
     tags: Tags | None = Field(None, description="Replace the tags of the job", examples=[["ev-3", "draft"]])
@@ -157,7 +157,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
 
 
 class BatchRequest(BoundaryModel):
-    """Many inputs of one process, written as differences from what they share."""
+    """Many jobs of one process, written as shared inputs and the differences of each job."""
 
     process: str = Field(max_length=64, description="Identifier of the process", examples=["analyze"])
     inputs: dict[str, Any] = Field(

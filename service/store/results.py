@@ -115,7 +115,7 @@ class StoredResult:
 
 
 class ResultStore:
-    """Write once, read verified: the first result of a key stays, whoever computes it again.
+    """Store of results, written once and verified on reading: the first result of a key stays.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ _KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
     ROOM: ("no space", NoSpace),
     FILES: ("out of files", OutOfFiles),
 }
-"""Event of the log and error by what is to be done, where the database itself is sound."""
+"""Event of the log and error, by the resource that lacks, if the database itself is sound."""
 P = ParamSpec("P")
 R = TypeVar("R")
 

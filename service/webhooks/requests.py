@@ -26,7 +26,7 @@ _TRANSLATED = ipaddress.ip_network("64:ff9b::/96")
 
 
 class NotCalled(Exception):
-    """A receiver must not be called, or it did not answer; the message says why."""
+    """A receiver must not be called, or it did not answer; the message has the reason."""
 
 
 def send(uri: str, body: bytes, headers: Mapping[str, str]) -> int:

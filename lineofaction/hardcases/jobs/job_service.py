@@ -1,4 +1,4 @@
-"""A service for one hard scene: its settings, its processes, and what disturbs it."""
+"""A service for one hard scene: its settings, its processes, and its disturbance."""
 
 from __future__ import annotations
 

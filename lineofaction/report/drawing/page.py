@@ -102,7 +102,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """A main result: what, its value and its error or remark."""
+    """A main result: its name, its value, and its error or remark."""
 
     name: str
     value: str

@@ -1,4 +1,4 @@
-"""A run heard through a housing as people see it: its level over the way, with a player."""
+"""Page of a run heard through a housing: its level over the speeds, with a player."""
 
 from __future__ import annotations
 

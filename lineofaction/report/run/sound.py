@@ -39,7 +39,7 @@ LONGEST = 300.0
 
 @dataclass(frozen=True)
 class RunSignal:
-    """A run to listen to: its name, the run, and what is shown of it."""
+    """A run as a sound: its name, the run, and the shown signal."""
 
     name: str
     run: RunResult
