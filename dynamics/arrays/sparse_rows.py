@@ -24,9 +24,9 @@ class _SparseRows(NamedTuple):
     first: IntArray
     """First entry of each row, and the number of entries. Shape (rows + 1,)."""
     column: IntArray
-    """Shape (entries,)."""
+    """Columns of the entries. Shape (entries,)."""
     weight: FloatArray
-    """Shape (entries,)."""
+    """Weights of the entries. Shape (entries,)."""
 
 
 class RowRuns(NamedTuple):
@@ -38,7 +38,7 @@ class RowRuns(NamedTuple):
     column: IntArray
     """`entry`, `column`: First entry of each run, and its column. Shape (runs,) each."""
     length: IntArray
-    """Shape (runs,)."""
+    """Lengths of the runs. Shape (runs,)."""
 
 
 def _row_runs(rows: _SparseRows) -> RowRuns:

@@ -58,9 +58,9 @@ class SpringCurve(SceneBearingLaw):
     axis.
     """
     displacement: tuple[float, ...]
-    """m, rad for a tilt; strictly increasing, at least 2."""
+    """Displacements of the table, m, or rad for a tilt; strictly increasing, at least 2."""
     force: tuple[float, ...]
-    """N, N m for a tilt; strictly increasing."""
+    """Forces of the table, N, or moments, N m, for a tilt; strictly increasing."""
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)

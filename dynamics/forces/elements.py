@@ -65,7 +65,9 @@ class Elements(NamedTuple):
 
     law: IntArray
     entry: IntArray
-    """`law`, `entry`: Shape (E,) each."""
+    """`law`, `entry`: Number of each element's law, and index of the element in the arrays of the law. Shape
+    (E,) each.
+    """
     first: IntArray
     """First row of each element, and R. Shape (E + 1,)."""
     mesh: IntArray
@@ -76,7 +78,7 @@ class Elements(NamedTuple):
     """0 for flanks, whose coordinates the kinematic motion does not change. Shape (k, R)."""
     stiffness: FloatArray
     speed: FloatArray
-    """Shape (k, E, 2)."""
+    """Spin and speed of the frame per unit speed of each law. Shape (k, E, 2)."""
     carried: int
     turned: int
     """`carried`, `turned`: The first row with drift, and the first element with speed; R and E: none."""

@@ -112,7 +112,7 @@ class AssembledHousing:
     """Freedoms x; f in all."""
     mass: sp.csr_array
     stiffness: sp.csr_array
-    """`mass`, `stiffness`: With the mounts' stiffness. (f, f) sparse arrays."""
+    """`mass`, `stiffness`: Matrices M and K, the mounts' stiffness included. (f, f) sparse arrays."""
     mounts: tuple[sp.csr_array, sp.csr_array]
     """Stiffness and damping of the mounts alone. Tuple of two (f, f) sparse arrays."""
     seats: sp.csr_array

@@ -63,11 +63,13 @@ class _SampleFigures:
     """`mesh_peak`, `mesh_rms`: Largest magnitude and rms of the driving flanks' forces. Shape (m,) each."""
     coast_peak: FloatArray
     coast_rms: FloatArray
-    """`coast_peak`, `coast_rms`: Of the coast flanks; zero where there is none. Shape (m,) each."""
+    """`coast_peak`, `coast_rms`: Largest magnitude and rms of the coast flanks' forces; zero where there is
+    none. Shape (m,) each.
+    """
     bearing_peak: FloatArray
     bearing_rms: FloatArray
-    """`bearing_peak`, `bearing_rms`: Of forces (and moments, N m) in the frame of each support. Shape (b, 3
-    or 6) each.
+    """`bearing_peak`, `bearing_rms`: Largest magnitude and rms of forces (and moments, N m) in the frame of
+    each support. Shape (b, 3 or 6) each.
     """
     removed: FloatArray
     folded: FloatArray

@@ -28,7 +28,7 @@ class _Absorber:
 
     name: str
     kind: str
-    """`name`, `kind`: Of the part; one of `KINDS`."""
+    """`name`, `kind`: Name of the part, and its kind, one of `KINDS`."""
     rows: FloatArray
     """Shape (k, n)."""
     stiffness: FloatArray

@@ -39,11 +39,11 @@ class FloorPower(NamedTuple):
     """Power or mean square of lines left out at S speeds in K bins of frequency."""
 
     frequency: FloatArray
-    """Mean of those lines in a bin that have power, Hz. Shape (S, K)."""
+    """Mean frequency of the lines with power in a bin, Hz. Shape (S, K)."""
     power: FloatArray
     missed: FloatArray
-    """`power`, `missed`: And by how much it may be off, of its unit: what straight lines between the
-    frequencies miss at most, and what a stiffness that varies may change. Shape (S, K) each.
+    """`power`, `missed`: Power or mean square, and its largest error in the same unit: by straight lines
+    between the frequencies, and by a varying stiffness. Shape (S, K) each.
     """
 
     @classmethod

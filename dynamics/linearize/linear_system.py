@@ -43,7 +43,7 @@ class LinearSystem:
     strain: FloatArray
     """Strain of each spring per freedom, m or rad. Shape (p, n)."""
     spring_stiffness: FloatArray
-    """N/m or N m/rad. Shape (p,)."""
+    """Stiffnesses of the springs, N/m or N m/rad. Shape (p,)."""
     equilibrium: StaticSolution
 
 

@@ -31,8 +31,8 @@ class _ModalElimination:
     outward: FloatArray
     inward: FloatArray
     along: FloatArray
-    """`outward`, `inward`, `along`: Of K and C: forces on bodies by z, on z by the bodies, on z by z. (2, a,
-    s), (2, s, a), (2, s, s) arrays.
+    """`outward`, `inward`, `along`: Parts of K and C: forces on bodies by z, on z by the bodies, on z by z.
+    (2, a, s), (2, s, a), (2, s, s) arrays.
     """
 
     def solve(

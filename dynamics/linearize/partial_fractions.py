@@ -21,7 +21,7 @@ class PartialFractions:
     stiffness: FloatArray
     mass: FloatArray
     damping: FloatArray
-    """`stiffness`, `mass`, `damping`: Shape (n, n) each."""
+    """`stiffness`, `mass`, `damping`: Matrices of the system. Shape (n, n) each."""
     root: ComplexArray
     """Eigenvalues r of the motion of first order, rad/s. Shape (2 n,)."""
     shape: ComplexArray

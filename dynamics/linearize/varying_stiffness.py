@@ -186,13 +186,13 @@ class DirectBalance:
     harmonic: IntArray
     row: IntArray
     imaginary: BoolArray
-    """`harmonic`, `row`, `imaginary`: Which coefficient of the motion an unknown is: harmonic (0 the mean),
-    row, and which part of it. Shape (N,) each.
+    """`harmonic`, `row`, `imaginary`: Coefficient of the motion that an unknown is: its harmonic
+    (0 the mean), its row, and whether it is the imaginary part. Shape (N,) each.
     """
 
     @property
     def size(self) -> int:
-        """N."""
+        """Number N of unknowns."""
         return self.harmonic.size
 
     @classmethod

@@ -30,11 +30,11 @@ class ForceCourseLaws(NamedTuple):
     size: FloatArray
     lever: FloatArray
     sense: FloatArray
-    """`size`, `lever`, `sense`: N; last row over rotation, m; +1 or -1: the sense in which the speed counts.
-    Shape (l,) each.
+    """`size`, `lever`, `sense`: Size of the force, N; last row over rotation, m; sense in which the speed
+    counts, +1 or -1. Shape (l,) each.
     """
     rows: IntArray
-    """1, 2 or 3 rows that carry force. Shape (l,)."""
+    """Number of rows that carry force, 1, 2 or 3. Shape (l,)."""
     phase: IntArray
     frame: IntArray
     """`phase`, `frame`: Phases among the positions, in turns: of the factor, of the frame; -1: none. Shape

@@ -28,7 +28,7 @@ class LineOfAction:
     the axial part of a helical mesh. Shape (3,).
     """
     working_pressure_angle: float
-    """rad."""
+    """Working pressure angle, rad."""
 
     def gradient(self, center: FloatArray) -> FloatArray:
         """Return the (6,) wrench of `force` about `center`: the derivative of the approach along the line.

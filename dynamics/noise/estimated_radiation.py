@@ -28,7 +28,7 @@ SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
 Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
 """
 MIN = 1e-30
-"""kg/s, of a motion without sound."""
+"""Resistance that stands for a motion without sound, kg/s."""
 
 
 def allowed_levels(

@@ -31,17 +31,23 @@ from host import MissingExtra
 from model_studies.cached_file import cached_in
 
 LINES, BUDGET = 4, 60.0
-"""Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
+"""Most lines of a housing, and CPU seconds on the reference host that they may take together."""
 COARSE = Coarseness(EDGES, 450)
-"""Hull of a line: within EXACT of six edges in a wavelength at 15 lines of five gear cases."""
+"""Hull of a line. At 15 lines of five gear cases its level is within `EXACT` of that with six edges in a
+wavelength.
+"""
 EXACT = 0.5
-"""dB, that a line is off by its hull."""
+"""Error of the level of a line by its hull, dB."""
 FLAT, BLEND = 1.03, 1.06
-"""Ratios of frequencies: natural frequencies are guessed within the first."""
+"""Ratios of frequencies up to which the resistance of a line holds, and at which it is the estimate again;
+natural frequencies are guessed within the first.
+"""
 QUIETER = 6.0
-"""dB below the loudest point that the mesh resolves; a line that cannot be louder adds 1 dB at most."""
+"""Distance below the loudest point that the mesh resolves, dB, beyond which no line is corrected: a line that
+cannot be louder adds 1 dB at most.
+"""
 CANDIDATES = 200
-"""Loudest points among which they are looked for."""
+"""Number of loudest points among which the lines are."""
 AIR, NAME = Air(), BoundaryElements().model_name
 
 
@@ -50,7 +56,7 @@ class ExactLine:
     """A line that boundary elements correct."""
 
     frequency: float
-    """Hz."""
+    """Frequency of the line, Hz."""
     estimate: float
     level: float
     """`estimate`, `level`: Sound power level by the estimate and by boundary elements at its loudest point,

@@ -29,18 +29,22 @@ from model_studies.progress import Progress, silent, unreported
 from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
-"""dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
+"""Tolerance of the power of each mode in the middle of two frequencies, dB; the frequencies that are added
+leave a quarter of it.
+"""
 NOTHING = 1e-6
-"""Resistance over the largest of all modes that counts as none."""
+"""Resistance over the largest of all modes, below which a mode radiates nothing."""
 CONSTANT, CONSTANT_ERROR = 1.05, 0.008
 """Ratio of frequencies for R that does not change: R/f^2 is convex, 3/4 (step/f)^2 off in the middle, dB."""
 FEWEST, KNOTS = 8.0, (0.9, 0.025)
 """Frequencies of an octave where the body is small beside the wavelength, and more with ka and its square."""
 WIDEST, CLOSEST = 1.5, 1.03
-"""Largest ratio of frequencies side by side; the smallest that is parted."""
+"""Largest ratio of two frequencies side by side, and smallest ratio between which another one is added."""
 
 USUAL = 0.85
-"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
+"""Frequency of an octave, over its highest, whose cost is the mean: frequencies lie closer towards the end of
+the octave.
+"""
 Points = Sequence[tuple[int, float]]
 """Numbers of octaves, and frequencies in Hz."""
 BAND = 10.0**0.05

@@ -26,7 +26,7 @@ from dynamics.vibration.housing_motion import modal_amplitudes
 POWER = ("speed", "order")
 BINS = ("speed", "bin")
 QUIET = 30.0
-"""dB below the loudest beyond which a maximum is not listed."""
+"""Distance below the loudest maximum, dB, beyond which a maximum is not listed."""
 
 
 def _powers(
@@ -129,8 +129,8 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
-    """`panel_node`, `panel_corner`, `panel_power`: Of all housings at the loudest order and speed
-    (`PanelSound`); empty where they were not looked at. (N, 3), (T, 3), (T,) arrays.
+    """`panel_node`, `panel_corner`, `panel_power`: Panels of all housings and their power at the loudest
+    order and speed (`PanelSound`); empty where they were not computed. (N, 3), (T, 3), (T,) arrays.
     """
     floor_frequency: FloatArray = field(
         default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)

@@ -53,7 +53,7 @@ class Sensitivity:
     figure: DesignFigure
     change: float
     change_of_two: float
-    """`change`, `change_of_two`: Of the level with one step and with two, dB."""
+    """`change`, `change_of_two`: Change of the level with one step of the figure and with two, dB."""
 
     @classmethod
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:

@@ -36,7 +36,7 @@ from model_studies.progress import Progress, silent
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
-"""dB; speeds that miss more are no map of a resonance."""
+"""Largest error by peaks between the speeds, dB: speeds with a larger one do not resolve a resonance."""
 Levels = Callable[[Mapping[str, float]], FloatArray]
 
 

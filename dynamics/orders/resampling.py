@@ -18,7 +18,9 @@ ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
 KAISER = 12.0  # shape of the filter's window: 118 dB
 NYQUIST = 0.5  # cycles a sample
 REMOVED, TRANSITION = 80.0, 0.1
-"""dB by which a low-pass removes what is above its transition; width of that, of the frequency passed."""
+"""Attenuation of a low-pass above its transition, dB, and width of the transition, over the highest frequency
+that it passes.
+"""
 FINER, HALF_LENGTH = 4, 24  # times the result's rate; of the filter, in samples of the result
 
 

@@ -53,9 +53,9 @@ class _Bifurcation:
     kind: Instability
     """`FOLD`: the branch turns back; a sweep over the speed jumps here."""
     speed: float
-    """rad/s; of a fold solved for, of other kinds interpolated between two motions."""
+    """Speed, rad/s: solved for at a fold, interpolated between two motions at other kinds."""
     point: int
-    """The last motion of the branch before it."""
+    """Last motion of the branch before the point."""
 
 
 @dataclass(frozen=True)

@@ -97,7 +97,7 @@ class RunResult:
     slightly below 0 at lift-off. Shape (m, T).
     """
     coast_force: FloatArray = field(metadata=stored("N", "transverse force of the coast flank", *MESH))
-    """m = 0 here if backlash is off in all meshes. Shape (m, T)."""
+    """Force of the coast flank; m = 0 here if backlash is off in all meshes. Shape (m, T)."""
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least mesh force between samples, unfiltered", *MESH)
     )

@@ -17,7 +17,9 @@ from dynamics.results.checks import Check, SeriesBlock
 from dynamics.types import FloatArray
 
 LARGEST_TILT = 0.01
-"""rad: beyond it a gear's displacement along the line of action is no linear function of its tilt."""
+"""Largest tilt, rad: beyond it a gear's displacement along the line of action is no linear function of its
+tilt.
+"""
 MAX = 4
 """Parts beyond their bound that are named: where one is, most of them are."""
 WORKING_DEPTH = 2.0

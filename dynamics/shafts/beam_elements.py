@@ -39,7 +39,9 @@ class ElementMatrices(NamedTuple):
 
     bending_mass: FloatArray
     bending: FloatArray
-    """`bending_mass`, `bending`: In one plane: deflection (m) and its slope (rad). Shape (k, 4, 4) each."""
+    """`bending_mass`, `bending`: Mass and stiffness in one plane: deflection (m) and its slope (rad). Shape
+    (k, 4, 4) each.
+    """
     axial_mass: FloatArray
     axial: FloatArray
     torsional_mass: FloatArray

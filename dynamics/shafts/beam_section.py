@@ -85,7 +85,7 @@ class BeamSection:
 
     @property
     def shear_modulus(self) -> float:
-        """Pa."""
+        """Shear modulus, Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
     def cross_section(self, share: float | FloatArray = 0.0) -> _CrossSection:

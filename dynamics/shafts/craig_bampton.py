@@ -13,11 +13,11 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
 
 CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
+"""Multiples of the frequency of interest, up to which modes with the interface held may count."""
 
 
 TRUNCATION = 0.01
-"""Relative error of the frequencies of interest at which enough of them are kept."""
+"""Relative error of the frequencies of interest, below which the modes that count are enough."""
 
 
 @dataclass(frozen=True)

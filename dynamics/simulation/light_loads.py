@@ -10,7 +10,7 @@ from dynamics.assembly.assemble import System
 from dynamics.types import FloatArray
 
 USUAL_DEFLECTION = 1e-6
-"""m: where teeth deflect or deviate by less, the tolerance is smaller in proportion.
+"""Transmission error, m, below which the tolerance falls in proportion.
 
 A tolerance of 1 nm is then a thousandth of what moves, as it is at 1 um; loaded teeth deflect by 5 to 30 um.
 """

@@ -14,7 +14,7 @@ from dynamics.mechanism.sampling import SPEED_POINTS
 from dynamics.types import Json
 
 MAX = 1e6
-"""Hz; the highest band of an output."""
+"""Highest band of an output, Hz."""
 
 
 def linear_orders(system: System) -> Json:

@@ -99,13 +99,13 @@ class _Orders:
 
     error: FloatArray
     error_difference: FloatArray
-    """`error`, `error_difference`: Of the transmission errors, and of their difference, m. (2, m, K) and (m,
-    K) arrays.
+    """`error`, `error_difference`: Amplitudes of the transmission errors, and of their difference, m.
+    (2, m, K) and (m, K) arrays.
     """
     force: FloatArray
     force_difference: FloatArray
-    """`force`, `force_difference`: Of the bearing forces: norms over three directions, N. (2, b, K) and (b,
-    K) arrays.
+    """`force`, `force_difference`: Amplitudes of the bearing forces, and of their difference, norms over
+    three directions, N. (2, b, K) and (b, K) arrays.
     """
 
 

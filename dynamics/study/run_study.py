@@ -42,11 +42,11 @@ class _Spread:
 
     mean: FloatArray
     standard_error: FloatArray
-    """`mean`, `standard_error`: Of the usable samples; NaN where there are fewer than one, or two. Shape (C,)
-    each.
+    """`mean`, `standard_error`: Mean of the usable samples and its standard error; NaN where there is no
+    sample, or only one. Shape (C,) each.
     """
     fraction: FloatArray
-    """Shape (Q,)."""
+    """Fractions of the quantiles. Shape (Q,)."""
     quantile: FloatArray
     low: FloatArray
     high: FloatArray

@@ -54,7 +54,8 @@ class MeasuredMobility:
     excitation: tuple[Direction, ...]
     """Bearings, e of them with their axes; positive is the force of the shaft on the seat."""
     mobility: ComplexArray
-    """m/(N s), peak velocity per peak force for exp(2 pi i f t); reciprocity is not assumed. Shape (n, q, e).
+    """Mobilities, m/(N s): peak velocity per peak force for exp(2 pi i f t). Reciprocity is not assumed.
+    Shape (n, q, e).
     """
     axes: FloatArray = field(default_factory=lambda: np.eye(3))
     """Columns: the axes x, y, z of the measurement in the scene's frame. Shape (3, 3)."""

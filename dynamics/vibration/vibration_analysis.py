@@ -154,13 +154,14 @@ class SurfaceShape:
     """Complex peak amplitudes of the motion of a surface."""
 
     points: FloatArray
-    """m. Shape (p, 3)."""
+    """Points of the surface, m. Shape (p, 3)."""
     triangles: IntArray
     """Corners, counter-clockwise from outside, then mid-side nodes, if it has them. (t, 6) or (t, 3) int
     array.
     """
     motion: ComplexArray
-    """m, m/s or m/s^2; of a mode, real, with the largest motion 1. Shape (p, 3)."""
+    """Motion of the points, m, m/s or m/s^2; that of a mode is real, with the largest motion 1. Shape (p, 3).
+    """
 
     @property
     def facets(self) -> IntArray:
