@@ -20,7 +20,7 @@ from dynamics.types import FloatArray, IntArray
 LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 BLOCK = 3
-"""Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
+"""Consecutive freedoms that are ordered as one: three of a node, half of those of a rigid face."""
 
 
 @dataclass(frozen=True)

@@ -73,8 +73,8 @@ class _SampleFigures:
     """
     removed: FloatArray
     folded: FloatArray
-    """`removed`, `folded`: Rms of what the filter took away from the mesh force; of its content near half the
-    inner rate, a bound on what may have folded into the output. Shape (m,) each.
+    """`removed`, `folded`: Rms of the part of the mesh force that the filter removes, and of its content near
+    half the inner rate, which bounds the part that may fold into the output. Shape (m,) each.
     """
 
     def to_json(self, system: System) -> Json:
@@ -243,7 +243,7 @@ class Ending:
     taken: TimeTaken
     """Time of the stepping. In the first run of a process it includes reading or making the compiled code."""
     figures: _SampleFigures
-    """Peaks and rms over the run, and what the anti-alias filter took away."""
+    """Peaks and rms over the run, and the rms of the part that the anti-alias filter removes."""
     modal_states: FloatArray
     """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
 

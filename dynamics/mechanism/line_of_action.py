@@ -1,4 +1,4 @@
-"""The line of action of a mesh, and how a flank's deflection and operating point follow from its bodies."""
+"""The line of action of a mesh, and gradients of a flank's deflection and operating point in its bodies."""
 
 from __future__ import annotations
 

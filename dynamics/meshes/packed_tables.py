@@ -47,7 +47,7 @@ class PackedTables(NamedTuple):
     """Coefficients of the energy, see `energy_below`. Shape (sum of P L, 10)."""
 
     def decimated(self, every: int = 2) -> PackedTables:
-        """Return the tables on each `every`-th knot of position, with the values and slopes they have there.
+        """Return the tables on each `every`-th knot of position, with the values and slopes at these knots.
 
         Tables of fewer than LEAST knots in what is left stay as they are.
         """

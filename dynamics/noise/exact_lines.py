@@ -165,7 +165,7 @@ def line_cost(housing: ReducedHousing, hertz: float) -> Cost:
 def _exact_line(
     housing: ReducedHousing, hertz: float, model: BoundaryElements, cache: Path | None
 ) -> HousingRadiation:
-    """Return the resistance at one frequency, from the cache if it is there."""
+    """Return the resistance at one frequency, from the cache if the cache has it."""
     outer, hull = outer_hull(housing), _line_hull(housing, hertz)
     panels, shapes = len(hull.shapes), hull.shapes.astype(complex)
     kind, reference = WORK.format(NAME), line_cost(housing, hertz)
@@ -195,7 +195,7 @@ class _Knot(NamedTuple):
 
 
 def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiation]) -> EstimatedRadiation:
-    """Return the estimate with resistances of single frequencies in the place of its own near them.
+    """Return the estimate with resistances of single frequencies near these frequencies.
 
     Between two lines closer than `BLEND` squared it goes from one to the other.
     """
@@ -222,7 +222,7 @@ def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiat
 def _knots_of_line(
     estimate: EstimatedRadiation, line: HousingRadiation, sides: Sequence[int]
 ) -> Iterator[_Knot]:
-    """Yield the knots of a line, and those at which it ends at its sides, -1 below and 1 above it."""
+    """Yield the knots of a line, and the knots at which it ends at its `sides`, -1 below and 1 above it."""
     hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
     for at in (hertz, *(hertz * FLAT**side for side in sides)):
         knot = _knot(estimate, at)

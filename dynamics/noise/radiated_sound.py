@@ -1,4 +1,4 @@
-"""Sound power of housings by order and speed, what is loudest in it, and through what it gets there."""
+"""Sound power of housings by order and speed, its loudest points, and the bearings and modes behind them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ QUIET = 30.0
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
 ) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
+    """Return the fields of `RadiatedSound` by the motion in the modes under all bearings, with shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
     Frequencies (S, H) in Hz; `amplitudes` (S H, b, m) are complex peaks of `ReducedHousing.modes` by bearing.
@@ -183,7 +183,7 @@ class RadiatedSound(ArrayFile):
 
     @property
     def panels(self) -> PanelSound | None:
-        """Return the panels at the loudest order and speed; None where they were not looked at."""
+        """Return the panels at the loudest order and speed; None where they were not computed."""
         if not self.panel_power.size:
             return None
         return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
@@ -218,7 +218,7 @@ class RadiatedSound(ArrayFile):
 
 
 def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
+    """Return the fields of `RadiatedSound` on orders left out, all housings together; empty without."""
     if not floors:
         return {}
     total = FloorPower.of_all(floors)

@@ -42,7 +42,7 @@ class BranchStatus(IntEnum):
 
     @property
     def usable(self) -> bool:
-        """Whether the branch covers what was requested."""
+        """Whether the branch covers the requested speeds."""
         return self is BranchStatus.COMPLETED
 
 

@@ -131,7 +131,7 @@ class BeamSection:
 
     @property
     def body(self) -> tuple[Inertia, float]:
-        """Inertia about its center of mass, and how far that is from the left end, m."""
+        """Inertia of the piece about its center of mass, and distance of the center from the left end, m."""
         if self.end_outer_diameter is None and self.end_bore_diameter is None:
             cylinder = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
             return cylinder, 0.5 * self.length

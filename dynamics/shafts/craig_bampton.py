@@ -93,7 +93,7 @@ class ElasticModes:
     freedom. Shape (b, k).
     """
     fixed: int
-    """Number of modes with the interface held among what they are made of."""
+    """Number of modes with the interface held from which the coordinates are made."""
     limit: float
     """The frequency up to which these were kept, Hz."""
     truncation: float
@@ -109,7 +109,7 @@ class ElasticModes:
 
 @dataclass(frozen=True)
 class Family:
-    """Matrices (n, n) of a family, its k motions without strain (n, k), and what is held (-1: nothing)."""
+    """Matrices (n, n) of a family, its k motions without strain (n, k), and the held freedom (-1: none)."""
 
     mass: FloatArray
     stiffness: FloatArray

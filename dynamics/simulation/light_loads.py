@@ -1,4 +1,4 @@
-"""Step control of runs under light loads: their displacements are small, and so is what may be off."""
+"""Step control of runs under light loads: small displacements need a small tolerance."""
 
 from __future__ import annotations
 

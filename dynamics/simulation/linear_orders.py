@@ -18,7 +18,7 @@ MAX = 1e6
 
 
 def linear_orders(system: System) -> Json:
-    """Return what the receipt of a run says of orders above its band; nothing where there are none.
+    """Return the entry of the receipt of a run on orders above its band; empty where there are none.
 
     Nor where linear theory says nothing of the scene. Shafts are resolved to these orders; amplitudes are
     peak values.

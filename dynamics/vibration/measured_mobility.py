@@ -24,7 +24,7 @@ from dynamics.vibration.housing_motion import BearingHarmonics
 ORTHONORMAL = 1e-9
 """Largest entry of A^T A - 1 of axes that are perpendicular and of length one."""
 BLOCK = 1024
-"""Frequencies whose mobilities are interpolated at a time."""
+"""Number of frequencies whose mobilities are interpolated at a time."""
 
 
 @dataclass(frozen=True)
@@ -259,7 +259,7 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
 
 
 def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> FloatArray:
-    """Return what each measured bearing contributes to the mean square velocity of points, (e, k, S, H).
+    """Return the contribution of each measured bearing to the mean square velocity of points, (e, k, S, H).
 
     In the order of `MeasuredMobility.bearings`. They add up to 1, as in `Parts.shares`; a negative one acts
     against the sum. NaN outside the measured band and where nothing moves. Raises `InputError` as

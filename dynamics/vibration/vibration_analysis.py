@@ -23,7 +23,7 @@ from dynamics.vibration.housing_vibration import (
 )
 
 RESIDUAL = "residual"
-"""Name of what the modes that are not kept contribute: static flexibility of the seats."""
+"""Name of the contribution of all modes that are not kept: static flexibility of the seats."""
 
 FREQUENCIES = 800
 """Number of evenly spaced frequencies of the transfer functions, to which the natural frequencies are added.
@@ -35,9 +35,9 @@ class Parts:
     """A motion as a coherent sum."""
 
     name: tuple[str, ...]
-    """Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left."""
+    """Bearing seats, or modes by their number from 1; `RESIDUAL` is the rest."""
     frequency: FloatArray
-    """Natural frequencies in Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies in Hz; NaN for parts that are no mode. Shape (p,)."""
     motion: ComplexArray
     """Motion of the reduced coordinates by each part, m and rad; the sum is the whole motion. Shape (p, r).
     """
@@ -219,7 +219,7 @@ class Shares:
 
     name: tuple[str, ...]
     frequency: FloatArray
-    """Natural frequencies, Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies, Hz; NaN for parts that are no mode. Shape (p,)."""
     point: FloatArray
     """Contributions to the mean square velocity of each point. Shape (k, p)."""
     surface: FloatArray
@@ -228,18 +228,18 @@ class Shares:
 
 @dataclass(frozen=True)
 class VibrationAnalysis:
-    """Vibration over speed, and what makes it at one speed and order."""
+    """Vibration over speed, and its causes at one speed and order."""
 
     housing: str
     vibration: HousingVibration
     mobilities: _Mobilities
     at_speed: int
     at_order: int
-    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
+    """`at_speed`, `at_order`: Indices of the speed and the order of `deflection` and shares."""
     bearings: Shares
     modes: Shares
     deflection: SurfaceShape | None = None
-    """Velocity of the surface there; None without a surface."""
+    """Velocity of the surface at that speed and order; None without a surface."""
     facts: Json = field(default_factory=dict)
     """Plain JSON, of the response."""
 
