@@ -53,7 +53,7 @@ class LineLoadCase:
     torque: float
     misalignments: tuple[float, ...]
     meshes: tuple[PeerMesh, ...]
-    """Of the peer, the finest first."""
+    """Meshes of the peer, the finest first."""
     edge: int | None = None
     """Pair index of the peer's line that ends at a tip edge."""
 
@@ -110,7 +110,7 @@ def _fresh_helical_pairs() -> tuple[LineLoadCase, ...]:
 
 
 BORES = {17: 18e-3, 40: 30e-3, 19: 30e-3, 29: 40e-3, 22: 25e-3, 23: 25e-3}
-"""Of the helical gears by their teeth, m."""
+"""Bore diameters of the helical gears by their numbers of teeth, m."""
 
 
 def _helical(

@@ -1,4 +1,4 @@
-"""How much more a quarter space gives way near its free end under an even load, by finite elements.
+"""Additional approach of a quarter space near its free end under an even load, by finite elements.
 
 The closed form of `fe_contact.contact.free_end` against a quarter of a disc, 24 half strips in radius, that
 is extruded from its free end over 36 half strips: `python -m benchmarks.quarter_space` prints both along the
@@ -39,7 +39,7 @@ class QuarterDisc:
     """Six-node triangles on a grid of radii and angles; lengths in half strips, the surface on y = 0."""
 
     radius: float = 24.0
-    """Of its outer arc, which is fixed."""
+    """Radius of the outer arc, which is fixed, in half strips."""
     under_strip: int = 6
     angles: int = 8
     """`under_strip`, `angles`: Elements along half the strip, and from the surface to the plane of symmetry x

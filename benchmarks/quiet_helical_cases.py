@@ -20,9 +20,9 @@ class QuietPair:
     name: str
     pair: GearPair
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     misalignment: float = 0.0
-    """m."""
+    """Misalignment, m."""
     unseen: bool = False
     """Whether nothing about the estimates was decided on this pair: it assesses them."""
 

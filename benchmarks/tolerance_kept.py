@@ -34,15 +34,15 @@ class ToleranceRun:
 
     name: str
     ended: str
-    """Mesh and slices of the table it gives."""
+    """Mesh and slices of the final table."""
     passes: int
     met: bool
-    """What its receipt says."""
+    """Whether the receipt states that the tolerance is met."""
     stated: float
     true: float
-    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, in parts of
-    what is allowed; of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh
-    lowers.
+    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, relative to
+    the allowed error. The stated error is the part that a tolerance bounds: it leaves out `METHOD`, which no
+    mesh lowers.
     """
     seconds: float
     """CPU seconds of all passes."""

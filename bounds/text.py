@@ -57,9 +57,9 @@ class Quantity:
     """A number inside a message."""
 
     value: float
-    """In SI."""
+    """Value in SI."""
     unit: str = ""
-    """Symbol of its SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number."""
+    """Symbol of the SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number."""
     digits: int = DIGITS
     """Significant digits to write."""
     side: Literal["", "low", "high"] = ""

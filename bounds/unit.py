@@ -17,11 +17,11 @@ class Unit:
     """A unit as it is written."""
 
     name: str = ""
-    """Its symbol, e.g. ``"mm"``; empty for none."""
+    """Symbol of the unit, e.g. ``"mm"``; empty for none."""
     factor: float = 1.0
-    """SI value of one."""
+    """SI value of one unit."""
     si: str = ""
-    """Symbol of the SI unit of what it measures, e.g. ``"m"``."""
+    """Symbol of the SI unit of the same quantity, e.g. ``"m"``."""
 
     @property
     def plain(self) -> str:

@@ -1,8 +1,8 @@
-"""What a process that reads foreign bytes gives up before it reads them.
+"""Confinement of a process before it reads foreign bytes: files, system calls and limits.
 
 Whatever a file makes its reader do, a confined process opens no file but those of Python and of its own
 folder, calls the system for what reading needs and nothing else (`host.system_calls`), and ends at its limits
-of memory, CPU time and size of files. What the system lacks is missing by name: `missing_protections`.
+of memory, CPU time and size of files. `missing_protections` names the protections that a system lacks.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Ablation: every effect of a model toggled by itself, the change beside its estimate."""
+"""Ablation: every effect of a model is toggled by itself, and its change is compared with its estimate."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class Ablation(Generic[F, A]):
     """All effects of a request, each toggled by itself."""
 
     nominal: F
-    """Of the request."""
+    """Figures of the request itself."""
     effects: tuple[A, ...]
     left_out: dict[str, str]
     """Effects that were not toggled, and why."""

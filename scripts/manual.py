@@ -53,10 +53,10 @@ class Stale:
     """A line of a page that no command printed."""
 
     offset: int
-    """Of its first character in the page."""
+    """Offset of the line's first character in the page."""
     line: str
     nearest: str
-    """The line of the output that begins most like it."""
+    """Line of the output whose beginning is most similar."""
     renewed: str | None
     """The line with the numbers of the one line of the output that has its words; None without such a line.
     """

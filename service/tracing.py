@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from opentelemetry.sdk.trace import TracerProvider
 
 TRACEPARENT: ContextVar[str] = ContextVar("traceparent", default="")
-"""Of the request that is being answered; empty: it belongs to no trace."""
+"""Traceparent of the request that is being answered; empty: the request belongs to no trace."""
 Fact = str | int | float
 
 _VALID = re.compile(r"(?!ff)[0-9a-f]{2}-(?!0{32})([0-9a-f]{32})-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}", re.ASCII)

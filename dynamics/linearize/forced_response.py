@@ -32,6 +32,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
 KINDS = (*SPRING_KINDS, "load", "frame")
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
@@ -83,7 +84,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
     """`bearing_floor`, `bearing_floor_error`: Mean square bearing force of the orders left out, and its
     error, N^2. Empty where no orders are left out. Shape (b, S) each.
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`."""
 
     @property
@@ -159,7 +160,7 @@ def forced_response(
         **power.fields,
         bearing_floor=floor,
         bearing_floor_error=floor_error,
-        facts=_metadata(at, time, seconds)
+        metadata=_metadata(at, time, seconds)
         | lines.to_json(response.floor is not None)
         | {"effect_ledger": ledger}
         | system.corrections,

@@ -23,6 +23,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
 MAX_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
@@ -107,7 +108,7 @@ class ModalAnalysis(ArrayFile):
     critical_residual: FloatArray = field(
         metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
     `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
     resolved).
@@ -249,7 +250,7 @@ def _analysis(
         mesh_frequency=mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
         **vars(branches),
         **{f"critical_{name}": values for name, values in vars(crossings).items()},
-        facts=metadata,
+        metadata=metadata,
         axis_shaft=axes.shaft,
         axis_position=axes.position,
         axis_motion=system.freedoms.keep(axes.motion),

@@ -91,7 +91,7 @@ class EstimatedRadiation(HousingRadiation):
 
         At frequencies (N,) in Hz; beyond those that are computed and resolved as at the nearest of them.
         """
-        inside = self.frequency <= self.facts.resolved_frequency
+        inside = self.frequency <= self.metadata.resolved_frequency
         shape = housing.modes[1]
         if not np.any(inside):
             return np.ones((len(frequency), shape.shape[1]))
@@ -108,7 +108,7 @@ class EstimatedRadiation(HousingRadiation):
     def replaced(self, natural: FloatArray) -> FloatArray:
         """Return the natural frequencies, Hz, at which monopoles state nothing of the mode."""
         knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)
-        inside = (natural >= self.frequency[0]) & (natural <= self.facts.resolved_frequency)
+        inside = (natural >= self.frequency[0]) & (natural <= self.metadata.resolved_frequency)
         return np.asarray(natural[inside & self.by_velocity[knot, np.arange(natural.size)]])
 
 
@@ -120,7 +120,7 @@ def estimated_radiation(
     ka = 2.0 * np.pi / air.sound_speed * monopoles.frequency * outer_hull(housing).hull.equivalent_radius
     monopole_level = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
     plane = _levels(monopoles.impedance * np.einsum("mk,mn,nk->k", shape, monopoles.surface, shape))
-    resolved = monopoles.frequency <= monopoles.facts.resolved_frequency
+    resolved = monopoles.frequency <= monopoles.metadata.resolved_frequency
     low, high, by_velocity = allowed_levels(monopole_level, plane[None], ka, resolved)
     level = low + np.interp(ka, SHARE_AT, SHARE)[:, None] * (high - low)
     factor = 10.0 ** ((level - monopole_level) / 20.0) - 1.0

@@ -22,7 +22,7 @@ from dynamics.errors import ResultError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import Coarseness, RadiatingHull, radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation
-from dynamics.noise.housing_radiation import HousingRadiation, RadiationFacts, content_key
+from dynamics.noise.housing_radiation import HousingRadiation, RadiationMetadata, content_key
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
@@ -125,8 +125,8 @@ def corrected_radiation(
         before, radiation = float(sound.power[at]), with_exact_lines(estimate, exact)
         sound = radiated_sound(response, housing, bearings, radiation)
         estimated_level, level = sound_power_level([before, sound.power[at]]).tolist()
-        facts = exact[-1].facts
-        lines.append(ExactLine(hertz, estimated_level, level, facts.panels, facts.cost.seconds))
+        metadata = exact[-1].metadata
+        lines.append(ExactLine(hertz, estimated_level, level, metadata.panels, metadata.cost.seconds))
     return CorrectedRadiation(radiation, tuple(lines), tuple(left_out.values()))
 
 
@@ -134,7 +134,7 @@ def _next_point(
     sound: RadiatedSound, radiation: EstimatedRadiation, known: Sequence[float]
 ) -> LoudPoint | None:
     """Return the point that may be the loudest away from frequencies in Hz; None where none counts."""
-    resolved = radiation.facts.resolved_frequency
+    resolved = radiation.metadata.resolved_frequency
     points = [point for point in loudest(sound, CANDIDATES) if point.frequency <= resolved]
     highest = {
         point: _highest_level(sound, radiation, point)
@@ -174,7 +174,7 @@ def _exact_line(
         matrix, cost = measured(
             kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
         )
-        metadata = RadiationFacts(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
+        metadata = RadiationMetadata(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
         hermitian = 0.5 * (matrix + matrix.conj().T)
         return HousingRadiation(
             np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata

@@ -26,6 +26,7 @@ from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.cached_file import cached_in
 from model_studies.progress import Progress, silent, unreported
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
@@ -190,7 +191,7 @@ def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, f
 
 
 @dataclass(frozen=True)
-class RadiationFacts:
+class RadiationMetadata:
     """Panels, cost and errors of a radiation resistance."""
 
     panels: int
@@ -214,7 +215,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
 
     SCHEMA = "lineofaction housing radiation"
     RECORDS = MappingProxyType(
-        {"facts": lambda data: RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
+        {"metadata": lambda data: RadiationMetadata(**{**data, "cost": WorkCost(**data["cost"])})}
     )
 
     surface: FloatArray = field(
@@ -229,12 +230,12 @@ class HousingRadiation(ModalResistance, ArrayFile):
     """rho c of the air, Pa s/m."""
     model_name: str
     """Name of the radiation model."""
-    facts: RadiationFacts
+    metadata: RadiationMetadata = field(metadata=under_key("facts"))
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in octave_ranges(low, min(high, self.facts.resolved_frequency)):
+        for first, last in octave_ranges(low, min(high, self.metadata.resolved_frequency)):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -303,7 +304,7 @@ def housing_radiation(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
+        RadiationMetadata(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
@@ -383,7 +384,7 @@ def cached_radiation(
         )
 
     def costly(made: HousingRadiation) -> bool:
-        return made.facts.cost.seconds > MIN_COST
+        return made.metadata.cost.seconds > MIN_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
     return cached_in(file, read, computed, write, ResultError, costly)

@@ -22,6 +22,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
+from model_studies.record import under_key
 
 POWER = ("speed", "order")
 BINS = ("speed", "bin")
@@ -113,7 +114,7 @@ class RadiatedSound(ArrayFile):
     """Whether all flanks stay in contact at each speed. Where flanks part, no linear answer holds. Shape
     (S,).
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
     `valid_frequency` in Hz, to which the modes kept carry the motion).
     """
@@ -168,7 +169,7 @@ class RadiatedSound(ArrayFile):
             **{name: tuple(value for sound in sounds for value in getattr(sound, name)) for name in names},
             **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
         }
-        radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
+        radiation = {name: about for sound in sounds for name, about in sound.metadata["radiation"].items()}
         return cls(
             speed=first.speed,
             order=first.order,
@@ -176,7 +177,7 @@ class RadiatedSound(ArrayFile):
             power=power,
             efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
             in_contact=first.in_contact,
-            facts={"radiation": radiation},
+            metadata={"radiation": radiation},
             **joined,
             **_floor_fields([floor for sound in sounds if (floor := sound.floor) is not None]),
         )
@@ -267,7 +268,7 @@ def radiated_sound(
         "model_name": radiation.model_name,
         "area": radiation.area,
         "valid_frequency": housing.valid_frequency,
-        **asdict(radiation.facts),
+        **asdict(radiation.metadata),
     }
     return RadiatedSound(
         housing=(name,),
@@ -277,7 +278,7 @@ def radiated_sound(
         order=response.order,
         frequency=response.frequency,
         in_contact=response.in_contact,
-        facts={"radiation": {name: about}},
+        metadata={"radiation": {name: about}},
         **powers,
         **_floor_fields([] if floor is None else [radiated_floor(floor, housing, names, radiation)]),
     )

@@ -154,7 +154,7 @@ class BearingOrders:
     last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration. Shape
     (b, S).
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict)
     """Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too fast
     a sweep), `effect_ledger` of the run.
     """

@@ -22,6 +22,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
@@ -253,7 +254,7 @@ class SteadyStates(ArrayFile):
     jump_speed: FloatArray = field(
         metadata=stored("rad s-1", "last speed before and first after the jump", "jump", "side")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`, `freedoms`,
     `seconds` (CPU by stage), `effect_ledger`.
     """
@@ -397,7 +398,7 @@ def _study(
         bifurcation_kind=np.array([KINDS.index(b.kind) for b in bifurcations], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
-        facts=metadata,
+        metadata=metadata,
     )
 
 

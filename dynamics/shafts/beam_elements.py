@@ -134,7 +134,7 @@ def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
 def _rod(
     length: FloatArray, at: FloatArray, inside: FloatArray, mass: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return mass and stiffness (k, 2, 2) of rods under tension or torsion; `at`, `inside` per length."""
+    """Return mass and stiffness (k, 2, 2) of rods under tension or torsion; `at`, `inside` of unit length."""
     step = length[:, None] * _WEIGHT
     total = np.sum(step / at, axis=1)
     extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / total[:, None]

@@ -59,7 +59,7 @@ IMPLICIT_STAGES_PER_STEP = 5
 
 
 @dataclass(frozen=True)
-class RunFacts:
+class RunContext:
     """Facts of a run beside its series."""
 
     system: System
@@ -85,7 +85,7 @@ class RunFacts:
         clock: StageClock,
         decision: Decision,
         before: EarlierRun,
-    ) -> RunFacts:
+    ) -> RunContext:
         """Gather them; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
             influences = _known_influences(decision, system)
@@ -97,13 +97,13 @@ class RunFacts:
         automatic = {**decision.automatic, **before.reasons}
         return cls(system, decision.scene, audit, checks_of_run, automatic, influences)
 
-    def with_errors(self, error: Json) -> RunFacts:
+    def with_errors(self, error: Json) -> RunContext:
         """Return them with the check of the errors of the steps, where they are measured."""
         check = tolerance_check(error, self.system.scene.integration)
         return self if check is None else replace(self, checks=[*self.checks, check])
 
 
-def effect_ledger(run: RunFacts) -> Json:
+def effect_ledger(run: RunContext) -> Json:
     """Return the `sized_ledger` with the checks of the run."""
     ledger = with_assumed_phases(run.system.ledger.to_json(), run.system)
     sized = sized_ledger(ledger, run.automatic, run.influences)
@@ -309,7 +309,7 @@ def _carried(
 
 
 def documents(
-    run: RunFacts,
+    run: RunContext,
     end: Ending,
     clock: StageClock,
     error: Json,
@@ -342,10 +342,10 @@ def documents(
     }
 
 
-Description = Callable[[RunFacts, dict[str, Any]], dict[str, Any]]
+Description = Callable[[RunContext, dict[str, Any]], dict[str, Any]]
 
 
-def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
+def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents` with those that the scene alone decides, and the ledger: all fields but the series.
 
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
@@ -362,12 +362,12 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _orders_above(run: RunFacts) -> Json:
+def _orders_above(run: RunContext) -> Json:
     """Return the orders above the band of the output where the receipt is to have all."""
     return linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
 
 
-def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
+def undescribed(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents`, and the ledger where an assumption is violated: a study takes responses alone."""
     holds = all(check.holds for check in run.checks)
     return about if holds else about | {"effect_ledger": effect_ledger(run)}

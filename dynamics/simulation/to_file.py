@@ -34,7 +34,7 @@ from dynamics.results.run_result import SAMPLED, RunFile, attributes
 from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
     Description,
-    RunFacts,
+    RunContext,
     described,
     documents,
     effect_ledger,
@@ -302,7 +302,7 @@ class _Errors:
     states_of: StatesOf
     finer: Callable[[Integration], tuple[Ending, StatesOf]]
 
-    def measure(self, end: Ending, run: RunFacts) -> tuple[Json, RunStatus]:
+    def measure(self, end: Ending, run: RunContext) -> tuple[Json, RunStatus]:
         """Return the errors by source, and how the run ended once they are measured.
 
         That of the steps is measured over the whole run where windows cannot see it, unless effects are found
@@ -328,7 +328,7 @@ class _Errors:
         return error | {"time_step": steps}, other.status if ends else end.status
 
 
-def _is_repeated(run: RunFacts) -> bool:
+def _is_repeated(run: RunContext) -> bool:
     return run.scene.on_violation == "repeat" and bool(needed_effects(effect_ledger(run)))
 
 
@@ -346,7 +346,7 @@ def _result(
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    run = RunFacts.of(system, trajectory, checks, clock, decision, before)
+    run = RunContext.of(system, trajectory, checks, clock, decision, before)
     error: Json = {}
     if errors is not None:
         with clock.stage("error_estimate"):
@@ -501,7 +501,7 @@ def _write(
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
-        run = RunFacts.of(system, end, checks, start.clock, decision, before)
+        run = RunContext.of(system, end, checks, start.clock, decision, before)
         with start.clock.stage("error_estimate"):
             error, status = errors.measure(end, run)
         run = run.with_errors(error)

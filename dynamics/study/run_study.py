@@ -22,6 +22,7 @@ from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
 from host import keep_freed_memory
 from model_studies import LeftOut, Progress, silent
+from model_studies.record import under_key
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
@@ -87,7 +88,7 @@ class Study(ArrayFile):
     """Confidence of the bounds of quantiles."""
     worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
     """Points whose first response is largest, which are kept as full runs. Shape (k,)."""
-    facts: Json
+    metadata: Json = field(metadata=under_key("facts"))
     """Plain JSON: design, start, receipt, and the work that the runs leave out."""
 
     SCHEMA: ClassVar[str] = "lineofaction study"

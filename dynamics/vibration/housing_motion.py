@@ -81,7 +81,7 @@ class ReportedHarmonics(BearingHarmonics, Protocol):
     """The same with what is known of their origin."""
 
     @property
-    def facts(self) -> Json:
+    def metadata(self) -> Json:
         """Plain JSON."""
 
 

@@ -21,6 +21,7 @@ from dynamics.vibration.housing_vibration import (
     point_rows,
     surface_weight,
 )
+from model_studies.record import under_key
 
 RESIDUAL = "residual"
 """Name of the contribution of all modes that are not kept: static flexibility of the seats."""
@@ -240,7 +241,7 @@ class VibrationAnalysis:
     modes: Shares
     deflection: SurfaceShape | None = None
     """Velocity of the surface at that speed and order; None without a surface."""
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON, of the response."""
 
 
@@ -287,7 +288,7 @@ def analyze_vibration(
         _shares(housing, Parts.of_bearings(housing, hertz, force), points),
         _shares(housing, Parts.of_modes(housing, hertz, force), points),
         None if housing.surface is None else operating_deflection(housing, rate),
-        response.facts,
+        response.metadata,
     )
 
 

@@ -134,7 +134,7 @@ class Child:
 
     @property
     def ended(self) -> Ended | None:
-        """How it ended, if it was reaped."""
+        """Exit code and cost of the child, if it was reaped; else None."""
         return self._ended
 
     @property

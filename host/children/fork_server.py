@@ -21,12 +21,12 @@ from typing import Any, NoReturn, TypeAlias
 from host.sessions import lead_session, reap
 
 Work: TypeAlias = Callable[[int], None]
-"""What a child does: it answers on a descriptor."""
+"""Function that a child runs; it answers on a descriptor."""
 
 READY = b"ready"
 MESSAGE_BYTES = 1 << 16
 DESCRIPTORS = 3
-"""Of orders, channel and log."""
+"""Number of the descriptors of a child: orders, channel and log."""
 
 
 def main() -> None:

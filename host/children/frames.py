@@ -55,19 +55,19 @@ def read_frame(stream: BinaryIO) -> Frame | None:
 
 
 class FrameBuffer:
-    """Puts the pieces that come through a pipe together to frames; their sender may be led astray."""
+    """Joins the pieces that come through a pipe to frames; their sender is not trusted."""
 
     def __init__(self) -> None:
         self._head: Head | None = None
-        """That of the frame whose body is awaited."""
+        """Head of the frame whose body is awaited."""
         self._pieces: list[bytes] = []
-        """What came behind it, or behind the last frame."""
+        """Bytes behind that head, or behind the last frame."""
         self._waiting = 0
-        """Bytes in the pieces."""
+        """Number of these bytes."""
         self.received = 0
-        """Bytes so far."""
+        """Number of all received bytes."""
         self.broken = False
-        """Whether what came is no frame; nothing behind it is one."""
+        """Whether received bytes are no frame; no later byte is read as one."""
 
     @property
     def partial(self) -> bool:
@@ -116,12 +116,12 @@ class FrameBuffer:
         return True
 
     def _leave(self, content: bytes) -> None:
-        """Let this be what waits."""
+        """Keep bytes that belong to the next frame."""
         self._pieces, self._waiting = [content] if content else [], len(content)
 
 
 def _head(line: bytes) -> Head:
-    """Return what a head says; ValueError, TypeError, KeyError: the line is none."""
+    """Return kind and length of a head; ValueError, TypeError, KeyError: the line is no head."""
     head = json.loads(line)
     kind, length = head["kind"], head["length"]
     if not isinstance(kind, str) or type(length) is not int or length < 0:

@@ -16,7 +16,7 @@ from host.reading_limits import Limits
 from host.sessions import ending_signal
 
 _NO_MEMORY = ("MemoryError", "bad_alloc")
-"""How Python and C++ say that an allocation failed."""
+"""Texts by which Python and C++ report that an allocation failed."""
 
 
 class ChildFailed(Exception):

@@ -12,14 +12,14 @@ from host.reading_limits import LOOK_S, Limits
 
 @dataclass(frozen=True)
 class Watch:
-    """How long a child may take, and what it may write into its folder."""
+    """Time limit of a child, and limits of what it writes into its folder."""
 
     seconds: float
     """Time limit, s, from the start of the watch."""
     end: float
-    """Instant of `time.monotonic` at which it is over."""
+    """Instant of `time.monotonic` at which the time is over."""
     folder: Path | None = None
-    """Where the child writes, if it confines itself to that."""
+    """Folder that the child writes into, if it confines itself to one."""
     limits: Limits | None = None
 
     @classmethod

@@ -1,4 +1,4 @@
-"""A picture of the gear unit that a result is of, with the names of its shafts and gears."""
+"""A picture of the gear unit of a result, with the names of its shafts and gears."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ COLORS = {
     WHEEL: (0.82, 0.66, 0.52),
     HOUSING: (0.50, 0.55, 0.60),
 }
-"""As the page has them."""
+"""Colors of bodies by kind, the same as on the page of the service."""
 DPI, TYPE = 100, 8.5
 CHARACTER, ROW, LONGEST = 7.4, 16.0, 24
 """Pixels of a character across and of a row of names; the most characters of a name."""

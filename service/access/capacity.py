@@ -1,4 +1,4 @@
-"""How much callers may ask: the rate of one, what they hold at the same time, and the capacity for all."""
+"""Limits of callers: requests of one caller per minute and at the same time, and the capacity for all."""
 
 from __future__ import annotations
 
@@ -111,16 +111,16 @@ class RateLimits:
 
 @dataclass(frozen=True)
 class Capacity:
-    """What one server process bears.
+    """Capacity of one server process.
 
-    `connections`: open HTTP connections on which requests are under way.
+    `connections`: most open HTTP connections with requests under way.
     """
 
     connections: int = _MAX_CONNECTIONS
 
     @property
     def comfortable_connections(self) -> int:
-        """Connections beyond which the one that has been idle for longest makes room."""
+        """The number of connections beyond which the connection that has been idle for longest is closed."""
         return self.connections * 5 // 8
 
     @property

@@ -22,9 +22,11 @@ from service.store.retries import retried
 from service.version import solver_version
 
 MAX_LOST_RUNS = 10
-"""So many runs in a row may be lost; then the work is what ends its server."""
+"""Most lost runs of a computation in a row. A computation that reaches it is taken for the cause of the
+losses and fails."""
 SUSPECT_FROM = 3
-"""After so many lost runs in a row a computation runs without others: what ends the server is found so."""
+"""Number of lost runs in a row from which a computation runs alone. So the computation that ends the server
+is found."""
 _LONGEST_WAIT_S = 60.0
 
 
@@ -56,13 +58,13 @@ class Claim:
 
     @property
     def suspect(self) -> bool:
-        """Whether it is to run without others."""
+        """Whether the computation must run alone."""
         return self.lost_runs >= SUSPECT_FROM
 
 
 @dataclass(frozen=True)
 class Reached:
-    """How far work is: a stage, the fraction of it that is done, and that of the whole if it is known."""
+    """Progress of work: stage, completed fraction of the stage, and of the whole if it is known."""
 
     stage: str
     stage_fraction: float

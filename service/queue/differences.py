@@ -1,4 +1,4 @@
-"""What sets a job apart: its inputs that differ from those of its caller's job before it."""
+"""Differences of a job: its inputs that are not those of its caller's job before it."""
 
 from __future__ import annotations
 

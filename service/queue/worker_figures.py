@@ -1,4 +1,4 @@
-"""What the workers of one scheduler did: metrics by the process they worked for."""
+"""Metrics of the workers of one scheduler, labelled by the process that they worked for."""
 
 from __future__ import annotations
 

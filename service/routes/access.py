@@ -1,4 +1,4 @@
-"""In front of every route: who calls, how often and on how many connections; a line of every access."""
+"""Access to every route: the caller, the rate of requests, connections; one line in the log each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What gears are as made: measured by an inspection, or drawn within a class of ISO 1328-1."""
+"""Gears as made: measured by an inspection, or drawn within a class of ISO 1328-1."""
 
 from __future__ import annotations
 

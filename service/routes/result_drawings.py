@@ -36,7 +36,7 @@ router = APIRouter(tags=["results"], route_class=ScopedRoute)
 FIGURES = "lineofaction.report.document:stored_figures"
 COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
 _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
-"""Of a page that a browser opens at its address: nothing in it runs."""
+"""Headers of a page that a browser opens at its address: nothing in the page runs."""
 MOTION = "lineofaction.report.unit_motion:stored_motion"
 _MAX_MOTIONS = 1_000_000
 SOUND = "lineofaction.report.run.sound:stored_sound"

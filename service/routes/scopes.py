@@ -1,4 +1,4 @@
-"""The routes: what each operation needs is said where it is defined, and refused before its body is read."""
+"""Routes whose endpoints state a scope: a caller without it is refused before the body is read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 KEY_SCHEME = "accessKey"
 """Name of the scheme in the description."""
 OPEN_TO_ALL = None
-"""In place of a scope: no key is needed; `service.routes.access.OPEN_PATHS` are the paths."""
+"""Scope of endpoints that need no key; `service.routes.access.OPEN_PATHS` lists their paths."""
 
 Handler = Callable[[Request], Awaitable[Response]]
 
@@ -49,7 +49,7 @@ class ScopedRoute(APIRoute):
 
     @property
     def scope(self) -> Scope | None:
-        """What callers need; raises AttributeError if the endpoint does not say."""
+        """The scope that a caller needs; raises AttributeError: the endpoint declares none."""
         scope: Scope | None = self.endpoint.scope  # type: ignore[attr-defined]
         return scope
 

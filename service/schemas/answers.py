@@ -37,12 +37,12 @@ class Subscriber(BoundaryModel):
 
 
 class WebhookState(BaseModel):
-    """What came of a call about a job."""
+    """State of a call about an event of a job."""
 
     event: Literal["inProgress", "success", "failed"]
     state: Literal["waiting", "delivered", "skipped", "given up"]
     attempts: int = Field(ge=0)
-    message: str = Field(description="Of the last attempt")
+    message: str = Field(description="Message of the last attempt")
 
 
 class Link(BaseModel):
@@ -77,10 +77,10 @@ class Parameter(BaseModel):
 
 
 class AdditionalParameters(BaseModel):
-    """What a page needs to offer a study; empty for other processes.
+    """Data from which a page offers a study; empty for other processes.
 
-    Its ``action`` (the words of a button), its ``subjects`` (names of the inputs that hold a case or a scene)
-    and its ``fields`` (schemas of those inputs that have a title, by name).
+    Members are ``action`` (the words of a button), ``subjects`` (names of the inputs that hold a case or a
+    scene) and ``fields`` (schemas of the inputs with a title, by name).
     """
 
     title: Literal["Card"] = "Card"
@@ -209,7 +209,7 @@ class ResultReference(BaseModel):
 
 
 class ResultFigures(BaseModel):
-    """What is known of the file of a result; the figures of its kind are further members."""
+    """Figures of a result; the figures of its kind are further members."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -303,7 +303,7 @@ class ReportTable(BaseModel):
 
 
 class ReportPlot(BaseModel):
-    """What ``Plotly.newPlot`` takes."""
+    """Arguments of ``Plotly.newPlot``."""
 
     data: list[dict[str, Any]] = Field(description="Traces of plotly.js")
     layout: dict[str, Any] = Field(description="Layout of plotly.js")
@@ -314,13 +314,15 @@ class ReportTrack(BaseModel):
 
     name: str
     query: dict[str, str] = Field(description="Query of /v1/results/{hash}/sound")
-    time: list[float] = Field(description="s from its start")
-    along: list[float] = Field(description="Where it then is on the horizontal axis")
-    mesh_hz: list[float] | None = Field(None, description="Frequency of mesh order 1 then; null: of none")
+    time: list[float] = Field(description="Times from the start of the sound, s")
+    along: list[float] = Field(description="Value on the horizontal axis at each time")
+    mesh_hz: list[float] | None = Field(
+        None, description="Frequency of mesh order 1 at each time, Hz; null: no mesh"
+    )
 
 
 class ReportSound(BaseModel):
-    """What a plot shows, to listen to."""
+    """Sound of a plot."""
 
     caption: str
     tracks: list[ReportTrack]
@@ -454,15 +456,15 @@ class LoadCaseBody(BaseModel):
     """A load case of the scene."""
 
     name: str
-    share: float = Field(description="Of the time, 0 to 1")
-    torque_n_m: float = Field(description="On the shaft of the scene's first drive")
-    speed_rpm: float = Field(description="Of that shaft")
+    share: float = Field(description="Share of the time, 0 to 1")
+    torque_n_m: float = Field(description="Torque on the shaft of the scene's first drive")
+    speed_rpm: float = Field(description="Speed of the shaft of the scene's first drive")
     direction: str = Field(description="Flanks that carry: drive, as in the scene, or coast")
-    forces: list[CaseForceBody] = Field(description="Forces that are not as in the scene")
+    forces: list[CaseForceBody] = Field(description="Forces that differ from those of the scene")
 
 
 class UnitLine(BaseModel):
-    """What became of a component or of a value."""
+    """Fate of a component or of a value in an import."""
 
     place: str
     component: int
@@ -471,7 +473,7 @@ class UnitLine(BaseModel):
     item: str = Field(description="The attribute; empty for the component itself")
     fate: str = Field(description="taken, assumed, derived, defaulted, ignored or refused")
     words: str
-    line: int | None = Field(description="Of the component in an XML file, from 1; null in other forms")
+    line: int | None = Field(description="Line of the component in an XML file, from 1; null in other forms")
 
 
 class UnitBody(BaseModel):

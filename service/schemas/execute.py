@@ -183,16 +183,16 @@ class BatchRequest(BoundaryModel):
 
 
 class BatchResult(BaseModel):
-    """What came of one job of a batch: its results by output, or the problem why there are none."""
+    """Result of one job of a batch, by output, or the problem of a job without a result."""
 
     jobID: str  # noqa: N815
     status: JobStatus
-    results: dict[str, ResultReference] | None = Field(description="By name of the output")
+    results: dict[str, ResultReference] | None = Field(description="Results by name of the output")
     problem: ProblemBody | None
 
 
 class BatchResults(BaseModel):
-    """What came of the jobs of a batch, in the order of the request."""
+    """Results of the jobs of a batch, in the sequence of the request."""
 
     jobs: list[BatchResult]
 

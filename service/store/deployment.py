@@ -26,11 +26,11 @@ from service.store.shortages import shortage
 NOTE = "deployment.json"
 """Name of the note beside the files."""
 _WRITTEN = "written"
-"""Name of what is written to see whether that is possible."""
+"""Name of the file that is written to see whether writing is possible."""
 _MOMENT_MS = 600
-"""Patience of the one who sees whether the database takes what is written."""
+"""Patience of the transaction that sees whether the database takes a write, ms."""
 NOTES = (NOTE, _WRITTEN)
-"""What is beside the files and belongs to no result."""
+"""Names of files in the store that belong to no result."""
 
 deployments = Table(
     "deployment",

@@ -82,7 +82,7 @@ class ResultFiles(Protocol):
     folder: Path | None
     """The folder on this machine that is written to; None: they are elsewhere."""
     reads: CacheReads
-    """Of the cache on this machine; a folder needs none."""
+    """Reads of the cache on this machine; a folder needs no cache."""
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Keep the bytes of `file`, durably when this returns; `file` stays."""

@@ -87,13 +87,13 @@ class IndexLine:
     file: str
     """Name of the file in its place."""
     used: str
-    """When it was last requested, within an hour."""
+    """Time of the last request for the result, exact to an hour."""
     reindexed: str | None = None
-    """When the line was rebuilt from its file: the result is as old as that, or older."""
+    """Time at which the line was rebuilt from its file: the result is as old as that, or older."""
     project: str = COMMON
-    """Whose result it is."""
+    """Project of the result."""
     headline: str = ""
-    """What a list of jobs shows of it, JSON; empty: nothing."""
+    """Headline of the result in a list of jobs, JSON; empty: none."""
 
     @property
     def address(self) -> str:

@@ -1,4 +1,4 @@
-"""Whether a service can write: tried when somebody wants to know, in a thread of its own."""
+"""Check whether a service can write, by a trial write on request, in a thread of its own."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from service.store.integrity import IntegrityCheck
 
 logger = structlog.get_logger(__name__)
 VALID_S = 1.0
-"""For so long an outcome is good: what was written then need not be tried now."""
+"""Seconds for which an outcome is valid: the next check repeats it without a new write."""
 PATIENCE_S = 0.8
-"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
+"""Longest wait for the trial in s: supervisors ask for an answer within a second."""
 LATE_S = 10.0
-"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
-how long a submission waits for its turn."""
+"""Seconds after a successful write in which a waiting write is no fault, since many may write at once. A
+submission waits as long for its turn."""
 
 
 @dataclass(frozen=True)

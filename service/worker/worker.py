@@ -58,7 +58,7 @@ class Worker:
 
     @property
     def channel(self) -> int:
-        """Descriptor that becomes readable when there is something to hear."""
+        """Descriptor that becomes readable when the worker has sent something."""
         return self._child.channel
 
     @property
@@ -68,7 +68,7 @@ class Worker:
 
     @property
     def log_fields(self) -> dict[str, Any]:
-        """What names it in the log."""
+        """The fields that name the worker in the log."""
         return {"pid": self.pid}
 
     def spent(self) -> float | None:

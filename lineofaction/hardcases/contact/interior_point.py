@@ -50,9 +50,10 @@ class Problem:
     gap_about: GapAbout
     width: Array
     length: float
-    """Reference length of the local law away from free ends: strips are tabulated for a part of it."""
+    """Reference length of the local law away from free ends. Strips are tabulated for half widths up to 0.66
+    of this length."""
     reference_length: Array
-    """That of each contact, greater near free ends."""
+    """Reference length of each contact, greater near free ends."""
     modulus: Array
 
 

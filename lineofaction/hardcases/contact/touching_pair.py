@@ -20,7 +20,7 @@ _POSITION = np.array([0.3])
 _LOADS = np.array([0.5, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-3])
 
 _LENGTH = 2.5e-3
-"""Of the relief in m, along the radius."""
+"""Length of the relief along the radius, m."""
 
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 

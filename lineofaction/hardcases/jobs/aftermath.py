@@ -32,11 +32,11 @@ class Aftermath:
     """The end of a disturbed job, and what it left behind."""
 
     job: Job
-    """Ended."""
+    """Job after its end."""
     errors: FloatArray | None
-    """Its transmission errors, if it has succeeded all the same, or at last."""
+    """Transmission errors of the job, if it succeeded at some attempt; else None."""
     figures: tuple[Measured, ...]
-    """What every such job must leave behind."""
+    """Figures that every disturbed job must show afterwards."""
 
     def ended_as(self, status: str, attempts: int) -> bool:
         """Whether the job ended in this status at this attempt."""

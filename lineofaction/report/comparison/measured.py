@@ -17,7 +17,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import FloatArray, Table, number
 
 COLORS = (palette.BLUE, palette.VERMILLION)
-"""Of the first result and of the second."""
+"""Colors of the first result and of the second."""
 
 POSITIONS = ("position", "angle_deg")
 ORDERS = ("mesh_order", "order")

@@ -241,7 +241,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Sound:
-    """What a plot shows, to listen to: its quantity, and what it is not, in the caption.
+    """Sound of a plot: the caption names its quantity, and what the sound leaves out.
 
     `files` are WAV, one for each track, all of one full scale; none if they would be too large for a page.
     """

@@ -19,13 +19,13 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 Json = dict[str, Any]
 SCRIPT, STYLE_SHEET = "player.js", "player.css"
-"""The page of the service has the same."""
+"""Names of the player's files, which the page of the service shares."""
 _ROWS_OF_A_PAGE = 40
-"""In print, the most rows of a table that is not cut."""
+"""Most rows of a table that is not divided between printed pages."""
 _HALF_OF_A_PAGE, _ACROSS_A_PAGE = 56, 110
-"""Characters across a table beside which another one fits, and across one that fits."""
+"""Widths of tables in characters: largest width beside which another table fits, and largest on a page."""
 _SHORT = 24
-"""Characters of a cell that is not broken where the table fits."""
+"""Most characters of a cell that stays on one line where the table fits."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
 if (document.getElementById("library")) await drawn;
@@ -111,7 +111,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What a report is about, by name; `verdicts` on what is required; `corner` stands on every page."""
+    """Subject of a report, by name; `verdicts` on requirements; `corner` stands on every page."""
 
     rows: tuple[tuple[str, str], ...]
     verdicts: tuple[str, ...] = ()

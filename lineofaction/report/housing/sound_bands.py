@@ -1,4 +1,4 @@
-"""Bands of sound levels over what is guessed, what narrows them, and what 1 dB costs."""
+"""Bands of sound levels by guessed figures, measures that narrow them, and changes for 1 dB."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NARROWER = {
     "speed_steps": "refine the speeds about the loudest",
     "radiation_model": "correct more lines by boundary elements",
 }
-"""What a user does about a contribution to a band."""
+"""Measure of the user that narrows a contribution to a band, by contribution."""
 
 
 def uncertainty_tables(metadata: Json) -> Iterator[Table]:

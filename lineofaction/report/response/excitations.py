@@ -1,4 +1,4 @@
-"""What excites a linear response, by mesh and harmonic, each amplitude with its error."""
+"""Excitations of a linear response, by mesh and harmonic, each amplitude with its error."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table,
 from lineofaction.report.drawing.marks import order_label
 
 MAX_HARMONIC = 6
-"""Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
+"""Highest harmonic of each mesh that is listed and drawn; orders between the harmonics are listed only."""
 _WIDTH = 0.8
-"""Of all bars of a harmonic together."""
+"""Width of all bars of a harmonic together."""
 
 
 class _Quantity(NamedTuple):

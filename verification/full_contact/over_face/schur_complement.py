@@ -30,11 +30,11 @@ class ColumnMatrix:
     """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination."""
 
     lower: sp.csc_array
-    """Its lower triangle. (m, m) sparse array."""
+    """Lower triangle of the matrix. (m, m) sparse array."""
     starts: IntArray
     """First unknown of each node. Shape (n + 1,)."""
     graph: sp.csr_array
-    """Which nodes share elements. (n, n) sparse array."""
+    """Graph of the nodes that share elements. (n, n) sparse array."""
 
     def unknowns(self, nodes: IntArray) -> IntArray:
         """Return the unknowns of nodes, node by node."""
