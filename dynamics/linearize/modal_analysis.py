@@ -23,6 +23,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
 MAX_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
@@ -107,7 +108,7 @@ class ModalAnalysis(ArrayFile):
     critical_residual: FloatArray = field(
         metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
     `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
     resolved).
@@ -140,7 +141,7 @@ class ModalAnalysis(ArrayFile):
         return _summed([" ".join(part) for part in freedom_parts(self.freedom)], kinetic_energy)
 
     def kind(self, strain_energy: FloatArray, kinetic_energy: FloatArray) -> str:
-        """Say in words what one mode is: how it moves, and what holds it.
+        """Return a mode in words: its motion, and the springs that hold it.
 
         "torsional on mesh", "lateral-torsional on bearing" ...: whatever has a third of the energy is named;
         "free" for a motion that nothing resists.
@@ -249,7 +250,7 @@ def _analysis(
         mesh_frequency=mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
         **vars(branches),
         **{f"critical_{name}": values for name, values in vars(crossings).items()},
-        facts=metadata,
+        metadata=metadata,
         axis_shaft=axes.shaft,
         axis_position=axes.position,
         axis_motion=system.freedoms.keep(axes.motion),

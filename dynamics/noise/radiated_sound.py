@@ -1,4 +1,4 @@
-"""Sound power of housings by order and speed, what is loudest in it, and through what it gets there."""
+"""Sound power of housings by order and speed, its loudest points, and the bearings and modes behind them."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
+from model_studies.record import under_key
 
 POWER = ("speed", "order")
 BINS = ("speed", "bin")
 QUIET = 30.0
-"""dB below the loudest beyond which a maximum is not listed."""
+"""Distance below the loudest maximum, dB, beyond which a maximum is not listed."""
 
 
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
 ) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
+    """Return the fields of `RadiatedSound` by the motion in the modes under all bearings, with shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
     Frequencies (S, H) in Hz; `amplitudes` (S H, b, m) are complex peaks of `ReducedHousing.modes` by bearing.
@@ -113,7 +114,7 @@ class RadiatedSound(ArrayFile):
     """Whether all flanks stay in contact at each speed. Where flanks part, no linear answer holds. Shape
     (S,).
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
     `valid_frequency` in Hz, to which the modes kept carry the motion).
     """
@@ -129,8 +130,8 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
-    """`panel_node`, `panel_corner`, `panel_power`: Of all housings at the loudest order and speed
-    (`PanelSound`); empty where they were not looked at. (N, 3), (T, 3), (T,) arrays.
+    """`panel_node`, `panel_corner`, `panel_power`: Panels of all housings and their power at the loudest
+    order and speed (`PanelSound`); empty where they were not computed. (N, 3), (T, 3), (T,) arrays.
     """
     floor_frequency: FloatArray = field(
         default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)
@@ -168,7 +169,7 @@ class RadiatedSound(ArrayFile):
             **{name: tuple(value for sound in sounds for value in getattr(sound, name)) for name in names},
             **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
         }
-        radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
+        radiation = {name: about for sound in sounds for name, about in sound.metadata["radiation"].items()}
         return cls(
             speed=first.speed,
             order=first.order,
@@ -176,14 +177,14 @@ class RadiatedSound(ArrayFile):
             power=power,
             efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
             in_contact=first.in_contact,
-            facts={"radiation": radiation},
+            metadata={"radiation": radiation},
             **joined,
             **_floor_fields([floor for sound in sounds if (floor := sound.floor) is not None]),
         )
 
     @property
     def panels(self) -> PanelSound | None:
-        """Return the panels at the loudest order and speed; None where they were not looked at."""
+        """Return the panels at the loudest order and speed; None where they were not computed."""
         if not self.panel_power.size:
             return None
         return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
@@ -218,7 +219,7 @@ class RadiatedSound(ArrayFile):
 
 
 def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
+    """Return the fields of `RadiatedSound` on orders left out, all housings together; empty without."""
     if not floors:
         return {}
     total = FloorPower.of_all(floors)
@@ -267,7 +268,7 @@ def radiated_sound(
         "model_name": radiation.model_name,
         "area": radiation.area,
         "valid_frequency": housing.valid_frequency,
-        **asdict(radiation.facts),
+        **asdict(radiation.metadata),
     }
     return RadiatedSound(
         housing=(name,),
@@ -277,7 +278,7 @@ def radiated_sound(
         order=response.order,
         frequency=response.frequency,
         in_contact=response.in_contact,
-        facts={"radiation": {name: about}},
+        metadata={"radiation": {name: about}},
         **powers,
         **_floor_fields([] if floor is None else [radiated_floor(floor, housing, names, radiation)]),
     )

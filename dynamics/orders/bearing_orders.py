@@ -60,7 +60,7 @@ class _MeshHarmonics:
         return float(np.min(np.diff(self.order, prepend=0.0)))
 
     def cycles(self, result: RunResult) -> FloatArray:
-        """Return how often each has repeated since the start of the run, (H, T).
+        """Return the number of cycles of each harmonic since the start of the run, (H, T).
 
         They rise, whichever way a mesh turns; where it reverses for a while they fall.
         """
@@ -154,14 +154,14 @@ class BearingOrders:
     last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration. Shape
     (b, S).
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict)
     """Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too fast
     a sweep), `effect_ledger` of the run.
     """
 
     @property
     def floor(self) -> None:
-        """None: what its orders do not hold is the `remainder`."""
+        """None: the part outside the orders is the `remainder`."""
 
 
 @dataclass(frozen=True)

@@ -22,6 +22,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
@@ -52,13 +53,14 @@ class _PeriodicMotion:
     """Positions of the meshes, base pitches in [0, period of the table). Shape (m, T)."""
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
-    """`dynamic_transmission_error`, `static_transmission_error`: m; the static one at the nominal force,
-    misaligned and apart as the bodies rest. Shape (m, T) each.
+    """`dynamic_transmission_error`, `static_transmission_error`: Transmission errors, m. The static one is
+    that at the nominal force, with the misalignment and center distance of the bodies at rest. Shape (m, T)
+    each.
     """
     mesh_force: FloatArray
     coast_force: FloatArray
-    """`mesh_force`, `coast_force`: Transverse, of the driving flanks and of the coast flanks in use, N. (m,
-    T), (c, T) arrays.
+    """`mesh_force`, `coast_force`: Transverse forces of the driving flanks, and of the coast flanks in use,
+    N. (m, T), (c, T) arrays.
     """
     bearing_force: FloatArray
     """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m.
@@ -252,7 +254,7 @@ class SteadyStates(ArrayFile):
     jump_speed: FloatArray = field(
         metadata=stored("rad s-1", "last speed before and first after the jump", "jump", "side")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`, `freedoms`,
     `seconds` (CPU by stage), `effect_ledger`.
     """
@@ -396,7 +398,7 @@ def _study(
         bifurcation_kind=np.array([KINDS.index(b.kind) for b in bifurcations], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
-        facts=metadata,
+        metadata=metadata,
     )
 
 

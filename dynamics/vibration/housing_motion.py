@@ -27,7 +27,7 @@ UNDAMPED = 1e-12
 damping.
 """
 BLOCK = 64
-"""Frequencies whose matrices are held at a time, where modes are coupled by damping."""
+"""Number of frequencies whose matrices are in memory at a time, where damping couples modes."""
 
 
 class BearingForces(Protocol):
@@ -81,7 +81,7 @@ class ReportedHarmonics(BearingHarmonics, Protocol):
     """The same with what is known of their origin."""
 
     @property
-    def facts(self) -> Json:
+    def metadata(self) -> Json:
         """Plain JSON."""
 
 

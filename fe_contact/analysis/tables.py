@@ -28,7 +28,7 @@ from fe_contact.planning.cost_model import Prediction, unit_work
 from fe_contact.planning.cost_of_derivatives import CycleSeconds
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.types import FloatArray
 from model_studies.progress import Report, announce, by_cost, unreported
 from model_studies.stage_clock import StageClock
@@ -201,7 +201,7 @@ def assembled_table(
         torque=request.torque,
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
-        facts=PairFacts.of(request.pair),
+        geometry=PairGeometry.of(request.pair),
         period=points.period,
         error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),

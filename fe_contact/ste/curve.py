@@ -163,7 +163,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
     ste, band, below = _evaluate(database, force, point, everywhere)
     mean_error, ripple_error, *of_orders = _errors(database, point, band, below, ste, even.size)
-    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, np.array(of_orders))
+    orders = spectrum(ste[: even.size], database.period, database.geometry.teeth, np.array(of_orders))
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     stored = [part[even.size :] for part in (ste, band, below)]
@@ -173,7 +173,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     bias = stored_bias(database.metadata.receipt)
     return Curve(
         point=point,
-        torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
+        torque=point.force * database.geometry.base_radius[0] * math.cos(database.geometry.base_helix_angle),
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
@@ -198,7 +198,7 @@ def _evaluate(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Transmission error, its band, and what loads below the smallest one add to it, at the positions."""
     alignment = (point.misalignment, point.center_distance_change)
-    transverse = math.cos(database.facts.base_helix_angle)
+    transverse = math.cos(database.geometry.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     error = error_band(database, position, source_places(database, point))
     smallest_load = min([database.force[0], *database.support_force[:1]])

@@ -194,7 +194,7 @@ class SteDatabase(SteFields):
 
     @property
     def _to_transverse(self) -> float:
-        return math.cos(self.facts.base_helix_angle)
+        return math.cos(self.geometry.base_helix_angle)
 
     def _alignment(
         self, misalignment: ArrayLike | None, center_distance_change: ArrayLike | None

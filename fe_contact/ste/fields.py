@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError, SolveError
-from fe_contact.ste.metadata import Metadata, PairFacts
+from fe_contact.ste.metadata import Metadata, PairGeometry
 from fe_contact.types import BoolArray, FloatArray, Status
 
 GRID = ("position", "force", "misalignment", "center_distance_change")
@@ -120,7 +120,7 @@ class SteFields:
     """Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
     were not solved but follow from derivatives. Shape (P, F, M, D, 4).
     """
-    facts: PairFacts
+    geometry: PairGeometry
     metadata: Metadata
     support_force: FloatArray = field(default_factory=lambda: np.empty(0))
     """Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
@@ -269,7 +269,7 @@ class SteFields:
     def identical(self, other: SteFields) -> bool:
         """Whether every stored bit (NaN payloads included), fact and metadata entry agrees."""
         return (
-            self.facts == other.facts
+            self.geometry == other.geometry
             and self.metadata == other.metadata
             and self.period == other.period
             and all(
@@ -324,7 +324,7 @@ def _check_axes(table: SteFields) -> None:
     _refuse(beyond, "position", f"lie in [0, {table.period})")
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
     _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
-    carried = table.force * (table.facts.base_radius[0] * math.cos(table.facts.base_helix_angle))
+    carried = table.force * (table.geometry.base_radius[0] * math.cos(table.geometry.base_helix_angle))
     _refuse(
         not np.allclose(table.torque, carried, rtol=1e-9, atol=0.0),
         "torque",
@@ -341,7 +341,7 @@ def _check_values(table: SteFields) -> None:
     )
     for name in ("static_transmission_error", "no_load_transmission_error"):
         # micrometers passed as meters are larger than the gear
-        too_large = np.abs(getattr(table, name)) > table.facts.base_radius[0]
+        too_large = np.abs(getattr(table, name)) > table.geometry.base_radius[0]
         _refuse(bool(np.any(too_large)), name, "be in m (it exceeds the base radius)")
     _refuse(
         not np.all(np.isfinite(table.no_load_transmission_error)), "no_load_transmission_error", "be finite"

@@ -25,7 +25,7 @@ those of one load.
 
 def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, list[Row]]:
     """Return the title of a database and its rows; `curve_at` gives its curves, as `SteDatabase.curve`."""
-    gears = table.facts
+    gears = table.geometry
     ring = " (ring)" if gears.internal else ""
     helix = (
         f", base helix angle {math.degrees(gears.base_helix_angle):.3g}°" if gears.base_helix_angle else ""

@@ -1,4 +1,4 @@
-"""Facts of an STE database: its gear pair and its computation."""
+"""Metadata of an STE database: the geometry of its gear pair and its computation."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
 
 
 @dataclass(frozen=True)
-class PairFacts:
-    """The closed-form facts of a gear pair that a user of its table needs; SI units."""
+class PairGeometry:
+    """The closed-form geometry of a gear pair that a user of its table needs; SI units."""
 
     teeth: tuple[int, int]
     """Numbers of teeth, driving gear first; > 0 for a ring gear too."""
@@ -67,8 +67,8 @@ class PairFacts:
     """s_bt1, s_bt2 in m, arcs of the base circles; a ring gear's may be < 0. None: not known."""
 
     @classmethod
-    def of(cls, pair: ParallelAxes) -> PairFacts:
-        """Return the facts of a gear pair."""
+    def of(cls, pair: ParallelAxes) -> PairGeometry:
+        """Return the geometry of a gear pair."""
         hand = (pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0)
         return cls(
             teeth=(pair.pinion.teeth, pair.wheel.teeth),
@@ -116,7 +116,7 @@ class PairFacts:
         return content
 
     @classmethod
-    def from_json(cls, content: Json) -> PairFacts:
+    def from_json(cls, content: Json) -> PairGeometry:
         """Read back what `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
         try:
             return cls(**content)

@@ -110,7 +110,7 @@ def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffne
         Transverse force in N and its derivative in the deflection, N/m.
     """
     position, misalignment, change, _ = points
-    normal = force / math.cos(table.facts.base_helix_angle)
+    normal = force / math.cos(table.geometry.base_helix_angle)
     places = NodePlaces.of(table, normal, misalignment, change)
     smallest = min([table.force[0], *table.support_force[:1]])
     outside = (normal < smallest) | (normal > table.force[-1]) | places.outside

@@ -65,7 +65,7 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
     if value > stored[-1]:
         bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
         raise InputError(name, value, bound, "Add it to the case.")
-    return value if torque is None else database.facts.normal_force(value)
+    return value if torque is None else database.geometry.normal_force(value)
 
 
 def _inside(name: str, value: float | None, axis: FloatArray) -> float:

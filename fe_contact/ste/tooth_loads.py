@@ -67,7 +67,7 @@ class ToothLoads:
 
 def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ...]:
     """Return the loads of the teeth of each gear whose teeth the table tells apart, and which differ."""
-    gears = [gear for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0]
+    gears = [gear for gear in (0, 1) if table.period % table.geometry.teeth[gear] == 0]
     if not gears:
         return ()
     share = np.maximum(at_operating_point(table, table.load_share, point), 0.0)
@@ -86,7 +86,7 @@ def _worst(largest: FloatArray) -> tuple[int, ...]:
 
 def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoads:
     """Take the largest of forces, and of pressures if there are any (P, N), by tooth and phase."""
-    pitch, teeth = np.floor(table.position).astype(np.int64), table.facts.teeth[gear]
+    pitch, teeth = np.floor(table.position).astype(np.int64), table.geometry.teeth[gear]
     node, nodes = _nodes(table.position - pitch)
     tooth = (pitch[:, None] - table.pair) % teeth
     way = np.arange(table.pair.size) * nodes.size + node[:, None]

@@ -134,7 +134,7 @@ def _columns(curve: dict[str, Any]) -> list[str]:
 
 def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
     """Yield what a curve says: figures with their errors, harmonics, load sharing, the verb that follows."""
-    one, other = database.facts.teeth
+    one, other = database.geometry.teeth
     yield f"gear pair {one}/{other} at {curve['torque_n_m']:.6g} N m ({curve['normal_force_n']:.0f} N)"
     yield ""
     figures = [

@@ -227,7 +227,7 @@ def _page_of(read: Inputs) -> Page:
         alarms += dynamic_alarms(run)
     parts = []
     if read.database is not None:
-        parts.append(pair_lead(read.database.facts))
+        parts.append(pair_lead(read.database.geometry))
     elif len(read.pages) == 1:
         parts += [page.lead for page in read.pages.values() if page.lead]
     if read.run is not None:
@@ -267,12 +267,12 @@ def nominal_force(read: Inputs) -> float | None:
     """Return the normal force in N that the run's load asks of the database's pair; None where it idles."""
     if read.run is None or read.database is None or read.run.nominal_force[0] <= 0.0:
         return None
-    return float(read.run.nominal_force[0]) / math.cos(read.database.facts.base_helix_angle)
+    return float(read.run.nominal_force[0]) / math.cos(read.database.geometry.base_helix_angle)
 
 
 def _title(read: Inputs) -> str:
     if read.database is not None:
-        return pair_title(read.database.facts)
+        return pair_title(read.database.geometry)
     if not read.pages:
         return "Dynamics of geared shafts"
     of = " or ".join(study.takes.subject for study in STUDIES.values() if study.kind in read.pages)

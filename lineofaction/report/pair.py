@@ -33,7 +33,7 @@ from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolera
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.plausibility import mesh_findings
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from fe_contact.types import IntArray, Json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.outline import pair_outline
@@ -133,13 +133,13 @@ def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
     return kind(**_fields(content))
 
 
-def pair_title(geometry: PairFacts) -> str:
+def pair_title(geometry: PairGeometry) -> str:
     """Name a pair by its teeth."""
     one, other = geometry.teeth
     return f"Gear pair {one}/{other}, internal" if geometry.internal else f"Gear pair {one}/{other}"
 
 
-def pair_lead(geometry: PairFacts) -> str:
+def pair_lead(geometry: PairGeometry) -> str:
     """Say the dimensions of a pair."""
     return (
         f"center distance {1e3 * geometry.center_distance:.6g} mm, "

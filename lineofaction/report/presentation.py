@@ -14,6 +14,7 @@ from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
 from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
@@ -62,7 +63,7 @@ def _of_its_unit(presentation: Presentation) -> Presentation:
     def page(result: Any) -> Page:
         marks, plain = marks_of(result), presentation.page(result)
         complete = plain if marks is None else marked_page(plain, marks)
-        return with_picture(complete, getattr(result, "facts", {}).get(UNIT))
+        return with_picture(complete, metadata_of(result).get(UNIT))
 
     return replace(presentation, figure=figure, page=page)
 
@@ -73,15 +74,15 @@ def dynamics_presentation(
     headlines: Callable[[Any], tuple[Headline, ...]],
     text: Callable[[Any], Iterable[Table | str]],
 ) -> Presentation:
-    """Return how a study of a scene shows its result, whose `facts` say what its model neglects."""
+    """Return how a study of a scene shows its result, whose metadata say what its model neglects."""
 
     def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)
-        yield from model_text(result.facts)
+        yield from model_text(result.metadata)
 
     return Presentation(
         lambda result: figures(result)[0],
-        lambda result: dynamics_page(title, figures(result), headlines(result), result.facts),
+        lambda result: dynamics_page(title, figures(result), headlines(result), result.metadata),
         complete_text,
     )
 

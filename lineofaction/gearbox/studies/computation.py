@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.cost import StudyCost
-from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.figures import figures_of, metadata_of
 from lineofaction.gearbox.studies.motion import OfferedMotion
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from model_studies.record_file import read_record, write_record
@@ -148,7 +148,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
 
     def figures(self, result: Result) -> Json:
         """Return the figures of a result in the units of the boundary, as they are printed and served."""
-        return figures_of(self.answer, result, getattr(result, "facts", {}), **self._derived(result))
+        return figures_of(self.answer, result, metadata_of(result), **self._derived(result))
 
     def _derived(self, _result: Result) -> Json:
         return {}

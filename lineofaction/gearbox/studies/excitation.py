@@ -28,6 +28,6 @@ class Excitation:
     error_of_friction_force: float | None
 
 
-def stored_excitations(facts: Mapping[str, Any]) -> list[Excitation]:
+def stored_excitations(metadata: Mapping[str, Any]) -> list[Excitation]:
     """Return the excitations among the facts of a result; none of forces of a run."""
-    return [Excitation(**row) for row in facts.get("excitations", ())]
+    return [Excitation(**row) for row in metadata.get("excitations", ())]

@@ -124,6 +124,12 @@ def _names(model: type[Part]) -> frozenset[str]:
     return frozenset(name for figure in _declared(model) for name in (figure.name, figure.bare) if name)
 
 
+def metadata_of(result: Any) -> Mapping[str, Any]:
+    """Return the plain metadata of the result of a scene; empty for that of a pair."""
+    metadata = getattr(result, "metadata", None)
+    return metadata if isinstance(metadata, Mapping) else {}
+
+
 def _member(result: Any, name: str) -> Any:
     if isinstance(result, Mapping):
         return result.get(name, _MISSING)

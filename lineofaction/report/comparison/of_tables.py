@@ -79,7 +79,7 @@ def compare_tables(
         for difference in differences
         if difference.name == "peak to peak"
     )
-    titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
+    titles = dict.fromkeys(pair_title(table.geometry) for table in tables.values())
     return Page(f"{' and '.join(tables)} compared", "; ".join(titles), headlines, tuple(sections))
 
 

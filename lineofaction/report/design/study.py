@@ -276,7 +276,7 @@ def _page(study: Study) -> Page:
         Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
         Section("Figures", "", (), (_summary_table(study), *tables)),
     )
-    without = ", ".join(study.facts["neglected"])
+    without = ", ".join(study.metadata["neglected"])
     samples = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
     lead = f"{len(study.reason)} runs over {over}.{samples} Neglected in the runs: {without}."
@@ -288,7 +288,7 @@ def _text(study: Study) -> Iterator[Table | str]:
     yield _extreme_table(study)
     if study.usable < len(study.reason):
         yield _failed_table(study)
-    yield f"neglected in the runs: {', '.join(study.facts['neglected'])}"
+    yield f"neglected in the runs: {', '.join(study.metadata['neglected'])}"
     yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from bounds import engineering, order_name
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
@@ -33,8 +34,7 @@ BOLDER = 2.0
 
 def marks_of(result: Any) -> Marks | None:
     """Return what a result says of the complaint of its scene, None without one."""
-    metadata: Mapping[str, Any] = getattr(result, "facts", {})
-    return metadata.get(NAME)
+    return metadata_of(result).get(NAME)
 
 
 def of_run(marks: Marks, mesh: str) -> Marks:

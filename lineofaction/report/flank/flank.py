@@ -136,7 +136,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
     count = flanks.face_position.size
     drawn = _shaded if count > 1 else _curve
-    teeth = "/".join(map(str, flanks.scene.facts.teeth))
+    teeth = "/".join(map(str, flanks.scene.geometry.teeth))
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
@@ -160,7 +160,7 @@ def _roll_marks(
         "pitch point": scene.pitch_point[index],
         "tip": scene.tip[index],
     }
-    base = scene.facts.base_radius[index]
+    base = scene.geometry.base_radius[index]
     return tuple(
         Reference(f"{name}, d {2e3 * np.hypot(base, roll):.4g} mm", 1e3 * roll, direction, 0.99)
         for name, roll in marks.items()
@@ -190,7 +190,7 @@ def _isolines(largest: float) -> tuple[float, ...]:
 def _title(flanks: LoadDistribution, gear: Gear) -> str:
     if gear == "pinion":
         return "pinion (drives): root below, tip above"
-    ring = flanks.scene.facts.internal
+    ring = flanks.scene.geometry.internal
     return "ring gear: tip below, root above" if ring else "wheel: root below, tip above"
 
 
@@ -353,7 +353,7 @@ def error_text(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
     """Return the page of flank results; beside their database, which has its own effects and case."""
-    pair = flanks.scene.facts
+    pair = flanks.scene.geometry
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
     return Page(
         pair_title(pair), pair_lead(pair), tuple(_headlines(flanks)), sections, _alarms(flanks, database)
@@ -436,7 +436,7 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = flanks.scene.facts, database.facts
+    mine, theirs = flanks.scene.geometry, database.geometry
     same = mine.teeth == theirs.teeth and all(
         abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
         for name in ("base_pitch", "face_width")

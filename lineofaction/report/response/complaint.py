@@ -204,15 +204,15 @@ def _text(answer: AnsweredComplaint) -> Iterator[Table | str]:
     if answer.modes:
         yield ""
         yield _mode_table(answer)
-    elif answer.facts["effect_ledger"] is None:
+    elif answer.metadata["effect_ledger"] is None:
         yield "of a pair alone no mode and no force is known: the scene of the gearbox has them"
         return
     elif complaint.frequency is None:
         yield "an order at any speed: no mode is looked for; give a speed"
     else:
         yield "no mode within reach: none amplifies the frequency by 6 dB"
-    if answer.facts.get("parting", 0.0) > 0.0:
-        share = engineering(100.0 * answer.facts["parting"], 2)
+    if answer.metadata.get("parting", 0.0) > 0.0:
+        share = engineering(100.0 * answer.metadata["parting"], 2)
         yield (
             f"flanks part: a linear mesh would pull by {share} % of its mean force, so no force here holds; "
             "loa steady and loa simulate have it"

@@ -198,7 +198,7 @@ def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
     """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
     counts = _counts(database, load)
     low, high = counts.min(), counts.max()
-    if low == high or database.facts.base_helix_angle != 0.0:
+    if low == high or database.geometry.base_helix_angle != 0.0:
         return False
     m, d = aligned_index(database)
     ste = database.static_transmission_error[:, load, m, d]

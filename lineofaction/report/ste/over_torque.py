@@ -187,7 +187,7 @@ def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Tab
 def has_face_load(database: SteDatabase) -> bool:
     """Whether the load moves along the face: a table in three dimensions of a helical or misaligned pair."""
     moves = np.nanmax(database.face_centroid) - np.nanmin(database.face_centroid)
-    return bool(moves > 1e-6 * database.facts.face_width)
+    return bool(moves > 1e-6 * database.geometry.face_width)
 
 
 def face_load(database: SteDatabase) -> Figure:
@@ -196,7 +196,7 @@ def face_load(database: SteDatabase) -> Figure:
     skews = database.requested_rows(MISALIGNMENT)
     centroid = 1e3 * database.face_centroid[:, load, skews, d]
     pressure = 1e-6 * database.max_pressure[:, load, skews, d]
-    label, oblique = load_labels(database)[load], database.facts.base_helix_angle
+    label, oblique = load_labels(database)[load], database.geometry.base_helix_angle
     waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
     return Figure(
         key="face_load",

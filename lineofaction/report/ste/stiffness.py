@@ -79,7 +79,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
 def secant_stiffness_curves(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown (n,) and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
     position, values = drawn_ste(database)
-    geometry = database.facts
+    geometry = database.geometry
     force = database.force * math.cos(geometry.base_helix_angle)
     return position, force / (values * geometry.face_width)
 

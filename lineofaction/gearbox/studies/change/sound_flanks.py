@@ -115,8 +115,8 @@ class HeardLoad:
         """
         scene = self.with_table(table)
         flanks = scene.excitation
-        torque = abs(float(flanks.mean_force[scene.mesh])) * table.facts.base_radius[0]
-        errors = excitation_errors(table, table.facts.normal_force(torque))
+        torque = abs(float(flanks.mean_force[scene.mesh])) * table.geometry.base_radius[0]
+        errors = excitation_errors(table, table.geometry.normal_force(torque))
         known = np.minimum(np.arange(len(self.lines) - 1), errors.load_arm.size - 1)
         of_table = errors.transmission_error, errors.load_arm, errors.friction
         parts = tuple(level[known] @ self.lines[1:] for level in of_table)
@@ -149,7 +149,7 @@ class HeardFlanks:
     def torque(self) -> FloatArray:
         """The torque on the driving gear of the mesh (L,), N m."""
         force = [case.others.excitation.mean_force[case.others.mesh] for case in self.load_cases]
-        return np.array(force) * self.known.facts.base_radius[0]
+        return np.array(force) * self.known.geometry.base_radius[0]
 
     def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
         """Return the table of flanks, at a misalignment beside that of the scene, m."""

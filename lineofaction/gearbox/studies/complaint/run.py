@@ -44,6 +44,7 @@ from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.modes.run import modes_cost
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from model_studies import in_unit
+from model_studies.record import under_key
 
 REACH = 2.0
 """Least amplification by a mode within reach: 6 dB."""
@@ -85,7 +86,7 @@ class AnsweredComplaint:
     """Forces of the orders within the tolerance, in the sequence of the complaint."""
     modes: tuple[NearMode, ...]
     """Modes near the frequency, the most amplified first; empty without a speed, and for a case."""
-    facts: Json
+    metadata: Json = field(metadata=under_key("facts"))
 
 
 class _ComplaintStudy(
@@ -157,7 +158,7 @@ class _ComplaintStudy(
         means.report("modes", 1.0)
         response = _response(system, complaint, speed)
         forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
-        metadata = modes.facts | {"parting": _parting(response)}
+        metadata = modes.metadata | {"parting": _parting(response)}
         answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), metadata)
         return with_scene_metadata(answer, subject)
 
@@ -167,11 +168,11 @@ class _ComplaintStudy(
         return figures_of(
             ComplaintFigures,
             complaint,
-            result.facts,
+            result.metadata,
             words=sentence(complaint),
             tolerance_percent=100.0 * complaint.tolerance,
             torque=complaint.torques,
-            parting_percent=100.0 * result.facts.get("parting", 0.0),
+            parting_percent=100.0 * result.metadata.get("parting", 0.0),
             passing=[(force, _figures_of(line, complaint)) for line, force in within],
             nearest=[
                 (OrderForce("", np.nan), _figures_of(line, complaint)) for line in complaint.passing[:5]

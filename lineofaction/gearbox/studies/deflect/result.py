@@ -13,6 +13,7 @@ from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from model_studies import in_unit
+from model_studies.record import under_key
 
 HARMONICS = 5
 RIGID_DIAMETER = 0.08
@@ -122,7 +123,7 @@ class GearboxDeflection:
     """CPU time, including the tables and housings that were made for the study."""
     scene: Json = field(default_factory=dict)
     """The scene as it was written, without the cases; empty in files of versions that did not keep it."""
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Facts, among them the bodies of the picture; empty in files of versions that did not store them."""
 
 

@@ -146,7 +146,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
         for mesh in case.meshes:
             if mesh.name in inputs:
                 name = inputs[mesh.name].name
-                radius = tabled.databases[name].facts.base_radius[0]
+                radius = tabled.databases[name].geometry.base_radius[0]
                 torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
     for mesh_input in {known.name: known for known in inputs.values()}.values():

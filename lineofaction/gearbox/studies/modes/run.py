@@ -122,7 +122,7 @@ def surface_shape(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
 
     if not modes.surface_motion.size:
         return None
-    hulls = [Hull.of(part) for part in modes.facts[UNIT] if part["kind"] == HOUSING]
+    hulls = [Hull.of(part) for part in modes.metadata[UNIT] if part["kind"] == HOUSING]
     first = np.cumsum([0] + [len(hull.points) for hull in hulls])
     facets = [hull.facets + start for hull, start in zip(hulls, first[:-1], strict=True)]
     motion = np.asarray(modes.surface_motion @ shape, dtype=complex)

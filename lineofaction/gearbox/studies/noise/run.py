@@ -43,7 +43,11 @@ from lineofaction.gearbox.studies.housings import (
     require_surface,
 )
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures
-from lineofaction.gearbox.studies.noise.facts import pressure_metadata, sound_metadata, uncertainty_metadata
+from lineofaction.gearbox.studies.noise.metadata import (
+    pressure_metadata,
+    sound_metadata,
+    uncertainty_metadata,
+)
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
@@ -108,8 +112,8 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         with boundary_errors():
             surfaces = _surfaces(subject)
             sound = scene_sound(response, surfaces, _radiation(inputs, means), means.run)
-        seconds = {**response.facts["seconds"], "sound": spent(means.workers) - began}
-        metadata = sound_metadata(sound, response.facts, scene_metadata(subject)) | {"seconds": seconds}
+        seconds = {**response.metadata["seconds"], "sound": spent(means.workers) - began}
+        metadata = sound_metadata(sound, response.metadata, scene_metadata(subject)) | {"seconds": seconds}
         known = uncertainty(subject, sound, inputs, means)
         metadata |= uncertainty_metadata(known)
         if known.seconds is not None:
@@ -119,10 +123,10 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             with boundary_errors():
                 pressure = microphone_pressure(response, sound.housings, np.array(microphone) * MM, bands)
             metadata["pressure"] = pressure_metadata(pressure)
-        return replace(sound.power, facts=metadata)
+        return replace(sound.power, metadata=metadata)
 
     def _derived(self, sound: RadiatedSound) -> Json:
-        metadata = sound.facts
+        metadata = sound.metadata
         center, bands = sound.orders.third_octaves()
         radiation, models, regions = (metadata[name] for name in ("radiation", "models", "regions"))
         points = zip(loudest(sound), regions, strict=True)

@@ -283,7 +283,7 @@ def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -
 
 def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
     """Return the torque on the driving gear of the mesh under each load case (L,), N m."""
-    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].facts.base_radius[0]
+    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].geometry.base_radius[0]
     systems = [assemble(with_loads(subject.scene, load)) for load in load_cases(question.load_cases)]
     forces = [float(excited(system).linear.equilibrium.mesh_force[index]) for system in systems]
     return np.array(forces) * radius

@@ -71,7 +71,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
             name: [_motion(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
             for curve, name in enumerate(CURVES)
         }
-        ended = states.facts["branch"].lower().replace("_", " ")
+        ended = states.metadata["branch"].lower().replace("_", " ")
         changes = zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
         jumps = zip(states.jump_curve, states.jump_speed, strict=True)
         return {

@@ -91,7 +91,8 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             if means.folder is not None and result.worst.size:
                 keep_runs(task, result, means.folder, means.report)
         runs = {str(k): content_digest((task, tuple(map(float, result.value[k])))) for k in result.worst}
-        return replace(result, facts={**result.facts, "design": inputs.model_dump(mode="json"), "runs": runs})
+        echoed = inputs.model_dump(mode="json")
+        return replace(result, metadata={**result.metadata, "design": echoed, "runs": runs})
 
     def _derived(self, result: Study) -> Json:
         integration = float(np.nanmean(result.seconds[:, 1])) if result.usable else None
@@ -112,7 +113,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
     def stored_runs(self, result: Study, means: Means) -> Mapping[str, Path]:
         if means.folder is None:
             return {}
-        files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
+        files = {key: means.folder / f"point_{point}.nc" for point, key in result.metadata["runs"].items()}
         return {key: file for key, file in files.items() if file.is_file()}
 
     def failure(self, result: Study) -> str:

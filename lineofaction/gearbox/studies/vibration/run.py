@@ -68,9 +68,9 @@ class HousingVibrationResult:
     mode_shape: SurfaceShape | None = None
 
     @property
-    def facts(self) -> Json:
+    def metadata(self) -> Json:
         """Return the facts of the analysis."""
-        return self.analysis.facts
+        return self.analysis.metadata
 
     @property
     def shape(self) -> SurfaceShape | None:
@@ -136,8 +136,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
                 bound = f"from 1 to {len(housing.frequency)}, the modes kept"
                 raise BadInput.of("mode", inputs.mode, bound, "Keep more modes of the housing.")
             mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
-        seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
-        analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
+        seconds = {**analysis.metadata["seconds"], "vibration": cpu_seconds() - began}
+        analysis = replace(analysis, metadata={**analysis.metadata, "seconds": seconds})
         analysis = with_scene_metadata(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
@@ -168,8 +168,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
         return figures_of(
             VibrationFigures,
             vibration,
-            analysis.facts,
-            order_name=order_names(vibration.order, analysis.facts),
+            analysis.metadata,
+            order_name=order_names(vibration.order, analysis.metadata),
             housing=analysis.housing,
             natural_frequency=result.natural_frequency,
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],
