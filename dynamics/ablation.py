@@ -81,7 +81,7 @@ class RunFigures(Figures):
 
     @property
     def lines(self) -> Lines:
-        """The largest squares of the level by order."""
+        """Largest squares of the level by order."""
         return dict(zip(self.line_order.tolist(), self.line_square.tolist(), strict=True))
 
 
@@ -297,7 +297,7 @@ class _EffectState(NamedTuple):
 
 
 def _toggled(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
-    """Return the figures of a scene with and without one effect: `nominal`, and those of a run of its own.
+    """Return the figures of a scene with and without one effect: `nominal`, and the figures of a second run.
 
     Raises `LeftOut`: no part of the scene can have the effect.
     """

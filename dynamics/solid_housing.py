@@ -136,7 +136,7 @@ _RING = Declared(
 @described
 @dataclass(frozen=True)
 class SeatWall:
-    """The wall of a bearing seat; where it is follows from its bearing."""
+    """The wall of a bearing seat; its position follows from its bearing."""
 
     bore_diameter: float = required(BORE_DIAMETER)
     bore_length: float = required(BORE_LENGTH)

@@ -1,4 +1,4 @@
-"""Cost of a piece of work: predicted before it runs, corrected by what is known of the host, measured."""
+"""Cost of a piece of work: predicted before it runs, corrected for the host, measured."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Cost(NamedTuple):
         return Cost(self.seconds + later.seconds, max(self.bytes, later.bytes))
 
     def times(self, count: float) -> Cost:
-        """Return the cost of so many pieces of the same work, one after the other."""
+        """Return the cost of `count` pieces of the same work, one after the other."""
         return Cost(self.seconds * count, self.bytes)
 
     @property
@@ -51,7 +51,7 @@ class WorkCost:
 
 
 def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
-    """Return a predicted cost with the speed of this host, and with what earlier work of a kind took.
+    """Return a predicted cost with the speed of this host, and with the cost of earlier work of a kind.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def measured(
     work: Callable[[], Result],
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[Result, WorkCost]:
-    """Do work; return its result and what it cost beside what was predicted, which the log keeps too.
+    """Do work; return its result and its measured cost with the predicted one, which the log holds too.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def measured(
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
-    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+    """Report the cost of a stage before it begins, after its name, if that is more than a moment.
 
     `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
     """

@@ -30,7 +30,9 @@ from model_studies.progress import Progress, by_cost, silent
 from model_studies.workers import InProcess, Workers
 
 MARGIN = 8
-"""Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
+"""Orders of spherical harmonics above the wavenumber times the radius; their part of the far field is below
+1e-6.
+"""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
 EDGES = 2.6
 """Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""

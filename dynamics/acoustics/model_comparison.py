@@ -34,7 +34,9 @@ PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
 OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
-"""ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
+"""Values of ka, and least and largest error of monopoles at each, dB, on spheres, a box and modes of five
+gear cases.
+"""
 WAVES_IN_MEMORY = 4
 """Arrays of phases."""
 

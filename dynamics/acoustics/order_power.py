@@ -29,11 +29,11 @@ class ModalResistance:
     """
 
     frequency: FloatArray = field(metadata=stored("Hz", "frequency", "frequency"))
-    """Hz, increasing. Shape (F,)."""
+    """Frequencies, Hz, increasing. Shape (F,)."""
     matrix: ComplexArray = field(
         metadata=stored("kg s-1", "radiation resistance", "frequency", "coordinate", "coordinate")
     )
-    """Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
+    """Resistance matrices, Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
 
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.

@@ -22,7 +22,7 @@ from dynamics.work_cost import Cost
 PRODUCT = 0.1e-9
 """CPU seconds for a panel and a pair of shapes."""
 SMALLER = 0.8
-"""Size of the sphere: two waves on a wall are shorter than those around the body."""
+"""Radius of the sphere over that of the body: two waves on a wall are shorter than two around the body."""
 
 
 class RadiationModel(Protocol):

@@ -28,7 +28,8 @@ PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
 LOWEST = 20.0
-"""Hz: below it nothing is heard, and slow changes of load would take the full scale."""
+"""Edge of the high-pass, Hz: below it nothing is audible, and slow changes of load would take the full scale.
+"""
 SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
 FADE = 0.01  # s at both ends
 COMMENT = ("quantity", "unit", "full_scale")

@@ -31,7 +31,7 @@ UNRESISTED = 1e-13  # of the largest stiffness: below it nothing resists a motio
 
 
 class _Rest(NamedTuple):
-    """Whether forces balance, at what deviation (n,) from the kinematic motion; what is left of them, N."""
+    """Whether forces balance, deviation (n,) from the kinematic motion, and force left, N."""
 
     settled: bool
     displacement: FloatArray

@@ -89,7 +89,7 @@ def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
 
 
 def _damped(system: System, mesh: int, used: PlainTable) -> System:
-    """Return `system`, whose laws hold a table `used` already, with its damping in them and what follows."""
+    """Return `system` with damping and mean stiffness of the table `used`, which its laws have already."""
     elements, flanks = system.arrays.elements, system.flanks
     force = float(flanks.nominal_force[mesh]) or float(used.level[1])
     stiffness = mean_stiffness(flanks.law.table, mesh, force)

@@ -25,7 +25,9 @@ class LinearBearingLaws(NamedTuple):
     """n, up to 5. Shape (l,)."""
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: N/m, N s/m; symmetric, positive semidefinite. Shape (l, 5, 5) each."""
+    """`stiffness`, `damping`: Stiffness, N/m, and damping, N s/m; symmetric, positive semidefinite. Shape
+    (l, 5, 5) each.
+    """
 
     @classmethod
     def packed(cls, laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:

@@ -50,7 +50,7 @@ class Reaction:
     slope: float
     """Derivative of the energy in the angle of the cage, J/rad."""
     load: FloatArray
-    """Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
+    """Normal loads of the elements, N; with copies (Z copies, L), each copy has the load of a whole element.
     Shape (Z, L).
     """
 

@@ -39,7 +39,7 @@ class Tilt(RotorEffect):
 
 
 def _why(rotor: LoadedRotor) -> str:
-    """Return what tilts the shaft; empty: nothing does."""
+    """Return the cause that tilts the shaft; empty: there is none."""
     body, forces = rotor.rotor, rotor.mechanism.scene.forces
     limit = CENTERED * body.shaft.length
     if any(mesh.axial * mesh.radius > 0.0 for mesh in rotor.meshes):

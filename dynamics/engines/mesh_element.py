@@ -70,7 +70,7 @@ class MeshElement:
 
     @property
     def base_pitch(self) -> float:
-        """Transverse, m."""
+        """Transverse base pitch, m."""
         return 2.0 * math.pi * self.base_radius[0] / self.teeth[0]
 
 

@@ -44,7 +44,7 @@ class _KeptMesh:
 def meshed_step(
     path: str | Path, element_size: float | None = None, cache: Path | None = None
 ) -> TetrahedralMesh:
-    """Return the mesh of a STEP file, from the cache if it is there.
+    """Return the mesh of a STEP file, from the cache if the cache has it.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def reduced_housing(
     limit: CostLimit | None = None,
     expected: Callable[[Cost], object] = lambda _cost: None,
 ) -> ReducedHousing:
-    """Return a housing's reduction with what it cost, from the cache if it is there.
+    """Return a housing's reduction with its cost, from the cache if the cache has it.
 
     Raises `InputError` as `reduce_housing`, or the predicted cost is above the limit; `SolveError` as
     `reduce_housing`.

@@ -140,7 +140,7 @@ def _bounding(tetrahedra: IntArray) -> IntArray:
 
 
 def _drawn(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
-    """Return a surface of at most so many triangles, which is near the origin and as large as a housing."""
+    """Return a surface of at most `maximum` triangles; it is near the origin and as large as a housing."""
     used, facets = np.unique(facets, return_inverse=True)
     points, facets = points[used], facets.reshape(-1, 3)
     if not len(facets):

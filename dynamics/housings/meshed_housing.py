@@ -76,7 +76,7 @@ class MeshedHousing:
     feet: tuple[Foot, ...] = ()
     """Without any the housing is free, and six rigid-body modes are kept besides `modes`."""
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """m; the motion of the node next to each is recovered."""
+    """Points at which motion is recovered, m: that of the nearest node."""
     modes: int = declared(80, MODES)
     damping: _Damping = USUAL_DAMPING
     """Default: `USUAL_DAMPING`."""

@@ -240,7 +240,7 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
 
 
 def scene_axes(housing: ReducedHousing) -> FloatArray:
-    """Return the matrix T (r, r) with x = T y, x the reduced coordinates, y those of the `scene_housing`.
+    """Return the matrix T (r, r) with x = T y, from coordinates y of the `scene_housing` to reduced ones x.
 
     The motions of the seats in y are along the scene's axes; amplitudes of modes are the same in both.
     """

@@ -83,7 +83,7 @@ def _require_converged(modes: FreeModes, count: int) -> None:
 
 
 def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
-    """Return rigid motions, modes and what the deflections add to them, unit modal masses, (f, r)."""
+    """Return rigid motions, modes and the independent parts of the deflections, unit modal masses, (f, r)."""
     basis = np.hstack([modes.rigid, modes.shape])
     rest = modes.deflection
     for _ in range(2):  # the second time takes out what rounding left

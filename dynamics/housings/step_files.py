@@ -75,11 +75,11 @@ class StepSolid:
 
     volume: float
     surface: float
-    """`volume`, `surface`: m^3, m^2."""
+    """`volume`, `surface`: Volume, m^3, and surface area, m^2."""
     bores: tuple[Bore, ...]
     """Round holes of which at least half is there; halves of a split one are one."""
     planes: tuple[FlatFace, ...]
-    """The largest first."""
+    """Flat faces, the largest first."""
 
 
 def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:

@@ -40,7 +40,7 @@ again: Delaunay's method leaves slivers in the walls of castings."""
 
 
 def limits(seconds: float) -> Limits:
-    """Return what a process may take that meshes within so many seconds: memory as whoever started it."""
+    """Return the limits of a process that meshes within `seconds`; memory as for the parent process."""
     return Limits(memory_mb=None, cpu_seconds=int(seconds) + 1)
 
 

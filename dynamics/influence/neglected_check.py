@@ -86,8 +86,8 @@ class Influence:
     (m,) each.
     """
     bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
-    """Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N. Shape
-    (b,).
+    """Change of the mesh orders 1 to 5 of each bearing's force and of the part that loads excite, together,
+    N. Shape (b,).
     """
     relative_mean: float
     relative_peak_to_peak: float
@@ -127,14 +127,14 @@ class Influence:
 
     @property
     def largest(self) -> float:
-        """The largest relative change of what is decided by: amplitudes of a level, or all."""
+        """Largest relative change that counts for the decision: of amplitudes of a level, or of all."""
         if self.decides:
             return self.level.relative
         return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
 
     @property
     def decibels(self) -> float:
-        """The largest change, dB: of the level and, unless it alone decides, of what `largest` compares."""
+        """Largest change, dB: of the level and, unless it alone decides, of the figures of `largest`."""
         level = abs(self.level.decibels) if self.level.relative > ROUNDING else 0.0
         return level if self.decides else max(level, in_decibels(self.largest))
 
@@ -202,7 +202,7 @@ def _chosen(scene: Scene, effect: str) -> bool:
 
 
 def forget_sizes() -> None:
-    """Forget all sizes, such as to measure what they take."""
+    """Forget all influences, for example to measure their cost."""
     _KNOWN.clear()
 
 
@@ -232,7 +232,7 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
 
 
 class ResponseCost(NamedTuple):
-    """CPU seconds of a linear response at a speed, and of a system with or without an effect; of how many."""
+    """CPU seconds of a linear response per speed, and per system with or without an effect; systems."""
 
     speed: float
     system: float
@@ -240,7 +240,7 @@ class ResponseCost(NamedTuple):
 
 
 def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCost:
-    """Return what a forced response at speeds (S,), rad/s, and its `response_influences` take.
+    """Return the cost of a forced response at speeds (S,), rad/s, and of its `response_influences`.
 
     Raises `InputError`, `SolveError` as the response.
     """
@@ -300,7 +300,7 @@ def _switchable(system: System) -> dict[str, bool]:
 def _influence_of(
     system: System, name: str, on: bool, current: LinearFigures, other: LinearFigures
 ) -> Influence:
-    """Return what a system loses without an effect: `current` are its figures, `other` those with it toggled.
+    """Return the influence of an effect: `current` are the figures, `other` the figures with it toggled.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
     flank.
@@ -337,7 +337,7 @@ def _influence_of(
 
 
 def _beyond(system: System, linear: bool, parts: bool) -> str:
-    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not.
+    """Return the part of a change that linear theory leaves out, in words; `linear`: of a linear effect.
 
     `parts`: whether flanks part.
     """
@@ -395,12 +395,12 @@ class _Allowance:
 
 @dataclass(frozen=True)
 class Decision:
-    """A scene with what its tolerance decided."""
+    """A scene with the decisions by its tolerance."""
 
     scene: Scene
     """Scene whose `effects` hold the decisions."""
     automatic: Mapping[str, str] = field(default_factory=dict)
-    """Effects that the tolerance decided against what the scene calls for, and why."""
+    """Effects on which the tolerance decided otherwise than the scene calls for, each with the reason."""
     influences: Mapping[str, Influence] = field(default_factory=dict)
     """Estimates; empty where there was no tolerance to decide by."""
     taken: TimeTaken = field(default_factory=TimeTaken)
@@ -467,7 +467,7 @@ def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str
 
 
 class NeglectedChecks:
-    """Gathers, block by block, what the estimates of neglected effects are compared with."""
+    """Quantities of a run, gathered by block, to compare with estimates of neglected effects."""
 
     def __init__(self, decision: Decision) -> None:
         self._decision = decision

@@ -63,16 +63,18 @@ class _SampleFigures:
     """`mesh_peak`, `mesh_rms`: Largest magnitude and rms of the driving flanks' forces. Shape (m,) each."""
     coast_peak: FloatArray
     coast_rms: FloatArray
-    """`coast_peak`, `coast_rms`: Of the coast flanks; zero where there is none. Shape (m,) each."""
+    """`coast_peak`, `coast_rms`: Largest magnitude and rms of the coast flanks' forces; zero where there is
+    none. Shape (m,) each.
+    """
     bearing_peak: FloatArray
     bearing_rms: FloatArray
-    """`bearing_peak`, `bearing_rms`: Of forces (and moments, N m) in the frame of each support. Shape (b, 3
-    or 6) each.
+    """`bearing_peak`, `bearing_rms`: Largest magnitude and rms of forces (and moments, N m) in the frame of
+    each support. Shape (b, 3 or 6) each.
     """
     removed: FloatArray
     folded: FloatArray
-    """`removed`, `folded`: Rms of what the filter took away from the mesh force; of its content near half the
-    inner rate, a bound on what may have folded into the output. Shape (m,) each.
+    """`removed`, `folded`: Rms of the part of the mesh force that the filter removes, and of its content near
+    half the inner rate, which bounds the part that may fold into the output. Shape (m,) each.
     """
 
     def to_json(self, system: System) -> Json:
@@ -241,7 +243,7 @@ class Ending:
     taken: TimeTaken
     """Time of the stepping. In the first run of a process it includes reading or making the compiled code."""
     figures: _SampleFigures
-    """Peaks and rms over the run, and what the anti-alias filter took away."""
+    """Peaks and rms over the run, and the rms of the part that the anti-alias filter removes."""
     modal_states: FloatArray
     """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
 

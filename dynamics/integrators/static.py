@@ -110,7 +110,7 @@ class RestsBeside:
 
 
 def _external(system: System, time: float) -> FloatArray:
-    """Return loads and inertia of the imposed motion on the freedoms (n,), those of mean loads."""
+    """Return the forces of mean loads and of the inertia of the imposed motion on the freedoms (n,)."""
     arrays = system.arrays
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     inertial = observe_laws(arrays, np.array([time]))[3, :, 0] @ arrays.inertial
@@ -146,7 +146,7 @@ def _newton(
 
 
 def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
-    """Return `values`, forces (n,) or their derivatives (n, n), less what they accelerate free trains with.
+    """Return forces (n,) or their derivatives (n, n), less the part that accelerates free trains.
 
     Torques and friction that do not balance turn a free train faster or slower as a whole.
     """
@@ -242,7 +242,7 @@ def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
 
 
 def _rounding(arrays: SystemArrays, balance: ForceBalance, q: FloatArray, external: FloatArray) -> float:
-    """Return what rounding of displacements, coordinates and forces leaves unbalanced, N.
+    """Return the unbalanced force by rounding of displacements, coordinates and forces, N.
 
     Every term of the balance counts by its size: light loads on stiff teeth are their small difference.
     """

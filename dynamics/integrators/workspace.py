@@ -33,7 +33,7 @@ class Power(IntEnum):
 
 
 LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
-"""Columns that only grow: what is dissipated does not come back."""
+"""Columns that only grow: dissipated energy does not come back."""
 
 
 class Count(IntEnum):
@@ -62,15 +62,15 @@ class Workspace(NamedTuple):
     time: FloatArray
     time_rest: FloatArray
     error: FloatArray
-    """`time`, `time_rest`, `error`: Current time, s, and what its rounding leaves; error of the last accepted
-    step over the tolerance. Shape (1,) each.
+    """`time`, `time_rest`, `error`: Current time and its rounding, s; error of the last accepted step over
+    the tolerance. Shape (1,) each.
     """
     q: FloatArray
     v: FloatArray
     v_rest: FloatArray
     a: FloatArray
-    """`q`, `v`, `v_rest`, `a`: State at `time`: deviations from the kinematic motion, their rates, what
-    rounding leaves of these, and accelerations. Shape (n,) each.
+    """`q`, `v`, `v_rest`, `a`: State at `time`: deviations from the kinematic motion, their rates, the
+    rounding of these, and accelerations. Shape (n,) each.
     """
     q_new: FloatArray
     v_new: FloatArray

@@ -18,9 +18,10 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 
 TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
 INTERVALS, FINEST = 8, 32
-"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
+"""Number of equal parts of a range of speeds over which modes are followed, and most parts of each of them.
+"""
 ALIKE = 0.9
-"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
+"""Likeness of a mode and its continuation, from which on no speed between them is needed."""
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
 
     @property
     def bearing_mean_square(self) -> FloatArray:
-        """Mean square of the force on each bearing, all orders together, those left out too, (b, S), N^2."""
+        """Mean square of the force on each bearing, all orders together, with those left out, (b, S), N^2."""
         listed = 0.5 * np.sum(np.abs(self.bearing_force[:, :3]) ** 2, axis=(1, 3))
         return np.asarray(listed + self.bearing_floor if self.bearing_floor.size else listed)
 
@@ -168,7 +168,7 @@ def forced_response(
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
-    """Refuse what cannot be held: by speed and harmonic motions, forces, and the power of each part."""
+    """Refuse a response too large for memory: by speed and harmonic motions, forces, and powers of parts."""
     system = at.system
     freedoms, bearings, meshes = system.arrays.mass.shape[0], len(system.supports.name), len(at.cycles)
     loaded = 3 * freedoms if load_cycles(system, at.period) else 0
@@ -187,7 +187,7 @@ def _metadata(at: Excited, time: float, seconds: Json) -> Json:
 
 
 def _difference(static: FloatArray, blocked: FloatArray) -> FloatArray:
-    """Return how unlike the largest transmission errors (m, H) by static errors and blocked forces are."""
+    """Return the relative difference of largest transmission errors (m, H) by the two excitations."""
     return np.asarray(np.abs(blocked - static) / np.max(static, initial=1e-300))
 
 

@@ -153,7 +153,7 @@ def harmonic_response(
 
 
 def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -> tuple[Excited, Lines]:
-    """Return what excites `system`, and the `strongest_lines` up to `orders` at `speed` (S,), rad/s.
+    """Return the excitation of `system`, and the `strongest_lines` up to `orders` at `speed` (S,), rad/s.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -
 
 
 def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
-    """Return what the lines left out do together at `speed` (S,); None without any, or if a frame turns."""
+    """Return the floor of the lines left out at `speed` (S,); None without any, or if a frame turns."""
     if not lines.left_out.size or at.turning:
         return None
     pace = np.array([1.0 / at.period.duration(float(value)) for value in speed])
@@ -192,7 +192,7 @@ def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
 def varied_floor(
     at: Excited, speed: FloatArray, lines: Lines, response: HarmonicResponse
 ) -> LineFloor | None:
-    """Return `floor_of`, and what a stiffness that varies may change of it, by bearing and speed.
+    """Return `floor_of`, with its change by a varying stiffness, by bearing and speed.
 
     The lines left out take no part in what it makes of those kept. Where it changes forces by a part r, that
     of those kept, powers P of those left out and Q of those kept change by 2 r (P + sqrt(P Q)) + r^2 P.
@@ -213,7 +213,7 @@ def varied_floor(
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
-    """Say what a vibration at `speed` (S,) does to meshes and bearings."""
+    """Return the response of meshes and bearings to a vibration at `speed` (S,)."""
     system, linear = at.system, at.linear
     dte = along_rows(steady.displacement, system.arrays.direction[system.driving_rows])
     mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
@@ -258,7 +258,7 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
-    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less what excites."""
+    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less the excitation."""
     system, u, omega, viscous = at.system, steady.displacement, steady.omega, at.at_rest.viscous
     force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
@@ -276,7 +276,7 @@ def along_rows(u: ComplexArray, rows: FloatArray) -> ComplexArray:
 
 
 def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
-    """Return what motions (S, H, n) at omega (S, H) add to the forces of bearings, (b, 3 or 6, S, H).
+    """Return the bearing forces (b, 3 or 6, S, H) by motions (S, H, n) at omega (S, H).
 
     Those of a motion less those of none, real and imaginary parts apart.
     """

@@ -35,7 +35,7 @@ class LinearSystem:
     stiffness: FloatArray
     """`mass`, `damping`, `stiffness`: M, C, K; symmetric. Shape (n, n) each."""
     rigid: FloatArray
-    """Motions that nothing resists: those of trains without a drive. Shape (k, n)."""
+    """Motions that no spring resists: rotations of trains without a drive. Shape (k, n)."""
     spring: tuple[str, ...]
     """Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
     (once per principal stiffness), elastic drives, elastic coordinates of shafts.
@@ -43,7 +43,7 @@ class LinearSystem:
     strain: FloatArray
     """Strain of each spring per freedom, m or rad. Shape (p, n)."""
     spring_stiffness: FloatArray
-    """N/m or N m/rad. Shape (p,)."""
+    """Stiffnesses of the springs, N/m or N m/rad. Shape (p,)."""
     equilibrium: StaticSolution
 
 

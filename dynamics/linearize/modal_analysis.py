@@ -141,7 +141,7 @@ class ModalAnalysis(ArrayFile):
         return _summed([" ".join(part) for part in freedom_parts(self.freedom)], kinetic_energy)
 
     def kind(self, strain_energy: FloatArray, kinetic_energy: FloatArray) -> str:
-        """Say in words what one mode is: how it moves, and what holds it.
+        """Return a mode in words: its motion, and the springs that hold it.
 
         "torsional on mesh", "lateral-torsional on bearing" ...: whatever has a third of the energy is named;
         "free" for a motion that nothing resists.

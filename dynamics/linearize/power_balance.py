@@ -53,7 +53,7 @@ class PowerBalance:
         return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
 
     def by_kind(self) -> dict[str, FloatArray]:
-        """Return what parts of a kind lose together, all harmonics, (S,)."""
+        """Return the power that the parts of a kind lose together, all harmonics, (S,)."""
         total = np.sum(self.loss, axis=2)
         return {
             kind: np.sum(total[[part_kind == kind for part_kind in self.kind]], axis=0)

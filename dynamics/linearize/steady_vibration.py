@@ -98,7 +98,7 @@ def steady_vibration(
     excitation: str = "static_error",
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
-    """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
+    """Return the vibration at `speed` (S,) in the excited ones of `harmonics` (H,)."""
     harmonics = excited_harmonics(at, speed, harmonics, (excitation,))
     return _vibration(at, speed, harmonics, excitation, progress=progress)[0]
 
@@ -106,7 +106,7 @@ def steady_vibration(
 def excited_harmonics(
     at: Excited, speed: FloatArray, harmonics: IntArray, excitations: Sequence[str] = EXCITATIONS
 ) -> IntArray:
-    """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
+    """Return the harmonics (H,) that at least one of `excitations`, or a load, reaches."""
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     excited_lines = _is_excited(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
@@ -131,7 +131,7 @@ def _is_excited(force: ComplexArray) -> BoolArray:
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
-    """Return the generalized forces (1, H, n) of those on the driving flanks' rows, (R', H)."""
+    """Return the generalized forces (1, H, n) by forces on the driving flanks' rows, (R', H)."""
     return np.asarray(force.T @ at.system.arrays.direction[: force.shape[0]])[None]
 
 
@@ -168,7 +168,7 @@ def _vibration(
     second: str = "",
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Steady, FloatArray]:
-    """Return the vibration in all `harmonics`, and what `_solve` returns of the `second` excitation."""
+    """Return the vibration in all `harmonics`, and the largest motion under the `second` excitation."""
     static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     other = _pushed(at, flank_forces(at, harmonics, second)[1]) + loads if second else None
@@ -318,7 +318,7 @@ def _solve(
 
 
 def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:
-    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act there."""
+    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act on them."""
     acts = any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term)
     return 0 if acts else first
 
@@ -343,7 +343,7 @@ def _right_sides(force: ComplexArray, rows: FloatArray | None, second: ComplexAr
 def _dense(
     parts: ComplexArray, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray], right: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """Return the displacements (S, H, n, f) under `right`, and how far the first ones miss it.
+    """Return the displacements (S, H, n, f) under `right`, and the residual of the first ones.
 
     `parts` are K, M, C (3, n, n); `swept` are gyroscopic and frame terms (S, n, n), or nothing.
     """

@@ -72,7 +72,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
 
 
 def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None:
-    """Refuse more speeds than can be held with so many complex `numbers` for each of them and each line.
+    """Refuse more speeds than memory holds with `numbers` complex numbers for each speed and line.
 
     Raises `InputError`: there are too many.
     """
@@ -89,7 +89,7 @@ def _share(part: FloatArray, total: FloatArray) -> FloatArray:
 
 
 def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:
-    """Return where the mesh orders and those of loads are."""
+    """Return the indices of the mesh orders and of the orders of loads."""
     always = np.isin(harmonics, load_multiples(at.system, at.period, speed, at.time))
     for pitches in at.period.pitches:
         if pitches:

@@ -126,7 +126,7 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
-    """Return what dampers across frames add to the stiffness, (n, n), at the frames' angles at t = 0."""
+    """Return the stiffness (n, n) by dampers across frames, at the frames' angles at t = 0."""
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
     local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
     swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))

@@ -21,7 +21,7 @@ ROTATION = FREEDOMS.index("rotation")
 
 
 def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
-    """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
+    """Return the motion (N, N) of all freedoms where only the freedoms `free` are independent.
 
     What is not free goes with the carrier on a planet and with nothing else.
     """

@@ -13,7 +13,7 @@ from dynamics.scene.scene import Scene
 from dynamics.shafts import GearBody
 
 HALF = 0.5
-"""Thickness over pitch of teeth whose thickness nobody states, on the operating pitch circle."""
+"""Thickness over pitch on the operating pitch circle, for teeth of unstated thickness."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def _flank(scene: Scene, gear: GearBody, line: LineOfAction, sense: int, side: i
 
 
 def _widening(gear: GearBody, pressure_angle: float) -> float:
-    """Return by what a tooth is wider to either side at the base circle than at a pressure angle, rad.
+    """Return the half growth of a tooth's angular thickness from a pressure angle to the base circle, rad.
 
     The teeth of a ring gear point inwards: they are narrower there.
     """

@@ -1,4 +1,4 @@
-"""The freedoms of a system: which there are, and how the six of every rotor follow from them."""
+"""The freedoms of a system, and the six freedoms of every rotor as they follow from them."""
 
 from __future__ import annotations
 

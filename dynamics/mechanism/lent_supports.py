@@ -17,7 +17,7 @@ RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
 
 
 def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
-    """Return the rotors with what their couplings hold where no bearing does.
+    """Return the rotors with the supports by couplings where no bearing holds them.
 
     A coupling's matrix holds a shaft in a direction if bearings (or further couplings) hold the shaft behind
     it there. Shafts that nothing holds stay where they are, as shafts without bearings do.

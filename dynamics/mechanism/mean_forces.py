@@ -15,7 +15,7 @@ BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knot
 
 
 def mean_forces(mechanism: Mechanism) -> FloatArray:
-    """Return what balances loads and imposed accelerations at moments that show how they run, (m, T) in N.
+    """Return the mesh forces that balance loads and imposed accelerations at telling moments, (m, T) in N.
 
     Negative: the coast flank carries it. Where the balance leaves a choice, the one of least forces.
     """
@@ -33,7 +33,7 @@ def mean_forces(mechanism: Mechanism) -> FloatArray:
 
 
 def _telling_moments(scene: Scene) -> FloatArray:
-    """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
+    """Return times at which loads and drives show their course: knots, just before them, and between."""
     courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
     laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
     times = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])

@@ -192,7 +192,7 @@ def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, in
 
 
 def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int) -> GearMesh:
-    """Return the mesh of a copy; its position follows from the teeth, as that of the first planet does."""
+    """Return the mesh of a copy; its position follows from the teeth, as for the first planet."""
     driver, driven = (numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
     return replace(mesh, name=numbered(mesh.name, index), driver=driver, driven=driven, position_offset=None)
 

@@ -17,7 +17,7 @@ from dynamics.types import FloatArray, Json
 PER_BAND = 2.56
 """Output rate over the highest frequency that is passed, as vibration analyzers choose it."""
 STOP_BAND = 80.0
-"""Attenuation of what would fold, dB."""
+"""Attenuation of frequencies that would fold, dB."""
 DESIGN = STOP_BAND + 3.0
 """Attenuation required of Kaiser's formulas: they miss by up to 2 dB."""
 INNER_PER_PITCH = 64.0
@@ -82,7 +82,7 @@ class Sampling:
         return replace(self, stop_band=0.0, inner_rate=self.rate, taps=3)
 
     def to_json(self) -> Json:
-        """Return what the receipt says."""
+        """Return the entry of the receipt."""
         return {**asdict(self), "edge": self.edge}
 
 
@@ -148,7 +148,7 @@ def top_passing_frequency(scene: Scene, kinematics: Kinematics) -> float:
 
 
 def _highest(scene: Scene, rate: FloatArray) -> float:
-    """Return the highest frequency over the run of what turns at `rate` (r, k) per turn of each law, Hz."""
+    """Return the highest frequency over the run of turns at `rate` (r, k) per turn of each law, Hz."""
     speed = _speeds(scene, scene.duration)
     return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
 
@@ -164,7 +164,7 @@ def _speeds(scene: Scene, duration: float) -> FloatArray:
 
 
 def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:
-    """Return how to sample the run of `scene`; `mode` is its highest resolved mode, Hz.
+    """Return the sampling of the run of `scene`; `mode` is its highest resolved mode, Hz.
 
     Raises `InputError`: the run would have too many samples.
     """

@@ -1,4 +1,4 @@
-"""All forces in one state and their derivatives, and loads at their means: what statics starts from."""
+"""All forces in one state and their derivatives, and loads at their means, from which statics starts."""
 
 from __future__ import annotations
 

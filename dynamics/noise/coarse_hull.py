@@ -79,7 +79,7 @@ def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
 
 
 def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
-    """Return the cells of seeds that have moved to the middle of their cells so many times."""
+    """Return the cells of seeds after repeated moves to the middle of their cells."""
     starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
     pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
     length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)

@@ -28,13 +28,13 @@ SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
 Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
 """
 MIN = 1e-30
-"""kg/s, of a motion without sound."""
+"""Resistance that stands for a motion without sound, kg/s."""
 
 
 def allowed_levels(
     monopoles: FloatArray, plane: FloatArray, ka: FloatArray, resolved: BoolArray
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return from where to where levels lie by what both models state, and where by the velocity alone.
+    """Return the bounds of the levels that both models allow, and whether the velocity alone decides.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ class EstimatedRadiation(HousingRadiation):
         return np.asarray(self.correction[int(np.searchsorted(self.frequency, knot))] @ velocity)
 
     def error_band(self, frequency: float, mode_power: FloatArray) -> tuple[float, float]:
-        """Return by how much the level at a frequency, Hz, is off, as `RadiationModel.error_band` does.
+        """Return the bounds of the error of the level at a frequency, Hz, as `RadiationModel` does.
 
         The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
         """
@@ -87,7 +87,7 @@ class EstimatedRadiation(HousingRadiation):
         return float(off[0]), float(off[1])
 
     def gains(self, housing: ReducedHousing, frequency: FloatArray) -> FloatArray:
-        """Return what the velocity of each mode is multiplied with before monopoles radiate it, (N, m).
+        """Return the factor on the velocity of each mode before monopoles radiate it, (N, m).
 
         At frequencies (N,) in Hz; beyond those that are computed and resolved as at the nearest of them.
         """
@@ -106,7 +106,7 @@ class EstimatedRadiation(HousingRadiation):
         return np.array([self.error_band(*row) for row in rows]).T.reshape(2, *frequency.shape)
 
     def replaced(self, natural: FloatArray) -> FloatArray:
-        """Return those of the first natural frequencies, Hz, at which monopoles say nothing of the mode."""
+        """Return the natural frequencies, Hz, at which monopoles state nothing of the mode."""
         knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)
         inside = (natural >= self.frequency[0]) & (natural <= self.metadata.resolved_frequency)
         return np.asarray(natural[inside & self.by_velocity[knot, np.arange(natural.size)]])

@@ -31,17 +31,23 @@ from host import MissingExtra
 from model_studies.cached_file import cached_in
 
 LINES, BUDGET = 4, 60.0
-"""Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
+"""Most lines of a housing, and CPU seconds on the reference host that they may take together."""
 COARSE = Coarseness(EDGES, 450)
-"""Hull of a line: within EXACT of six edges in a wavelength at 15 lines of five gear cases."""
+"""Hull of a line. At 15 lines of five gear cases its level is within `EXACT` of that with six edges in a
+wavelength.
+"""
 EXACT = 0.5
-"""dB, that a line is off by its hull."""
+"""Error of the level of a line by its hull, dB."""
 FLAT, BLEND = 1.03, 1.06
-"""Ratios of frequencies: natural frequencies are guessed within the first."""
+"""Ratios of frequencies up to which the resistance of a line holds, and at which it is the estimate again;
+natural frequencies are guessed within the first.
+"""
 QUIETER = 6.0
-"""dB below the loudest point that the mesh resolves; a line that cannot be louder adds 1 dB at most."""
+"""Distance below the loudest point that the mesh resolves, dB, beyond which no line is corrected: a line that
+cannot be louder adds 1 dB at most.
+"""
 CANDIDATES = 200
-"""Loudest points among which they are looked for."""
+"""Number of loudest points among which the lines are."""
 AIR, NAME = Air(), BoundaryElements().model_name
 
 
@@ -50,7 +56,7 @@ class ExactLine:
     """A line that boundary elements correct."""
 
     frequency: float
-    """Hz."""
+    """Frequency of the line, Hz."""
     estimate: float
     level: float
     """`estimate`, `level`: Sound power level by the estimate and by boundary elements at its loudest point,
@@ -159,7 +165,7 @@ def line_cost(housing: ReducedHousing, hertz: float) -> Cost:
 def _exact_line(
     housing: ReducedHousing, hertz: float, model: BoundaryElements, cache: Path | None
 ) -> HousingRadiation:
-    """Return the resistance at one frequency, from the cache if it is there."""
+    """Return the resistance at one frequency, from the cache if the cache has it."""
     outer, hull = outer_hull(housing), _line_hull(housing, hertz)
     panels, shapes = len(hull.shapes), hull.shapes.astype(complex)
     kind, reference = WORK.format(NAME), line_cost(housing, hertz)
@@ -189,7 +195,7 @@ class _Knot(NamedTuple):
 
 
 def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiation]) -> EstimatedRadiation:
-    """Return the estimate with resistances of single frequencies in the place of its own near them.
+    """Return the estimate with resistances of single frequencies near these frequencies.
 
     Between two lines closer than `BLEND` squared it goes from one to the other.
     """
@@ -216,7 +222,7 @@ def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiat
 def _knots_of_line(
     estimate: EstimatedRadiation, line: HousingRadiation, sides: Sequence[int]
 ) -> Iterator[_Knot]:
-    """Yield the knots of a line, and those at which it ends at its sides, -1 below and 1 above it."""
+    """Yield the knots of a line, and the knots at which it ends at its `sides`, -1 below and 1 above it."""
     hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
     for at in (hertz, *(hertz * FLAT**side for side in sides)):
         knot = _knot(estimate, at)

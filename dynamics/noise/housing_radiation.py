@@ -30,18 +30,24 @@ from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
-"""dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
+"""Tolerance of the power of each mode in the middle of two frequencies, dB; the frequencies that are added
+leave a quarter of it.
+"""
 NOTHING = 1e-6
-"""Resistance over the largest of all modes that counts as none."""
+"""Resistance over the largest of all modes, below which a mode radiates nothing."""
 CONSTANT, CONSTANT_ERROR = 1.05, 0.008
 """Ratio of frequencies for R that does not change: R/f^2 is convex, 3/4 (step/f)^2 off in the middle, dB."""
 FEWEST, KNOTS = 8.0, (0.9, 0.025)
-"""Frequencies of an octave where the body is small beside the wavelength, and more with ka and its square."""
+"""Number of frequencies of an octave for a body much smaller than the wavelength, and further ones per ka and
+its square.
+"""
 WIDEST, CLOSEST = 1.5, 1.03
-"""Largest ratio of frequencies side by side; the smallest that is parted."""
+"""Largest ratio of two frequencies side by side, and smallest ratio between which another one is added."""
 
 USUAL = 0.85
-"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
+"""Frequency of an octave, over its highest, whose cost is the mean: frequencies lie closer towards the end of
+the octave.
+"""
 Points = Sequence[tuple[int, float]]
 """Numbers of octaves, and frequencies in Hz."""
 BAND = 10.0**0.05
@@ -77,7 +83,7 @@ def octave_ranges(low: float, high: float) -> list[tuple[float, float]]:
 
 
 def expected_knots(ka: float) -> float:
-    """Return about how many frequencies `_knots_of` takes in an octave up to a wavenumber times radius.
+    """Return the expected number of frequencies of `_knots_of` in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
     need half as many.
@@ -94,7 +100,7 @@ def _constant_knots(low: float, high: float, matrix: ComplexArray) -> _Knots:
 def _interpolation_error(
     left: float, middle: float, right: float, matrices: dict[float, ComplexArray], modes: FloatArray
 ) -> float:
-    """Return by how much the two ends miss the power of a mode in the middle, dB."""
+    """Return the error of the power of a mode in the middle by interpolation between two ends, dB."""
     ends = ModalResistance(np.array([left, right]), np.stack([matrices[left], matrices[right]]))
     expected = ends.alone(np.array([middle]), modes)[0]
     power = np.einsum("mk,mn,nk->k", modes, matrices[middle], modes, optimize=True).real
@@ -177,7 +183,7 @@ def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -
 
 
 def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
-    """Predict the cost of a frequency of an octave, and how many it has."""
+    """Predict the cost of a frequency of an octave, and the number of its frequencies."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
@@ -346,7 +352,7 @@ def cached_radiation(
     progress: Progress = silent,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> HousingRadiation:
-    """Return `housing_radiation`, from the cache if it is there.
+    """Return `housing_radiation`, from the cache if the cache has it.
 
     Raises `InputError` as `housing_radiation` does.
 

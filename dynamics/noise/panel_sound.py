@@ -154,9 +154,9 @@ class Region:
     normal: FloatArray
     """Mean outward normal, of length 1. Shape (3,)."""
     center: FloatArray
-    """m. Shape (3,)."""
+    """Center of the region, m. Shape (3,)."""
     area: float
-    """m^2."""
+    """Area of the region, m^2."""
     power: float
     """W, negative where it takes power from the others."""
 

@@ -1,4 +1,4 @@
-"""Sound power of housings by order and speed, what is loudest in it, and through what it gets there."""
+"""Sound power of housings by order and speed, its loudest points, and the bearings and modes behind them."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from model_studies.record import under_key
 POWER = ("speed", "order")
 BINS = ("speed", "bin")
 QUIET = 30.0
-"""dB below the loudest beyond which a maximum is not listed."""
+"""Distance below the loudest maximum, dB, beyond which a maximum is not listed."""
 
 
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
 ) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
+    """Return the fields of `RadiatedSound` by the motion in the modes under all bearings, with shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
     Frequencies (S, H) in Hz; `amplitudes` (S H, b, m) are complex peaks of `ReducedHousing.modes` by bearing.
@@ -130,8 +130,8 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
-    """`panel_node`, `panel_corner`, `panel_power`: Of all housings at the loudest order and speed
-    (`PanelSound`); empty where they were not looked at. (N, 3), (T, 3), (T,) arrays.
+    """`panel_node`, `panel_corner`, `panel_power`: Panels of all housings and their power at the loudest
+    order and speed (`PanelSound`); empty where they were not computed. (N, 3), (T, 3), (T,) arrays.
     """
     floor_frequency: FloatArray = field(
         default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)
@@ -184,7 +184,7 @@ class RadiatedSound(ArrayFile):
 
     @property
     def panels(self) -> PanelSound | None:
-        """Return the panels at the loudest order and speed; None where they were not looked at."""
+        """Return the panels at the loudest order and speed; None where they were not computed."""
         if not self.panel_power.size:
             return None
         return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
@@ -219,7 +219,7 @@ class RadiatedSound(ArrayFile):
 
 
 def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
+    """Return the fields of `RadiatedSound` on orders left out, all housings together; empty without."""
     if not floors:
         return {}
     total = FloorPower.of_all(floors)

@@ -1,4 +1,4 @@
-"""Sound power of all housings of a scene under one set of bearing forces, and how far it may be off."""
+"""Sound power of all housings of a scene under one set of bearing forces, and bounds of its error."""
 
 from __future__ import annotations
 

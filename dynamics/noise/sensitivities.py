@@ -53,7 +53,7 @@ class Sensitivity:
     figure: DesignFigure
     change: float
     change_of_two: float
-    """`change`, `change_of_two`: Of the level with one step and with two, dB."""
+    """`change`, `change_of_two`: Change of the level with one step of the figure and with two, dB."""
 
     @classmethod
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
@@ -67,7 +67,7 @@ class Sensitivity:
 
     @property
     def slope(self) -> float:
-        """Return the derivative of the level, dB per unit: that of the parabola through all three levels."""
+        """Return the derivative of the level, dB per unit, by the parabola through all three levels."""
         return (4.0 * self.change - self.change_of_two) / (2.0 * self.figure.step)
 
     @property
@@ -77,7 +77,7 @@ class Sensitivity:
 
     @property
     def linear_range(self) -> float:
-        """Return how far the slope alone holds within `CURVED`, in units of the figure; inf: anywhere."""
+        """Return the range in which the slope holds within `CURVED`, in units of the figure; inf: any."""
         bend = 0.5 * abs(self.curvature)
         return CURVED * abs(self.slope) / bend if bend > 0.0 else math.inf
 
@@ -93,7 +93,7 @@ class Sensitivity:
 
 
 def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
-    """Return sensitivities by what a step changes, the largest first."""
+    """Return sensitivities by the change of a step, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
 
@@ -128,7 +128,7 @@ def sound_sensitivities(
     scenes: Callable[[DesignFigure], Callable[[float], Scene]],
     progress: Progress,
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return what steps of the guesses that a model has and of its flanks change, `_ranked`.
+    """Return the changes by steps of the guesses of a model and of its flanks, `_ranked`.
 
     Parameters
     ----------

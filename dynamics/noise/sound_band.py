@@ -1,4 +1,4 @@
-"""Sound of a housing by its model, and bands of its levels from the ranges of what is only guessed."""
+"""Sound of a housing by its model, and bands of its levels from the ranges of guessed figures."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from model_studies.progress import Progress, silent
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
-"""dB; speeds that miss more are no map of a resonance."""
+"""Largest error by peaks between the speeds, dB: speeds with a larger one do not resolve a resonance."""
 Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
@@ -181,7 +181,7 @@ USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
 def responses_of_band(scene: Scene, *, mounted: bool) -> int:
-    """Return how many linear responses a band takes over all ranges, in a scene whose housings radiate.
+    """Return the number of linear responses of a band over all ranges, in a scene whose housings radiate.
 
     `mounted`: whether one of them stands on mounts.
     """
@@ -425,7 +425,7 @@ def mean_power(speed: FloatArray, power: FloatArray) -> float:
 
 
 def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far the mean of every other speed and the last lies off that of all, dB."""
+    """Return the difference of the mean over every other speed and the last from the mean over all, dB."""
     alternate = np.unique([*range(0, power.size, 2), power.size - 1])
     coarse, fine = sound_power_level(
         [mean_power(speed[alternate], power[alternate]), mean_power(speed, power)]
@@ -434,7 +434,7 @@ def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
 
 
 def _peak_error(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far a peak between the speeds may stand above the largest, dB, at most `MAX_PEAK_ERROR`.
+    """Return the height of a peak between the speeds above the largest, dB, at most `MAX_PEAK_ERROR`.
 
     The reciprocal of the power over speed is a parabola near a resonance: that through the largest value and
     its neighbors. At the ends of the speeds nothing is known.

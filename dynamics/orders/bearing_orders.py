@@ -60,7 +60,7 @@ class _MeshHarmonics:
         return float(np.min(np.diff(self.order, prepend=0.0)))
 
     def cycles(self, result: RunResult) -> FloatArray:
-        """Return how often each has repeated since the start of the run, (H, T).
+        """Return the number of cycles of each harmonic since the start of the run, (H, T).
 
         They rise, whichever way a mesh turns; where it reverses for a while they fall.
         """
@@ -161,7 +161,7 @@ class BearingOrders:
 
     @property
     def floor(self) -> None:
-        """None: what its orders do not hold is the `remainder`."""
+        """None: the part outside the orders is the `remainder`."""
 
 
 @dataclass(frozen=True)

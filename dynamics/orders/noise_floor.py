@@ -92,7 +92,7 @@ def _noise(lines: FloatArray) -> FloatArray:
 
 
 def _weights(frequency: FloatArray, span: tuple[float, float]) -> FloatArray:
-    """Return the weights (B,) of the mean over a span of what is at frequencies (B,), rising.
+    """Return the weights (B,) of values at rising frequencies (B,) in their mean over a span.
 
     Between two of them it runs straight, beyond the first and the last it is constant.
     """

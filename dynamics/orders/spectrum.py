@@ -51,7 +51,7 @@ class _MeshOrder:
     """Multiple of the mesh frequency."""
     low: float
     high: float
-    """`low`, `high`: Hz: its lowest and highest frequency in the window."""
+    """`low`, `high`: Lowest and highest frequency of the order in the window, Hz."""
 
 
 def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str = "hann") -> Spectrum:

@@ -42,7 +42,7 @@ class BranchStatus(IntEnum):
 
     @property
     def usable(self) -> bool:
-        """Whether the branch covers what was requested."""
+        """Whether the branch covers the requested speeds."""
         return self is BranchStatus.COMPLETED
 
 
@@ -53,9 +53,9 @@ class _Bifurcation:
     kind: Instability
     """`FOLD`: the branch turns back; a sweep over the speed jumps here."""
     speed: float
-    """rad/s; of a fold solved for, of other kinds interpolated between two motions."""
+    """Speed, rad/s: solved for at a fold, interpolated between two motions at other kinds."""
     point: int
-    """The last motion of the branch before it."""
+    """Last motion of the branch before the point."""
 
 
 @dataclass(frozen=True)

@@ -236,7 +236,7 @@ def _largest_force(system: System, mesh_force: FloatArray) -> float:
 
 
 def _stiffest(system: System) -> float:
-    """Return the stiffness of the stiffest mesh; without one that of the stiffest freedom, N/m."""
+    """Return the stiffness of the stiffest mesh; without meshes, of the stiffest freedom, N/m."""
     arrays, meshes = system.arrays, system.flanks.mean_stiffness
     if meshes.size:
         return float(np.max(meshes))
@@ -244,7 +244,7 @@ def _stiffest(system: System) -> float:
 
 
 def _resonant_gain(system: System, modes: Modes) -> float:
-    """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
+    """Return the motion by loads at a resonance over that at rest, in a system without meshes; else 1."""
     ratios = modes.damping_ratio[modes.frequency > 0.0]
     if system.scene.meshes or not ratios.size:
         return 1.0
@@ -413,12 +413,12 @@ class PeriodMap:
         return np.asarray((up - down) / (2.0 * step))
 
     def step_error(self, y: FloatArray) -> FloatArray:
-        """Return how far half the step size moves the end of the march, (2n,) m."""
+        """Return the change of the end of the march with half the step size, (2n,) m."""
         finer = replace(self.problem, grid=self.problem.grid.halved)
         return PeriodMap(finer, self.speed)(y) - self(y)
 
     def begun(self, y: FloatArray, steps: int) -> None:
-        """March from `y` over the first `steps` steps of a period alone: a probe of what they cost."""
+        """March from `y` over the first `steps` steps of a period alone: a probe of their cost."""
         self._one_period(y, np.empty((3, 0, 0)), steps)
 
     def _one_period(self, y: FloatArray, path: FloatArray, steps: int | None = None) -> FloatArray:

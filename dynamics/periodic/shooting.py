@@ -87,7 +87,7 @@ class Orbit:
 
     @property
     def instability(self) -> Instability:
-        """The kind of instability, if the motion is unstable: what its largest multiplier says."""
+        """The kind of instability, if the motion is unstable, by its largest multiplier."""
         largest = complex(self.multipliers[0])
         if abs(largest) <= 1.0 + ON_THE_CIRCLE:
             return Instability.NONE

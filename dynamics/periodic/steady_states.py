@@ -53,13 +53,14 @@ class _PeriodicMotion:
     """Positions of the meshes, base pitches in [0, period of the table). Shape (m, T)."""
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
-    """`dynamic_transmission_error`, `static_transmission_error`: m; the static one at the nominal force,
-    misaligned and apart as the bodies rest. Shape (m, T) each.
+    """`dynamic_transmission_error`, `static_transmission_error`: Transmission errors, m. The static one is
+    that at the nominal force, with the misalignment and center distance of the bodies at rest. Shape (m, T)
+    each.
     """
     mesh_force: FloatArray
     coast_force: FloatArray
-    """`mesh_force`, `coast_force`: Transverse, of the driving flanks and of the coast flanks in use, N. (m,
-    T), (c, T) arrays.
+    """`mesh_force`, `coast_force`: Transverse forces of the driving flanks, and of the coast flanks in use,
+    N. (m, T), (c, T) arrays.
     """
     bearing_force: FloatArray
     """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m.

@@ -35,7 +35,7 @@ class ArrayFile:
 
     @classmethod
     def arrays(cls) -> dict[str, Stored]:
-        """Return what is stored how, of the fields that are arrays."""
+        """Return the declaration of storage of each field that is an array."""
         items = fields(cls)  # type: ignore[arg-type]
         return {item.name: item.metadata["stored"] for item in items if "stored" in item.metadata}
 
@@ -54,7 +54,7 @@ class ArrayFile:
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> Self:
-        """Read what `to_netcdf` wrote, bit by bit the same.
+        """Read a file of `to_netcdf`, bit by bit the same.
 
         Raises `ResultError`: the file is missing, no netCDF-4 file, of another schema, or damaged.
         """

@@ -26,15 +26,15 @@ class EnergyAudit:
     load: float
     """`drive`, `load`: Work supplied by the drive and by the load torques (negative: they resist)."""
     position: float
-    """Work supplied by the change of the mesh tables with position: their force is that of a potential V(x,
-    d) in the direction of d only, and the imposed motion of x pays for dV/dx.
+    """Work supplied by the change of the mesh tables with position. Their force derives from a potential
+    V(x, d) in the direction of d only; the imposed motion of x supplies dV/dx.
     """
     bushings: float
     meshes: float
     """`bushings`, `meshes`: Energy dissipated in bushings and meshes, >= 0."""
     axes: float
-    """Work supplied by the change of the mesh tables with misalignment and center distance, less what the
-    moments of forces off mid-face take of it: none where the load's arm belongs to the same table.
+    """Work supplied by the change of the mesh tables with misalignment and center distance, less the work of
+    the moments of forces off mid-face: zero where the load's arm belongs to the same table.
     """
     friction: float
     """Energy dissipated by sliding flanks."""
@@ -97,7 +97,7 @@ class EnergyAudit:
         return cls(*(float(value) for value in (*work, *gained, largest_stored, fallen)))
 
     def check(self) -> Check:
-        """Return by how much the balance does not close, over the turnover, and how far a loss fell, J."""
+        """Return the check of the balance: residual over the turnover, and largest fall of a loss, J."""
         lost = self.fallen > FALLEN * self.turnover
         missing = self.relative > UNACCOUNTED
         reason = f"{engineering(100.0 * self.relative, 2)} % of {self.turnover:.3g} J is not accounted for"

@@ -12,7 +12,7 @@ from bounds.brief import Row
 from dynamics.types import FloatArray, Json, RunStatus
 
 MAX_PARTS = 3
-"""Meshes and bearings that are listed, those of the largest forces."""
+"""Most meshes and bearings that are listed, those with the largest forces."""
 
 
 class Run(Protocol):

@@ -61,6 +61,6 @@ def _phasors(solved: FloatArray, shape: tuple[int, ...]) -> ComplexArray:
 
 
 def orders_seen(position: FloatArray, maximum: int) -> int:
-    """Return how many orders, up to `maximum`, four samples a period resolve over `position` (T,)."""
+    """Return the number of orders that four samples a period resolve over `position`, at most `maximum`."""
     fastest = float(np.max(np.abs(np.diff(position)), initial=0.0))
     return max(min(maximum, int(0.25 / fastest)) if fastest > 0.0 else 0, 0)

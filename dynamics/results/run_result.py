@@ -79,7 +79,7 @@ class RunResult:
     position: FloatArray = field(
         metadata=stored("1", "position by the driving gear in base pitches, in [0, period)", *MESH)
     )
-    """The period is that of the table. Shape (m, T)."""
+    """Positions by the driving gear; the period is that of the table. Shape (m, T)."""
     mesh_frequency: FloatArray = field(metadata=stored("Hz", "mesh frequency of the mean motion", *MESH))
     """Mesh frequency of the kinematic motion and the own rotation of trains without a drive. Shape (m, T)."""
     dynamic_transmission_error: FloatArray = field(metadata=stored("m", "dynamic transmission error", *MESH))
@@ -97,7 +97,7 @@ class RunResult:
     slightly below 0 at lift-off. Shape (m, T).
     """
     coast_force: FloatArray = field(metadata=stored("N", "transverse force of the coast flank", *MESH))
-    """m = 0 here if backlash is off in all meshes. Shape (m, T)."""
+    """Force of the coast flank; m = 0 here if backlash is off in all meshes. Shape (m, T)."""
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least mesh force between samples, unfiltered", *MESH)
     )
@@ -185,7 +185,7 @@ class RunResult:
     """
 
     def headlines(self) -> tuple[str, list[Row]]:
-        """Return what a Python prompt shows: title, and rows of parts, forces and cost."""
+        """Return the lines for a Python prompt: title, and rows of parts, forces and cost."""
         return headlines(self)
 
     @property
@@ -334,7 +334,7 @@ class RunFile:
                     variable.dims[axis].attach_scale(self._file[dimension])
 
     def _variable(self, name: str, series: Stored, values: FloatArray) -> Any:
-        """Make one variable; what has no time is written at once."""
+        """Make one variable; one without time is written at once."""
         if series.dimensions[-1] == "time":
             before, options = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
             options |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}

@@ -44,7 +44,7 @@ MIN_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 def _check_housings(scene: Scene) -> None:
-    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions.
+    """Check that each bushing sits in one housing at most, and that parts in rotating frames are isotropic.
 
     A housing under a bearing that is not linear is held in all directions.
     """
@@ -108,7 +108,7 @@ def _alike_across(matrix: FloatArray) -> bool:
 
 
 def _check_frames(scene: Scene) -> None:
-    """Frames are those of carriers, pins turn with the planet's own carrier, planets rest on pins alone."""
+    """Check that frames belong to carriers, pins to the planet's carrier, planets to pins alone."""
     shafts = [shaft.name for shaft in scene.shafts]
     for index, shaft in enumerate(scene.shafts):
         if shaft.frame is None:
@@ -144,7 +144,7 @@ def _check_gravity(scene: Scene) -> None:
 
 
 def _check_couplings(scene: Scene) -> None:
-    """Couplings with matrices join coaxial shafts, those across frames alike in all directions."""
+    """Check that couplings with matrices join coaxial shafts; across frames they have to be isotropic."""
     for index, coupling in enumerate(scene.couplings):
         first, second = scene.shaft(coupling.first), scene.shaft(coupling.second)
         if coupling.stiffness is None and coupling.damping is None:
@@ -217,7 +217,7 @@ def _check_tooth_angles(scene: Scene) -> None:
 
 
 def _check_names(scene: Scene) -> None:
-    """Parts have names of their own, and name shafts and gears that are there."""
+    """Check that parts have unique names, and name shafts and gears of the scene."""
     for kind, parts in scene.parts.items():
         if kind in NAMED:
             distinct(kind, [part.name for part in parts])
@@ -373,16 +373,16 @@ class Scene(BearingLawParts):
 
     @property
     def ground_bearings(self) -> tuple[Bushing, ...]:
-        """All bearings between shafts and the ground: bushings, and those that rolling bearings act at."""
+        """All bearings between shafts and the ground: bushings, and the places of rolling bearings."""
         return (*self.bushings, *(bearing.support for bearing in self.rolling_bearings))
 
     @property
     def bearing_laws(self) -> tuple[BearingLaw, ...]:
-        """All that bearings do which is not linear, rolling elements averaged."""
+        """Nonlinear laws of all bearings, rolling elements averaged."""
         return self.laws_with(frozenset())
 
     def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
-        """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
+        """Return the nonlinear laws of all bearings; the elements of those in `passing` pass one by one."""
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
         return (*self.scene_bearing_laws, *rows)
 

@@ -85,7 +85,7 @@ class BeamSection:
 
     @property
     def shear_modulus(self) -> float:
-        """Pa."""
+        """Shear modulus, Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
     def cross_section(self, share: float | FloatArray = 0.0) -> _CrossSection:
@@ -131,7 +131,7 @@ class BeamSection:
 
     @property
     def body(self) -> tuple[Inertia, float]:
-        """Inertia about its center of mass, and how far that is from the left end, m."""
+        """Inertia of the piece about its center of mass, and distance of the center from the left end, m."""
         if self.end_outer_diameter is None and self.end_bore_diameter is None:
             cylinder = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
             return cylinder, 0.5 * self.length

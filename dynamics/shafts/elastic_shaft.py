@@ -30,10 +30,10 @@ class Disc:
 
 @dataclass(frozen=True)
 class PointOfApplication:
-    """A point of application of forces on a shaft, and the motions of its section there."""
+    """A point of application of forces on a shaft, and the motions of the section at it."""
 
     position: float
-    """m from the left end."""
+    """Distance from the left end, m."""
     across: bool = False
     tilt: bool = False
     along: bool = False

@@ -122,7 +122,7 @@ def _checked(entry: Json, checks: Sequence[Check]) -> Json:
 
 
 def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
-    """One shaft: how its beam was divided, what was kept of it, and the errors of either."""
+    """Return the document of one shaft: elements of its beam, coordinates, and the errors of both."""
     families = {"bending": elastic.bending, "extension": elastic.extension, "torsion": elastic.torsion}
     return {
         "shaft": name,
@@ -139,7 +139,7 @@ def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
 
 
 def _resolved_case(system: System) -> Json:
-    """Return what was computed: parts, dampings in use, lines of action, freedoms; of tables the size."""
+    """Return the resolved case: parts, dampings in use, lines of action, freedoms; of tables the size."""
     scene, flanks = system.scene, system.flanks
 
     def parts(*names: str) -> dict[str, Any]:
@@ -256,7 +256,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
 
 
 def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
-    """Return what each mode moves, "shaft, how", with its share of the energy (m, n), the largest first."""
+    """Return the motions of each mode, "shaft, how", with shares in the energy (m, n), the largest first."""
     names, moves = [f"{shaft}, {how}" for shaft, how in freedom_parts(freedom)], []
     for shares in kinetic_energy.tolist():
         summed = dict.fromkeys(names, 0.0)
@@ -346,7 +346,7 @@ Description = Callable[[RunContext, dict[str, Any]], dict[str, Any]]
 
 
 def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
-    """Return `documents` with what the scene alone says, and the ledger: all fields that are no series.
+    """Return `documents` with those that the scene alone decides, and the ledger: all fields but the series.
 
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
     """

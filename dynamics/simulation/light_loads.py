@@ -1,4 +1,4 @@
-"""Step control of runs under light loads: their displacements are small, and so is what may be off."""
+"""Step control of runs under light loads: small displacements need a small tolerance."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dynamics.assembly.assemble import System
 from dynamics.types import FloatArray
 
 USUAL_DEFLECTION = 1e-6
-"""m: where teeth deflect or deviate by less, the tolerance is smaller in proportion.
+"""Transmission error, m, below which the tolerance falls in proportion.
 
 A tolerance of 1 nm is then a thousandth of what moves, as it is at 1 um; loaded teeth deflect by 5 to 30 um.
 """

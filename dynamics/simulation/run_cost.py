@@ -27,7 +27,7 @@ ENOUGH = 0.02
 MIN_STEPS = 32
 """Least steps of a stretch that counts, however long a step takes."""
 FINER = 10.0**0.2
-"""Steps at a tenth of the tolerance over those of the run; those by half the positions are as many."""
+"""Steps at a tenth of the tolerance, over the steps of the run; with half the positions there are as many."""
 FASTER, MAKING = 2.3, 2.0
 """Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
 
@@ -44,14 +44,14 @@ class ProbedRun(NamedTuple):
     error_share: float
 
     def seconds(self, runs: int, *, with_errors: bool) -> float:
-        """Return the CPU seconds of so many runs, with or without their error estimates."""
+        """Return the CPU seconds of `runs` runs, with or without their error estimates."""
         steps = runs * self.steps * (1.0 + self.error_share if with_errors else 1.0)
         code = MAKING + steps / FASTER if self.code_may_follow else steps
         return runs * self.start + min(steps, code)
 
 
 def probe_run(scene: Scene) -> ProbedRun:
-    """Return about what a run of a scene takes; some tenths of a second of it are run.
+    """Return the expected cost of a run of a scene; some tenths of a CPU second of it are run.
 
     Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
     can be taken.

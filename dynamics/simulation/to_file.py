@@ -184,7 +184,7 @@ def run_scene(
     cancel: Cancel | None = None,
     describe: Description = described,
 ) -> RunResult:
-    """Run `scene` as `simulate` does; what is implausible about it is in the result alone, if `describe`d."""
+    """Run `scene` as `simulate` does; implausible values are in the result alone, if `describe`d."""
     decision, before = decide_effects(scene), FIRST
     run = _run(decision, before, None, progress, cancel, describe)
     while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
@@ -198,7 +198,7 @@ def run_scene(
 def _needed_effects(
     scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
 ) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    """Return the effects with which a run is to be repeated; raises where the run cannot stand."""
     if not ledger:  # of a run that nothing is said of, whose assumptions all hold
         return {}
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
@@ -213,7 +213,7 @@ def _needed_effects(
 
 @dataclass(frozen=True)
 class _Run:
-    """A run as made: its result, and what another one needs to go on for it."""
+    """A finished run: its result, and the state from which another run goes on."""
 
     result: RunResult
     trail: Trail
@@ -258,7 +258,7 @@ def _run(
     cancel: Cancel | None,
     describe: Description,
 ) -> _Run:
-    """Run a scene once; `before` says what of the run `earlier` it repeats."""
+    """Run a scene once; `before` is the account of the run `earlier` that it repeats."""
     start = _Start.of(decision)
     system = start.system
     if earlier is not None:
@@ -290,7 +290,7 @@ def _run(
 
 
 def _of_errors(progress: Progress | None) -> Progress | None:
-    """Return how a run that measures errors reports: under a stage of its own."""
+    """Return the progress report of a run that measures errors, under a stage with that name."""
     return progress and (lambda done, _stage: progress(done, "error of the steps"))
 
 
@@ -471,7 +471,7 @@ def _run_to_file(
     *,
     resume: bool = False,
 ) -> _MadeRun:
-    """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
+    """Run once, `going` as `_Leg.go` does; `before` is the account of the run `earlier` that it repeats."""
     start = _Start.of(decision)
     system, rest, clock = start.system, start.rest, start.clock
     folder = interrupted_run(path)

@@ -41,7 +41,7 @@ class EarlierRun:
         return {name: f"on after a run without it: {reason}" for name, reason in self.turned_on.items()}
 
     def to_json(self) -> Json:
-        """Return what the receipt of the repetition says; nothing for a first run."""
+        """Return the entry of the receipt of the repetition; empty for a first run."""
         if not self.turned_on:
             return {}
         return {"repeated": {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}}
@@ -65,7 +65,7 @@ class EarlierRun:
         (folder / REPEATED).write_text(json.dumps(self.to_json()), encoding="utf-8")
 
     def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:
-        """Return what a further repetition repeats."""
+        """Return the account that a further repetition has."""
         return EarlierRun({**self.turned_on, **needed}, self.seconds + seconds)
 
     def of(self, decision: Decision) -> Decision:

@@ -40,7 +40,7 @@ def assigned_in(node: ast.AST) -> frozenset[str]:
 
 @cache
 def reads_in(node: ast.AST) -> Counter[str]:
-    """Return how often a statement reads each name."""
+    """Return the number of reads of each name in a statement."""
     changed = (child.target for child in ast.walk(node) if isinstance(child, ast.AugAssign))
     names = [child for child in ast.walk(node) if isinstance(child, ast.Name)]
     read = [child for child in names if isinstance(child.ctx, ast.Load)]
@@ -78,7 +78,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Variable:
-    """A name whose value is known when it runs: a slot, or a tuple of such."""
+    """A name whose value is known at run time alone: a slot, or a tuple of slots."""
 
     slots: Any
 

@@ -61,7 +61,7 @@ def compiled(module: Module) -> bytes:
 
 
 class CodeStore:
-    """Code by structure: in memory, and in files of `folder` with a digest of what they hold.
+    """Code by structure: in memory, and in files of `folder` with a digest of their content.
 
     An empty file says that the structure has been run. What cannot be read or written is made anew.
     """
@@ -71,7 +71,7 @@ class CodeStore:
         self._loaded: OrderedDict[str, MachineCode] = OrderedDict()
 
     def get(self, key: str) -> MachineCode | None:
-        """Return the code of a structure if there is some."""
+        """Return the code of a structure, or None if there is none."""
         with self._lock:
             if key in self._loaded:
                 self._loaded.move_to_end(key)

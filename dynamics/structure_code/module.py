@@ -47,7 +47,7 @@ class Module:
             raise Unsupported("the structure is too large")
 
     def alias(self, array: Any) -> Any:
-        """Return what tells the accesses of an array from those of others, which have another first item."""
+        """Return the mark of accesses of an array; arrays with another first item have another one."""
         address = array.__array_interface__["data"][0] if array.size else -id(array)
         if address not in self._aliases:
             kind = self.module.add_metadata([str(len(self._aliases)), self._root, WORD(0)])

@@ -47,10 +47,10 @@ class Normal:
 
     mean: float
     standard_deviation: float
-    """`mean`, `standard_deviation`: Before it is cut off."""
+    """`mean`, `standard_deviation`: Mean and standard deviation of the distribution before it is cut off."""
     low: float = -math.inf
     high: float = math.inf
-    """`low`, `high`: What lies beyond is rejected; infinite: nothing."""
+    """`low`, `high`: Bounds at which the distribution is cut off; infinite: none."""
     kind: ClassVar[str] = "normal"
 
     def __post_init__(self) -> None:

@@ -43,11 +43,11 @@ class _Spread:
 
     mean: FloatArray
     standard_error: FloatArray
-    """`mean`, `standard_error`: Of the usable samples; NaN where there are fewer than one, or two. Shape (C,)
-    each.
+    """`mean`, `standard_error`: Mean of the usable samples and its standard error; NaN where there is no
+    sample, or only one. Shape (C,) each.
     """
     fraction: FloatArray
-    """Shape (Q,)."""
+    """Fractions of the quantiles. Shape (Q,)."""
     quantile: FloatArray
     low: FloatArray
     high: FloatArray
@@ -124,7 +124,7 @@ class Study(ArrayFile):
         return values, np.array([part.mean() if part.size else np.nan for part in selected])
 
     def swing(self, factor: int, response: int) -> float:
-        """Return what a factor of the grid or the list does: the spread of the means of its levels."""
+        """Return the effect of a factor of the grid or the list: the spread of the means of its levels."""
         means = self.level_means(factor, response)[1]
         return float(np.nanmax(means) - np.nanmin(means)) if np.isfinite(means).any() else float("nan")
 
@@ -167,7 +167,7 @@ class Scenes(Protocol):
         ...
 
     def expensive(self, values: Mapping[str, float]) -> Mapping[str, float]:
-        """Return those of the values that decide what takes longer to make than a run, such as a table."""
+        """Return the values that decide parts which take longer to make than a run, such as a table."""
         ...
 
 
@@ -224,7 +224,7 @@ def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:
 
 
 def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
-    """Run one point; what fails is a marked point with its reason."""
+    """Run one point; a run that fails is a marked point with its reason."""
     began, integration, none = task_cpu_seconds(), NAN, [NAN] * len(task.responses)
     try:
         scene = task.scene(values)

@@ -27,7 +27,7 @@ UNDAMPED = 1e-12
 damping.
 """
 BLOCK = 64
-"""Frequencies whose matrices are held at a time, where modes are coupled by damping."""
+"""Number of frequencies whose matrices are in memory at a time, where damping couples modes."""
 
 
 class BearingForces(Protocol):

@@ -24,7 +24,7 @@ from dynamics.vibration.housing_motion import BearingHarmonics
 ORTHONORMAL = 1e-9
 """Largest entry of A^T A - 1 of axes that are perpendicular and of length one."""
 BLOCK = 1024
-"""Frequencies whose mobilities are interpolated at a time."""
+"""Number of frequencies whose mobilities are interpolated at a time."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,8 @@ class MeasuredMobility:
     excitation: tuple[Direction, ...]
     """Bearings, e of them with their axes; positive is the force of the shaft on the seat."""
     mobility: ComplexArray
-    """m/(N s), peak velocity per peak force for exp(2 pi i f t); reciprocity is not assumed. Shape (n, q, e).
+    """Mobilities, m/(N s): peak velocity per peak force for exp(2 pi i f t). Reciprocity is not assumed.
+    Shape (n, q, e).
     """
     axes: FloatArray = field(default_factory=lambda: np.eye(3))
     """Columns: the axes x, y, z of the measurement in the scene's frame. Shape (3, 3)."""
@@ -258,7 +259,7 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
 
 
 def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> FloatArray:
-    """Return what each measured bearing contributes to the mean square velocity of points, (e, k, S, H).
+    """Return the contribution of each measured bearing to the mean square velocity of points, (e, k, S, H).
 
     In the order of `MeasuredMobility.bearings`. They add up to 1, as in `Parts.shares`; a negative one acts
     against the sum. NaN outside the measured band and where nothing moves. Raises `InputError` as

@@ -23,9 +23,10 @@ UNIFORM = 1e-6
 LOOSE = 1e-6
 """Natural frequency over the highest one, below which it is rounding and the mode moves freely."""
 PIECE = 4096
-"""Samples whose states are held at a time."""
+"""Number of samples whose states are in memory at a time."""
 REACH = 32
-"""Samples beyond a piece that its spline knows: those n away count by (2 - sqrt 3)^n, after 32 by 5e-19."""
+"""Samples beyond a piece that its spline uses: a sample n away counts by (2 - sqrt 3)^n, after 32 by 5e-19.
+"""
 CUBIC = 4
 """Coefficients of a piece of a cubic spline."""
 
@@ -246,7 +247,7 @@ def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) 
 
 
 def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:
-    """Return what advances the modes by a step: each by itself unless damping couples them."""
+    """Return the propagator of the modes over a step: one for each mode unless damping couples them."""
     diagonal = np.diag(damping)
     if np.all(
         np.abs(damping - np.diag(diagonal)) <= ROUNDING * np.sqrt(np.outer(diagonal, diagonal).clip(0.0))

@@ -24,7 +24,7 @@ from dynamics.vibration.housing_vibration import (
 from model_studies.record import under_key
 
 RESIDUAL = "residual"
-"""Name of what the modes that are not kept contribute: static flexibility of the seats."""
+"""Name of the contribution of all modes that are not kept: static flexibility of the seats."""
 
 FREQUENCIES = 800
 """Number of evenly spaced frequencies of the transfer functions, to which the natural frequencies are added.
@@ -36,9 +36,9 @@ class Parts:
     """A motion as a coherent sum."""
 
     name: tuple[str, ...]
-    """Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left."""
+    """Bearing seats, or modes by their number from 1; `RESIDUAL` is the rest."""
     frequency: FloatArray
-    """Natural frequencies in Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies in Hz; NaN for parts that are no mode. Shape (p,)."""
     motion: ComplexArray
     """Motion of the reduced coordinates by each part, m and rad; the sum is the whole motion. Shape (p, r).
     """
@@ -155,13 +155,14 @@ class SurfaceShape:
     """Complex peak amplitudes of the motion of a surface."""
 
     points: FloatArray
-    """m. Shape (p, 3)."""
+    """Points of the surface, m. Shape (p, 3)."""
     triangles: IntArray
     """Corners, counter-clockwise from outside, then mid-side nodes, if it has them. (t, 6) or (t, 3) int
     array.
     """
     motion: ComplexArray
-    """m, m/s or m/s^2; of a mode, real, with the largest motion 1. Shape (p, 3)."""
+    """Motion of the points, m, m/s or m/s^2; that of a mode is real, with the largest motion 1. Shape (p, 3).
+    """
 
     @property
     def facets(self) -> IntArray:
@@ -219,7 +220,7 @@ class Shares:
 
     name: tuple[str, ...]
     frequency: FloatArray
-    """Natural frequencies, Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies, Hz; NaN for parts that are no mode. Shape (p,)."""
     point: FloatArray
     """Contributions to the mean square velocity of each point. Shape (k, p)."""
     surface: FloatArray
@@ -228,18 +229,18 @@ class Shares:
 
 @dataclass(frozen=True)
 class VibrationAnalysis:
-    """Vibration over speed, and what makes it at one speed and order."""
+    """Vibration over speed, and its causes at one speed and order."""
 
     housing: str
     vibration: HousingVibration
     mobilities: _Mobilities
     at_speed: int
     at_order: int
-    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
+    """`at_speed`, `at_order`: Indices of the speed and the order of `deflection` and shares."""
     bearings: Shares
     modes: Shares
     deflection: SurfaceShape | None = None
-    """Velocity of the surface there; None without a surface."""
+    """Velocity of the surface at that speed and order; None without a surface."""
     metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON, of the response."""
 
