@@ -26,7 +26,7 @@ class Assessed:
 
     name: str
     level: str
-    """`name`, `level`: Of the pair and of its mesh."""
+    """`name`, `level`: Name of the pair, and level of its mesh."""
     value: FloatArray
     stated: FloatArray
     true: FloatArray

@@ -38,7 +38,7 @@ REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_li
 SUBJECT = "line load at free ends against full contact"
 PLAIN = FlankModification()
 STRETCHES, SLICES = 90, 15
-"""Over the face, of flank results in their usual slices: lengths over which a peak is taken."""
+"""Number of stretches and slices of flank results over the face: the lengths over which a peak is taken."""
 PeerMesh = Resolution | HelicalMesh
 SPUR_MESH, HELICAL_MESH = Resolution(2.0, layers=11, outermost=0.05), HelicalMesh(0.15, 8, 15, 57)
 

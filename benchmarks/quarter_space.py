@@ -30,7 +30,7 @@ from verification.full_contact.over_face.layers import Layers, graded_layers
 
 SUBJECT = "free end of a quarter space"
 MODULUS = 1e9
-"""Pa: any."""
+"""Modulus of elasticity, Pa. The result does not depend on it."""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -174,7 +174,7 @@ def closed_form(poissons_ratio: float, distance: FloatArray, far: float) -> Floa
 
 
 FAR = 5.0
-"""Half strips from the end up to which the disc, a finite body, gives way as a quarter space does."""
+"""Distance from the end up to which the disc, a finite body, deforms as a quarter space does, half strips."""
 
 
 def largest_difference(disc: QuarterDisc, poissons_ratio: float, layers: int) -> float:

@@ -10,7 +10,7 @@ from fe_contact import FlankModification, Gear, GearPair
 
 UM = 1e-6
 LOADS = (0.4, 1.0)
-"""Over the nominal torque."""
+"""Loads over the nominal torque."""
 
 
 @dataclass(frozen=True)

@@ -48,8 +48,8 @@ class ToleranceRun:
     """CPU seconds of all passes."""
     least_stated: float
     least_true: float
-    """`least_stated`, `least_true`: Of the quickest run whose stated, or whose true errors are within the
-    tolerance; NaN if there is none.
+    """`least_stated`, `least_true`: Cost of the quickest run whose stated, or whose true errors are within
+    the tolerance; NaN if there is none.
     """
     reason: str = "met"
     """Why the passes ended."""

@@ -37,11 +37,11 @@ class Kind(StrEnum):
     CHOICE = auto()
     """One of several, by its name."""
     SURFACE = auto()
-    """A table of its own."""
+    """A surface given by a table."""
     PART = auto()
     """A part of declared fields."""
     PARTS = auto()
-    """Any number of them."""
+    """A list of parts, each a dataclass."""
     STIFFNESS = auto()
     """A force, traction or stress per displacement or strain."""
     DAMPING = auto()

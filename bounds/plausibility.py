@@ -97,7 +97,7 @@ class Finding:
     """Other fields that must have slipped with the field, in words; empty if it slipped alone."""
 
     def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
-        """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
+        """Return the finding in one line, in the caller's name and unit of the field (default: ours, SI)."""
         unit = field_unit or SI_UNITS[self.unit]
         suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")

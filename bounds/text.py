@@ -45,7 +45,7 @@ class _Worded(Protocol):
     """Anything that can be put into words for a reader."""
 
     def worded(self, reader: Reader) -> str:
-        """Return it in the reader's units and names."""
+        """Return the text in the reader's units and names."""
 
 
 Wording = str | _Worded

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 DIGITS = 7
-"""Digits of a number in a message, unless it says otherwise."""
+"""Default number of digits of a number in a message."""
 MIN_LEFTOVER = 1e-12
 """Residual from which on its digits are written."""
 

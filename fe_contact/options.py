@@ -199,7 +199,7 @@ class AnalysisOptions:
         return self.tolerance is not None and self.receipt == "full"
 
     def at_level(self, level: str) -> AnalysisOptions:
-        """Return the same with a level of mesh in place of a tolerance or a time."""
+        """Return the options with a level of mesh in place of a tolerance or a time budget."""
         return replace(self, tolerance=None, time_budget=None, level=level)
 
     def to_json(self) -> Json:

@@ -72,6 +72,6 @@ def require(extra: str) -> None:
 
 
 def missing_extra(error: ModuleNotFoundError) -> MissingExtra | None:
-    """Return what is missing by the name of the extra that brings it, None for another module."""
+    """Return the missing extra that brings a module, None for another module."""
     module = (error.name or "").partition(".")[0]
     return next((MissingExtra(module, extra) for extra, names in MODULES.items() if module in names), None)

@@ -157,7 +157,7 @@ def _absolute(module: str, file: str) -> str:
 
 
 def _state(path: str) -> State | None:
-    """Return what changes with a file, or with the list of files of a folder; None if there is none."""
+    """Return a state that changes with a file or with the list of files of a folder; None without it."""
     try:
         status = os.stat(path)  # noqa: PTH116 - called for each file of the project
     except OSError:

@@ -36,7 +36,7 @@ class Loop(CPUDispatcher):
     """A loop that Python calls: one process at a time compiles it, the others read its entry."""
 
     def enable_caching(self) -> None:
-        """Keep what is compiled."""
+        """Store compiled loops on disk."""
         self._cache = LoopCache(self.py_func)
 
     def compile(self, sig: Any) -> Any:

@@ -88,7 +88,7 @@ def _identity() -> dict[str, object]:
 
 
 def _read(file: Path) -> dict[str, object]:
-    """Return what is kept of this host; nothing where it cannot be trusted."""
+    """Return the stored speed of this host; nothing where it cannot be trusted."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         return dict(content) if content["identity"] == _identity() else {}

@@ -20,7 +20,7 @@ from model_studies.netcdf import DAMAGE, UnreadableFile
 from model_studies.record import key_of
 
 IN_VARIABLE = "variable"
-"""Stands in the JSON for what is in a variable."""
+"""Mark in the JSON for a value that is stored in a variable."""
 _UNITS = {"n": "N", "n_m": "N m", "pa": "Pa"}
 
 
@@ -66,7 +66,7 @@ def write_record(record: Any, path: Path, schema: str) -> None:
 
 
 def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
-    """Return what `write_record` wrote, bit by bit the same; `kinds` are the dataclasses by their schemas.
+    """Return the content of a record that `write_record` wrote; `kinds` are dataclasses by their schemas.
 
     A field that has a default may be missing, in files of versions that did not know it.
 

@@ -118,7 +118,7 @@ def needed(page: Path) -> list[Path]:
 
 
 def _run(page: Path) -> str:
-    """Return what is run of a page."""
+    """Return the blocks of a page that are run."""
     return "\n".join(text for language, text in _BLOCK.findall(page.read_text("utf-8")) if language != "text")
 
 

@@ -13,7 +13,7 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource
 from lineofaction.gearbox.problems import BadInput
 
 _MAX_CHARACTERS = 65_536
-"""A secret ends there at the latest; what follows in the file is not read."""
+"""Most characters of a secret; the rest of its file is not read."""
 
 
 def is_secret(field: FieldInfo) -> bool:

@@ -21,7 +21,8 @@ from model_studies.progress import Report, unreported
 MAX_ROUNDS = 10
 
 PROBES = np.array([0.25, 0.5, 0.75])
-"""Points of every interval where the interpolant is held against a solution; the middle becomes a node."""
+"""Points of every interval at which the interpolant is compared with a solution; the middle becomes a node.
+"""
 
 
 @dataclass(frozen=True)

@@ -137,7 +137,7 @@ class PredictedDesigns(NamedTuple):
     positions: int
     """Number of positions of one design."""
     across_face: bool
-    """Whether the gears are those of three dimensions."""
+    """Whether the gears are condensed in three dimensions."""
     bytes: float
     """Largest resident memory of the process, bytes."""
     table: float

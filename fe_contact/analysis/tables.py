@@ -142,7 +142,7 @@ def _solved_places(
 
 
 def _subject(checked: Checked, prediction: Prediction) -> str:
-    """Return what is announced, and its memory where the period is long."""
+    """Return the subject of the progress report, with its memory where the period is long."""
     period, gigabytes = checked.model.period, 1e-9 * prediction.memory_bytes
     return "table" if period == 1 else f"table of {period} base pitches in {engineering(gigabytes, 2)} GB"
 

@@ -25,7 +25,7 @@ from fe_contact.types import Json
 from host import lock
 
 CACHED_KEYS = 64
-"""Hashes of what was requested last, kept in memory."""
+"""Number of the hashes of the last requests that stay in memory."""
 PATIENCE_S = 600.0
 """Longest wait for a result that another process computes, s. That process may have been stopped: after this
 time the result is computed here too.

@@ -24,8 +24,8 @@ class Front:
     """The halves of the group."""
     inner: IntArray
     border: IntArray
-    """`inner`, `border`: Freedoms eliminated here, and those that go up, both by increasing position in the
-    elimination.
+    """`inner`, `border`: Freedoms that the front eliminates, and freedoms that it passes to its parent, both
+    by increasing position in the elimination.
     """
 
     @property

@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 from host.loops import inner, njit
 
 SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
-"""Columns of a table (..., n, 8), those of `EdgeStrips`."""
+"""Columns of a table of edge strips (..., n, 8), in the order of the fields of `EdgeStrips`."""
 EDGE_REACH = 2.0
 """Distance from an edge over half a patch within which strips may reach it, of twice the largest load too."""
 _SHORTEST = 1e-12
@@ -112,7 +112,7 @@ def edge_position(
 
 @inner(error_model="numpy")
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
-    """Return what a force in N on slice i and a tilt of its flanks do; `edge` (n, 8) is a table."""
+    """Return the motion by a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
     position = edge_position(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
     centroid, middle, turned, twice, growth = position

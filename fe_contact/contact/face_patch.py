@@ -39,7 +39,7 @@ class FaceLoads(NamedTuple):
     used: IntArray
 
     def rows(self, keep: BoolArray) -> FaceLoads:
-        """Keep some loads."""
+        """Return the loads selected by `keep`."""
         return FaceLoads(self.nodes[keep], self.forces[keep], self.used[keep])
 
     def plus(self, part: float, other: FaceLoads, times: float) -> FaceLoads:
@@ -124,7 +124,7 @@ def _most_nodes(
 
 @inner()
 def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
-    """Return one of the equal parts of a range."""
+    """Return part q of a range that is divided into `count` equal parts."""
     step = (high - low) / count
     return low + q * step, low + (q + 1) * step
 
@@ -285,7 +285,7 @@ def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatA
 def _add_teeth(
     block: FloatArray, slices: _SliceForces, ends: IntArray, a: int, b: int, out: FloatArray
 ) -> None:
-    """Add what the slices of tooth b move at those of tooth a, and back."""
+    """Add the displacements at the slices of tooth a by those of tooth b, and the reverse."""
     low, width, start, forces, lever = slices
     count = lever.shape[0]
     motion = np.empty((count, block.shape[1]))

@@ -146,7 +146,7 @@ def half_planes(gap: FloatArray, window: float) -> tuple[FloatArray, FloatArray]
 
 @inner(error_model="numpy")
 def _kernel(count: int, cell: float) -> FloatArray:
-    """Return what a unit force on a cell moves all (2 N - 1,), the mean of -ln|x|; in the middle its own."""
+    """Return the displacements of all cells by a unit force on the middle one, (2 N - 1,): mean -ln|x|."""
     kernel = np.empty(2 * count - 1)
     kernel[count - 1] = 1.0 - math.log(0.5 * cell)
     for d in range(1, count):

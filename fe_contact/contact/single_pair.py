@@ -69,7 +69,7 @@ class _SinglePairs:
         return np.asarray(np.einsum("qjn,qnk,qjk->qj", pressed, self.problem.bodies, pressed, optimize=True))
 
     def _strips(self, load: FloatArray) -> FloatArray:
-        """Return what strips add (Q, J, L), m: 2/p times the integral of k p [ln(l/b) + 1/4] over p."""
+        """Return the approach of strips (Q, J, L), m: 2/p times int k p [ln(l/b) + 1/4] dp."""
         problem, shape = self.problem, self.share.shape
         k = np.broadcast_to(sum(problem.half_planes), (shape[0], shape[1] * shape[2])).reshape(shape)
         radius = problem.candidates.radius[: shape[0]].reshape(shape)

@@ -37,7 +37,9 @@ class Strips:
     """Distance from the pinion's mid-face, m. Shape (k,)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Of the strip from the touching point on, m. Shape (k,) each."""
+    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m. Shape
+    (k,) each.
+    """
 
     def removed(self, gap: GapTerm) -> FloatArray:
         """Return the mean of a gap over the strips (k,), m."""
@@ -213,7 +215,7 @@ class FollowingPatches:
         return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
     def opened(self, slopes: FloatArray) -> FloatArray:
-        """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
+        """Return the normal approach that small slopes (k,) take away from the candidates (P, L, m), m."""
         c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
         shift.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(shift)[:, None]
@@ -226,7 +228,7 @@ class FollowingPatches:
         return self._times(self.slice_force)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the gap's slope at each strip (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """
@@ -268,7 +270,7 @@ class TurnedForces:
         )
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return what normal approach a gap takes away so over another near it (P, L, m), m."""
+        """Return the normal approach that a gap takes away so over another near it (P, L, m), m."""
         c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
         for gear, slope in enumerate(slopes):
             slope.flat[self.index] = self.closing.slope(gear, gap, over)
@@ -277,7 +279,7 @@ class TurnedForces:
         return c.at_points(motion)
 
     def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a flank of a gear adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the slope of a gear's flank (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """

@@ -91,7 +91,7 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
 
 
 def _touching(part: _Part) -> tuple[FloatArray, ...]:
-    """Return what `_MOVING` names.
+    """Return the arrays that `_MOVING` names.
 
     Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
     they are not, or where the true gap there is another, it is searched for together with the common gap.

@@ -449,11 +449,11 @@ class _Flanks:
         return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x))
 
     def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
-        """Return what is removed at x, m, of some of the touching points."""
+        """Return the material removed at x from the flanks of some of the touching points, m."""
         return self._removed_at(rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x), of)
 
     def _removed_at(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
-        """Return the same at roll lengths of both gears."""
+        """Return the material removed at roll lengths of both gears, m."""
         return self._designed(rolls, of) + self._of_teeth(rolls, of)
 
     def _of_teeth(

@@ -104,7 +104,7 @@ def acting(ledger: Sequence[LedgerEntry]) -> tuple[str, ...]:
 
 
 def contributed(scene: ContactScene, names: Sequence[str]) -> ContactModel:
-    """Return what effects, by their names, contribute to the model of a scene."""
+    """Return the contributions of effects, by their names, to the model of a scene."""
     model = ContactModel()
     for effect in scene.registry:
         if effect.name in names:

@@ -16,7 +16,9 @@ from fe_contact.geometry.iso6336_stiffness import modulus_ratio
 from fe_contact.hertz import relative_radius
 
 _STEEL_STIFFNESS = 14e9
-"""N/m per m of face: about the single stiffness of steel teeth on solid bodies after ISO 6336."""
+"""Stiffness of a pair of steel teeth on solid bodies, N/m per m of face: about the single stiffness of ISO
+6336.
+"""
 _ALONG_EDGE = 33
 _ALONG_FLANK = 401
 

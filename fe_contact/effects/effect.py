@@ -101,7 +101,7 @@ class Effect:
         raise NotImplementedError
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say what of it acts across the face, so that a plane cannot hold it; None: nothing."""
+        """Return why the effect acts across the face, so that a plane cannot hold it; None: it does not."""
         return None
 
     def refuse_plane(self, scene: ContactScene) -> None:

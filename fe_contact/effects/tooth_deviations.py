@@ -21,7 +21,7 @@ from fe_contact.geometry import (
 )
 
 _PLACES = 513
-"""Places of the path of contact at which surfaces are looked at."""
+"""Number of places of the path of contact at which surfaces are sampled."""
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ class TurningGap:
 
     @classmethod
     def of(cls, index: int, gear: Toothing, period: int) -> TurningGap:
-        """Return that of a gear, 0 the pinion."""
+        """Return the gap of a gear, 0 the pinion, 1 the wheel."""
         flanks = gear.tooth_flanks
         waves = sum(wave.amplitude for wave in gear.waves)
         deviation = max((flank.largest for flank in flanks), default=0.0)

@@ -41,7 +41,9 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Of the base radius in m and the other."""
+    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
+    each returns the other one.
+    """
 
 
 WAYS = {

@@ -46,7 +46,7 @@ def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: 
 
 
 def _left(changes: list[_Change], name: str) -> float:
-    """Return what all changes of a figure that tell of it (not NaN) leave, in parts of it."""
+    """Return the error of a figure by all its changes that are known (not NaN), relative to it."""
     ratios = [getattr(change.rougher, name) / getattr(change.finer, name) for change in changes]
     parts = [
         change.counts * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()

@@ -172,7 +172,7 @@ def curve_derivatives(
 def _differences(
     further: SolvedOperatingPoint, solution: ContactSolution, arm: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what a step of the center distance changes of deflection and load arm, per m."""
+    """Return the changes of deflection and load arm by the center distance, per m."""
     _require_solved(further.solution)
     further_arm = load_arm(further.pair, further.problem, further.solution)
     change = further.solution.deflection - solution.deflection
@@ -225,7 +225,7 @@ class Difference:
 
     @classmethod
     def of(cls, pair: ParallelAxes, name: str) -> Difference:
-        """Return that about the figure the pair has."""
+        """Return the difference about the present figure of the pair."""
         if name == MISALIGNMENT:
             return cls(MisalignmentGap(1.0), MisalignmentGap(0.0), 1.0)
         gear, quantity = gear_and_quantity("by", name)

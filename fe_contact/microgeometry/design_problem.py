@@ -56,7 +56,7 @@ class _Memory(Protocol):
     """Objective and violation of designs (d,) at positions (P,)."""
 
     def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
-        """Return what is known."""
+        """Return the stored evaluation of a design at positions; None if there is none."""
 
     def add(self, values: FloatArray, position: FloatArray, figures: tuple[float, float]) -> None:
         """Keep the figures of a design."""

@@ -216,7 +216,7 @@ def iso1328_tooth_tolerances(
     distribution: Distribution = "normal",
     finishing: Finishing = "any",
 ) -> ToothTolerances:
-    """Return what of the teeth of one gear differs by ISO 1328-1:2013.
+    """Return the differences between the teeth of one gear by ISO 1328-1:2013.
 
     The eccentricity is at most half the run-out F_rT, a tooth by itself at most half of f_pT out of its
     place. Of the square of a single pitch the teeth behind keep the part `ACCUMULATED`; all places are scaled

@@ -21,7 +21,9 @@ from fe_contact.types import FloatArray, IntArray
 
 LOAD = "force"
 SPACING = 1e-9
-"""Between the misalignments by which moved tables are told apart, m: any number would do."""
+"""Distance of the misalignments of tables of perturbed designs, m. Any number serves: it only tells the
+tables apart.
+"""
 
 
 @dataclass(frozen=True)

@@ -54,9 +54,9 @@ class OptimizationRequest:
     search: Search = Search()  # noqa: RUF009 (frozen)
     """Method, seed, starts, evaluations and positions of the search."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
-    """`positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
-    every variable at the middle of its bounds and the scattered misalignment, and for the design with the
-    least removed: all designs are assessed by one model.
+    """Options of the analysis; `positions`, `receipt` and `on_violation` are ignored. Effects are decided
+    once, for the design with every variable at the middle of its bounds and the scattered misalignment, and
+    for the design with the least removed: all designs are assessed by one model.
     """
     map_torques: Levels | None = None
     """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
@@ -141,7 +141,7 @@ def gain_of(start: _Confirmed, optimum: _Confirmed) -> Estimate:
 
 
 def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:
-    """Return what came of a search: ties within the errors are ties."""
+    """Return the outcome of a search: ties within the errors are ties."""
     gain = gain_of(start, optimum)
     if optimum.violation > SLACK:
         return Outcome.LIMITS_EXCEEDED
@@ -169,7 +169,7 @@ class Perturbation:
     """
     change_low: float = field(metadata=in_unit("m"))
     change_high: float = field(metadata=in_unit("m"))
-    """`change_low`, `change_high`: Of the objective there, m."""
+    """`change_low`, `change_high`: Changes of the objective at these values, m."""
 
 
 @brief

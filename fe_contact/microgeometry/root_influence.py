@@ -103,7 +103,7 @@ class _GearRoots:
         direction: int,
         offset: float,
     ) -> _GearRoots:
-        """Return those of a gear whose teeth count against (-1) or with (1) the pairs."""
+        """Return the roots of a gear whose teeth count against (-1) or with (1) the pairs."""
         slices = candidates.slices
         teeth = np.unique(slices.pair)
         shape = len(slices.present), teeth.size, -1

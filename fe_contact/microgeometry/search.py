@@ -71,7 +71,7 @@ class Search:
 
 
 def usual_designs(search: Search) -> float:
-    """Return what a usual search takes, in assessments of a design at all positions."""
+    """Return the cost of a usual search, in assessments of a design at all positions."""
     few, maximum, method = (
         min(search.exploration / search.positions, 1.0),
         float(search.evaluations),

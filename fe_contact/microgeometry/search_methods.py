@@ -36,7 +36,9 @@ FIRST_REGION = 0.2
 
 
 POOR, GOOD, POORER = 0.25, 0.75, 0.4
-"""Parts of the promised fall by which the region shrinks or grows; to what part of the step it shrinks."""
+"""Parts of the predicted fall below and above which the trust region shrinks or grows, and the part of the
+step that it shrinks to.
+"""
 
 
 TRIED = 7
@@ -61,7 +63,9 @@ Cancel = Callable[[], bool]
 
 
 LINEARIZED, FOLLOWED = 1.4, 75
-"""Assessments that a design with its slopes costs; designs of the walk to the end and of those beside it."""
+"""Cost of a design with its slopes in assessments, and number of designs of the walk to the end and of its
+restarts.
+"""
 
 
 class Method(Protocol):

@@ -87,7 +87,7 @@ class ToothPassing:
         return cls(line, limit.turns, by_tooth, -once * added(wobbling, WOBBLE))
 
     def lines(self, drawn: DrawnTeeth) -> ComplexArray:
-        """Return what each deviation adds to the order of N gears, (d, N, L) in m: of the axis first."""
+        """Return the contributions of each deviation to the order of N gears, (d, N, L), m: axis first."""
         loads = len(self.by_wobble)
         once = {RUN_OUT: np.full(loads, -1.0 * (self.line == 1)), WOBBLE: self.by_wobble}
         parts = []
@@ -106,7 +106,7 @@ class ToothPassing:
 
 
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
-    """Return what a unit of each deviation of a tooth is at the candidates, (P, m)."""
+    """Return the gap by a unit of each deviation of a tooth at the candidates, (P, m)."""
     toothing: Toothing = getattr(pair, gear)
     there = np.isfinite(c.gap)
     rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, toothing.sign))
@@ -129,7 +129,7 @@ class MadePairs:
     drawn: DrawnTeeth
 
     def evaluator_of(self, index: int) -> Evaluator:
-        """Return one of them."""
+        """Return the evaluator of the drawn gear `index`."""
         contact = self.evaluator.contact
         gear: Toothing = getattr(contact.pair, self.gear)
         made: dict[str, Any] = {self.gear: replace(gear, **self.drawn.fields(index))}

@@ -35,12 +35,12 @@ class SweptQuantity:
 
     name: str
     unit: str
-    """`name`, `unit`: Of `SWEPT`."""
+    """`name`, `unit`: Name and unit of the quantity, as in `SWEPT`."""
     value: FloatArray = field(metadata=in_unit("1", "point"))
     error: FloatArray = field(metadata=in_unit("1", "point"))
-    """`value`, `error`: In the unit; NaN where the contact was not solved. The error of a ripple is that of
-    its table; that of pressure and face load factor is the sum of what half the slices, the coarse meshes and
-    half the positions change. Shape (N,) each.
+    """`value`, `error`: Value and error in the unit; NaN where the contact was not solved. The error of a
+    ripple is that of its table. The error of pressure and face load factor is the sum of their changes by
+    half the slices, the coarse meshes and half the positions. Shape (N,) each.
     """
 
     @property

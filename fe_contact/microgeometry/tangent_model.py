@@ -53,7 +53,7 @@ class TangentModel:
         return replace(self, correction=self.correction + error.mean(axis=0))
 
     def at_load(self, load: int) -> TangentModel:
-        """Return the same at one of the loads."""
+        """Return the model at one of the loads."""
         one_load = slice(load, load + 1)
         arrays = self.value[..., one_load], self.by[:, :, one_load], self.correction[:, one_load]
         return TangentModel(self.minimum, self.state, *arrays)

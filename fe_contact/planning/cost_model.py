@@ -79,7 +79,7 @@ _JUDGED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
-"""CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
+"""CPU seconds of the estimate of errors without its solutions; over the face those of the table too."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
 _STORED_POSITIONS, _STORED_PART = 320, 2.5
@@ -212,7 +212,7 @@ def _candidates(pair: ParallelAxes, slices: int) -> float:
 
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> ContactWork:
-    """Return what one position and one point of it cost in so many slices."""
+    """Return the work of one position and of one point at it, with this number of slices."""
     made = plan.discretization
     count, begun = _candidates(pair, slices), _BEGUN * pair.transverse_contact_ratio * slices
     if not isinstance(made, FaceDiscretization):

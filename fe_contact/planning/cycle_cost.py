@@ -18,7 +18,7 @@ class CycleCost:
     """Size of a table and its cost."""
 
     pitches: int
-    """Base pitches of the period."""
+    """Number of base pitches of the period."""
     positions: int
     """Positions in each base pitch; the least number where they are placed adaptively."""
     alignments: int

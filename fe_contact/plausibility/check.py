@@ -200,7 +200,7 @@ assessed = Checklist(CHECKS).assessed
 
 
 SOLVED = ("hertz_pressure", "transmission_error")
-"""Checks that a table answers by its own figures."""
+"""Names of the checks that a solved table assesses by its results."""
 
 
 def merged(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:

@@ -132,7 +132,7 @@ def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
-    """Return what errors within bands (P, C) around curves (P, C) can do to the quantities, (23, C) in m.
+    """Return the largest errors of quantities by errors within bands (P, C) of curves (P, C), (23, C); m.
 
     To the mean their mean, to peak-to-peak their sum at both extremes, to any order twice their mean.
     """

@@ -55,7 +55,9 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
 """Dimensions of the arrays that some tables do not have: they are empty there."""
 MISALIGNMENT, CENTER_DISTANCE = GRID[2:]
 INSERTED = {MISALIGNMENT: "misalignment_inserted", CENTER_DISTANCE: "center_distance_inserted"}
-"""Marks of inserted nodes by axis; those of loads are support loads between two of the axis."""
+"""Names of the marks of inserted nodes by axis; inserted loads are support loads between two loads of the
+axis.
+"""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -78,7 +80,7 @@ class SteFields:
     force: FloatArray
     """Total normal tooth force F_bn in N, increasing, > 0. Shape (F,)."""
     torque: FloatArray
-    """The same loads as torque on gear 1 in N m. Shape (F,)."""
+    """Torque on gear 1 of the loads, N m. Shape (F,)."""
     misalignment: FloatArray
     """Tilt of the axes in the plane of action as growth of the gap over the common face width, m; zero at the
     pitch point in mid-face. In tables without `load_arm` a helix slope, zero at mid-face. Shape (M,).
@@ -90,8 +92,8 @@ class SteFields:
     `position` - floor(`position`) + j. Shape (N,).
     """
     static_transmission_error: FloatArray
-    """m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
-    Shape (P, F, M, D).
+    """Transmission error along the transverse line of action, m, positive = the driven gear lags; NaN where
+    the solve failed. Shape (P, F, M, D).
     """
     tangent_compliance: FloatArray
     """d STE / d F_bn in m/N, > 0. Shape (P, F, M, D)."""
@@ -127,8 +129,8 @@ class SteFields:
     support_transmission_error: FloatArray = field(default_factory=lambda: np.empty(0))
     support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
-    """`support_transmission_error`, `support_tangent_compliance`, `support_pairs_in_contact`: As the arrays
-    of the same names without `support`. Shape (P, S, M, D) each.
+    """`support_transmission_error`, `support_tangent_compliance`, `support_pairs_in_contact`: Arrays at the
+    support loads, as the arrays of these names without `support`. Shape (P, S, M, D) each.
     """
     period: int = 1
     """Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike."""

@@ -100,7 +100,7 @@ def _factors(factor: FloatArray, weight: FloatArray, order: IntArray) -> None:
 
 @inner(nogil=True, error_model="numpy")
 def _value(numbers: FloatArray, offset: IntArray, factor: FloatArray, level: int) -> float:
-    """Return one level at the query that was placed: `LevelGrid._sum`."""
+    """Return the value of one level at the query that was placed: `LevelGrid._sum`."""
     total, corners = 0.0, offset.size
     for corner in range(corners):
         start = offset[corner] + level * corners

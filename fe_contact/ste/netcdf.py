@@ -239,7 +239,7 @@ def _period(path: Path, attributes: Json) -> int:
 
 
 def _before(period: int) -> str:
-    """Return what the checksum of the arrays begins with: the period if it is not 1."""
+    """Return the beginning of the bytes of the checksum: the period if it is not 1."""
     return f"period {period};" if period != 1 else ""
 
 

@@ -22,7 +22,7 @@ class OperatingPoint:
     """Total normal tooth force F_bn, N."""
     misalignment: float
     center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
 
 
 def operating_point(

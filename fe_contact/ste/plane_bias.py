@@ -35,7 +35,7 @@ class PlaneBias:
     """
 
     def correction(self, mean: FloatArray, peak_to_peak: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what to add to mean and peak-to-peak (...) in the plane, and its error, each (2, ...) in m.
+        """Return the correction of mean and peak-to-peak (...) in the plane, and its error, (2, ...) in m.
 
         Teeth that bend more change a ripple that reliefs hide by as much as another ripple, but with either
         sign. Nothing is added to a hidden ripple, and its error is the whole change.
@@ -84,7 +84,7 @@ class PlaneBias:
 
     @classmethod
     def from_json(cls, content: Json) -> PlaneBias:
-        """Return that of a receipt."""
+        """Return the bias that a receipt states."""
         return cls(
             content["subject"],
             content["mean"],
@@ -112,7 +112,7 @@ class OverFace:
 
 
 def over_face(bias: PlaneBias, mean: Estimate, peak_to_peak: Estimate) -> OverFace:
-    """Return what a plane solution says of the gears; the two errors are independent."""
+    """Return mean and peak-to-peak of the gears from a plane solution; the two errors are independent."""
     added, errors = bias.correction(np.array(mean.value), np.array(peak_to_peak.value))
     return OverFace(
         *(

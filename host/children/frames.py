@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, BinaryIO, Self
 
 LONGEST_HEAD = 200
-"""Bytes of a head, without the end of its line."""
+"""Largest number of bytes of a head, without the end of its line."""
 Head = tuple[str, int]
 """Kind and length of the body."""
 
@@ -29,7 +29,7 @@ class Frame:
         return cls(kind, json.dumps(content).encode())
 
     def as_json(self) -> Any:
-        """Return what the body says as JSON."""
+        """Return the body, read as JSON."""
         return json.loads(self.body)
 
     @property

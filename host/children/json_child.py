@@ -98,7 +98,7 @@ def _ask(request: str, watch: Watch, command: Sequence[str]) -> dict[str, Any]:
 
 
 def _communicated(child: subprocess.Popen[str], request: str, watch: Watch) -> tuple[str, str]:
-    """Return what a child prints on both its outputs, once it has ended."""
+    """Return both outputs of a child, once it has ended."""
     unsent: str | None = request
     while True:
         try:

@@ -242,5 +242,5 @@ class _ForkedChild:
 
 
 ChildProcess: TypeAlias = _StartedChild | _ForkedChild
-"""The leader of a session of its own: an id of its own until it is reaped."""
+"""Child that leads a session. Its id stays reserved until it is reaped."""
 Launch: TypeAlias = Callable[[Ends], ChildProcess]

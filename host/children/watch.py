@@ -33,7 +33,7 @@ class Watch:
         return time.monotonic() >= self.end
 
     def excess(self, child: int) -> str:
-        """Return what a child writes beyond its limits, "" if nothing."""
+        """Return the text of the limits that a child's writing exceeds, "" if none."""
         if self.folder is None or self.limits is None:
             return ""
         return excess(child, self.folder, self.limits)

@@ -25,7 +25,7 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
     "torque": ("load.torque_n_m", ("load.normal_force_n",)),
 }
-"""Option to the path it sets, and those that it leaves out."""
+"""Path that each option sets, and paths that it then leaves out."""
 _OF_ONE = ("output", "json", "csv")
 """Options that hold one file, or one object, for one case."""
 

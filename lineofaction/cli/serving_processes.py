@@ -1,4 +1,4 @@
-"""Several serving processes on one socket, and beside them the scheduler of their jobs."""
+"""Serving processes on one socket, and the scheduler of their jobs in the process that starts them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cases and scenes of files, assessed, and what work on them is predicted to cost."""
+"""Cases and scenes of files with their warnings, and the predicted cost of work on them."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from model_studies.progress import ANNOUNCED
 
 _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
-"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
-counts."""
+"""CPU seconds of reading a run, of a second of sound, and of a second of sound at a microphone, with the
+figures of hearing."""
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:

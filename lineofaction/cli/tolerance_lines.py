@@ -1,4 +1,4 @@
-"""Lines about a tolerance: drafts while an analysis refines, its passes, and whether it is met."""
+"""Lines about a tolerance: drafts during refinement, passes, and the final verdict."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ Json = dict[str, Any]
 _current: ContextVar[_Warned] = ContextVar("warned")
 
 _UNIT = re.compile(r"(?: |\b)(?:N|kg|CPU) [ms](?![a-z])")
-"""A unit of two words, and what is before it: lines break neither."""
+"""Pattern of a unit of two words with the word before it; lines break neither."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""The jobs of a service: submit, look, wait, list, dismiss; whatever the processes compute."""
+"""Calls on the jobs of a service, for any process: submit, look, wait, list, dismiss."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _PAGE = 100
 
 _LONGEST_PAUSE_S = 2.0
 _REFERENCES = {"response": "document", "transmissionMode": "reference"}
-"""Whatever form a job was submitted with: say where its result is."""
+"""Members of an execution by which the service answers with the address of the result."""
 
 
 def pages(

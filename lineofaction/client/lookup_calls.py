@@ -1,4 +1,4 @@
-"""Calls for what a service says before anything is computed: plans, drawings, examples, effects, files."""
+"""Calls before anything is computed: plans, drawings, examples, effects, files."""
 
 from __future__ import annotations
 

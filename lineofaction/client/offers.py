@@ -1,4 +1,4 @@
-"""The processes of a service as the client offers them: what they take, and how their results are read."""
+"""The processes of a service as the client offers them: arguments, and readers of their results."""
 
 from __future__ import annotations
 

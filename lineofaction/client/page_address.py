@@ -54,7 +54,7 @@ class PageAddress:
     names: Mapping[str, str]
     """The database by its hash and jobs by their identifiers, the newest last."""
     case: schemas.Case | None
-    """The design as typed, where it is not that of the result or of a job."""
+    """The design as typed; None: the design of the result or of a job."""
     views: Mapping[str, str]
     """Words that say how the page looks at the results."""
 

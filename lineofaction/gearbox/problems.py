@@ -197,7 +197,7 @@ class QueueFull(TryLater):
 
 
 class NotAnalyzed(_Failed):
-    """There is nothing to answer a live question from."""
+    """The service lacks what a live question is answered from."""
 
     status = 409
     type = f"{_OURS}not-analysed"

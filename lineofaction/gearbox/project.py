@@ -152,7 +152,7 @@ class ResultState:
 
     name: str
     verb: str
-    """`name`, `verb`: Of the file, relative to the folder, and of the verb that makes it."""
+    """`name`, `verb`: Name of the file relative to the folder, and the verb that writes the file."""
     state: str
     """Stale: a file of the folder that says what is computed is newer."""
     source: Path | None = None

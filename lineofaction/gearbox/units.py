@@ -1,4 +1,4 @@
-"""Units at the boundary: what one of each is in SI, by the ending of the fields' names."""
+"""Units at the boundary: the SI value of one unit, by the ending of the fields' names."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ UNITS: dict[str, Unit] = {
     "_mib": Unit("MiB"),
     "_mb": Unit("MB"),
 }
-"""The unit that the ending of a name states. An ending stands before those that it ends with."""
+"""Unit by the ending of a name. A longer ending stands before its own shorter endings."""
 
 BY_SUFFIX = {ending: unit for ending, unit in UNITS.items() if unit.factor != 1.0}
 """The endings of units that are not SI's."""

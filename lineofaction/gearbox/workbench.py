@@ -46,7 +46,7 @@ from model_studies.workers.content_digest import content_digest
 
 
 class InputWarning(UserWarning):
-    """Warning of an implausible input, or of a part that is left out of it."""
+    """Warning of an implausible input, or of a part that an import leaves out."""
 
 
 def open_unit(

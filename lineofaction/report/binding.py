@@ -1,4 +1,4 @@
-"""Reports of the parts of one unit bound as one: what several say of the same stands side by side, once."""
+"""Binding of the reports of a unit's parts: figures of several parts stand side by side, once."""
 
 from __future__ import annotations
 

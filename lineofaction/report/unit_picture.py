@@ -25,7 +25,7 @@ from lineofaction.report.drawing.page import Page, Section
 SIZE = (1000, 560)
 """Pixels across and down."""
 ABOVE, EDGE = 14.0, 6.0
-"""Pixels above and below the unit, and beside its names."""
+"""Pixels above and below the unit, and at the sides of its names."""
 COLORS = {
     SHAFT: (0.62, 0.64, 0.67),
     BEARING: (0.42, 0.46, 0.52),

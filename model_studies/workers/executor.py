@@ -20,18 +20,24 @@ from typing import Any, Generic, Protocol, TypeVar
 from host import children_cpu_seconds, cpu_seconds, peak_memory
 
 MAX_SHARED = 2
-"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
+"""Number of shared inputs that a thread of a worker keeps. An input that it prepared once serves all its
+tasks.
+"""
 _local = threading.local()
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
 LARGE = 100_000
-"""Bytes; what tasks share beyond that goes by a file and not with each of them."""
+"""Size above which the shared input of tasks goes by a file, not with each task, bytes."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 START_SECONDS = 10.0
-"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
+"""Least predicted CPU seconds of tasks for which two new processes are started, which load program and
+compiled code. Less work stays in this process.
+"""
 AWAKE = 0.1
-"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
+"""Part of `START_SECONDS` from which workers that have done tasks get further ones: they may have to load the
+inputs of other tasks.
+"""
 
 
 class WorkersLost(Exception):
@@ -56,13 +62,13 @@ class Packed:
         return cls(content, hashlib.sha256(content).hexdigest())
 
     def in_file(self, folder: Path) -> Packed:
-        """Put it into a file of the folder."""
+        """Write the shared input into a file of the folder."""
         file = folder / self.digest
         file.write_bytes(self.content)
         return Packed(b"", self.digest, file)
 
     def unpacked(self) -> Any:
-        """Return it; the same object for all tasks of a thread, so that what it keeps is kept."""
+        """Return the shared input, one object for all tasks of a thread, so that its caches last."""
         known: dict[str, Any] = _local.__dict__.setdefault("known", {})
         if self.digest not in known:
             while len(known) >= MAX_SHARED:
@@ -101,7 +107,7 @@ class RunCost:
     lost: str = ""
 
     def since(self, before: RunCost) -> RunCost:
-        """Return what was spent after another reading of the same; the peak is that of all."""
+        """Return the cost since an earlier reading of the same cost; the peak is that of the whole time."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
         return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 

@@ -19,7 +19,7 @@ from service.access.quotas import Quota
 
 _RETRY_S = 1
 NOBODY = ""
-"""Holder of what callers without a key hold."""
+"""Name of the holder that stands for all callers without a key."""
 
 logger = structlog.get_logger(__name__)
 _MINUTE_S = 60.0

@@ -1,4 +1,4 @@
-"""The public keys of an OpenID Connect issuer: fetched from it alone, and anew when they change."""
+"""The public keys of an OpenID Connect issuer: fetched from the issuer, and anew when they change."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from lineofaction.gearbox.problems import IssuerUnavailable, Unauthorised
 Json = dict[str, Any]
 logger = structlog.get_logger(__name__)
 FRESH_S, STALE_S = 3600.0, 86_400.0
-"""Keys are fetched anew after so long; while the issuer does not answer they are good for so long."""
+"""Seconds after which keys are fetched anew, and seconds for which keys stay valid while the issuer does not
+answer."""
 PAUSE_S = 10.0
-"""Between attempts: tokens with made-up key identifiers do not make us ask more often."""
+"""Seconds between attempts to fetch keys: tokens with made-up key identifiers cause no more attempts."""
 _TIMEOUT_S = 5.0
 _LARGEST = 1_000_000
 _DISCOVERY = "/.well-known/openid-configuration"

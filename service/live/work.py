@@ -1,4 +1,4 @@
-"""The work of the live worker: curves of other flanks, and plans; in its own process, never the service's."""
+"""The work of the live worker, never of the service's process: curves of other flanks, and plans."""
 
 from __future__ import annotations
 

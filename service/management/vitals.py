@@ -38,7 +38,7 @@ class EventLoop:
 
 @dataclass(frozen=True)
 class Vitals:
-    """The signs of one process. A fault is a sentence; empty: there is none.
+    """The signs of life of one process. A fault is a sentence; empty: no fault.
 
     `serving`: returns the fault of what else it does: of the loop that answers requests.
     """

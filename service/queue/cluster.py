@@ -129,7 +129,7 @@ class Task:
 
 
 class Cluster:
-    """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
+    """The tasks of a server on a shared Dask scheduler; a `deployment` distinguishes the servers.
 
     `maximum` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """

@@ -1,4 +1,4 @@
-"""Differences of a job: its inputs that are not those of its caller's job before it."""
+"""Differences between the inputs of a job and of its caller's job before it."""
 
 from __future__ import annotations
 

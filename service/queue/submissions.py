@@ -25,7 +25,7 @@ from service.store.results import USE_NOTED_EVERY_S, Mark
 from service.store.retries import optional, retried
 
 _FORMER = 200
-"""Jobs of a caller, the newest first, among which one of the process is sought."""
+"""Number of a caller's newest jobs among which the job before of the same process is sought."""
 
 
 # made once: composing them takes longer than running them
@@ -47,7 +47,7 @@ _NEWEST = (
 
 
 class Submissions:
-    """Jobs as the callers of one project see them; of all projects so many computations may wait."""
+    """Jobs of the callers of one project; the queue limits the waiting computations of all projects."""
 
     def __init__(self, engine: Engine, queue_limit: int, project: str = COMMON) -> None:
         self._engine = engine

@@ -1,4 +1,4 @@
-"""Whom a request may have called about its job, and what they are told."""
+"""Addresses that a request may have called about its job, and the bodies of the calls."""
 
 from __future__ import annotations
 

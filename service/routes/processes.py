@@ -51,7 +51,8 @@ logger = structlog.get_logger(__name__)
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
 _MAX_SPECIFIED = 65_536
-"""Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
+"""Most characters of a caller's inputs that are stored with each job, in addition to the inputs of its
+computation."""
 IdempotencyKey = Annotated[
     str | None,
     Header(

@@ -130,7 +130,11 @@ async def result_motion(
     context: Ctx,
     number: Annotated[
         int | None,
-        Query(ge=0, lt=_MAX_MOTIONS, description="Of the motion among those listed, from 0; left out: none"),
+        Query(
+            ge=0,
+            lt=_MAX_MOTIONS,
+            description="Number of the motion in the list, from 0; left out: the list alone",
+        ),
     ] = None,
 ) -> Response:
     """Return how shafts move in a mode or under a load case, and how the surface of a housing does."""

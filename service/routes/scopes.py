@@ -40,7 +40,7 @@ def needs(
 
 
 class ScopedRoute(APIRoute):
-    """A route that callers with its scope reach; there is none whose endpoint declares no scope."""
+    """A route that callers with its scope reach; an endpoint without a scope cannot be a route."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)

@@ -88,7 +88,7 @@ _LOCKED = "55P03"  # by others, for longer than lock_timeout
 
 
 class _Commits(Protocol):
-    """A connection of its own that hears of commits; of the thread that made it alone."""
+    """A connection that hears of commits, for the thread that made it."""
 
     def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""

@@ -1,4 +1,4 @@
-"""The table of what lists of jobs are chosen and ordered by, and the triggers that keep it.
+"""The table by which lists of jobs are filtered and sorted, and the triggers that maintain it.
 
 Jobs and computations are wide rows with their inputs; a list looks at narrow ones, by an index that has its
 order. The database itself keeps them, so that they are right whichever program writes, a former one too.
@@ -32,7 +32,7 @@ INDEXES = {
     "listing_by_start": ("project", "parent", "running_since"),
     "listing_by_result": ("key", "parent", "rank", "created", "job"),
 }
-"""Columns of the indexes, in order. A list takes its entries in the order of time from one of them."""
+"""Columns of the indexes, in order. A list reads its entries in the order of time from one index."""
 
 _TEXTS = ("job", "project", "parent", "created", "key", "process", "state", "title_folded", "tags")
 _FAILED = f"IN {IN_VAIN}"

@@ -1,4 +1,4 @@
-"""Check whether a service can write, by a trial write on request, in a thread of its own."""
+"""Check whether a service can write, by a trial write in a separate thread."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class _Writable:
 
 
 class WriteCheck:
-    """Writes to database and place of results, at most once in `VALID_S`, whoever asks.
+    """Trial writes to the database and the place of results, at most once in `VALID_S`.
 
     What a look through the database finds damaged counts as not written.
     """

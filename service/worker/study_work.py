@@ -1,4 +1,4 @@
-"""The work of studies, done in a child process of its own."""
+"""The work of studies in a child process."""
 
 from __future__ import annotations
 

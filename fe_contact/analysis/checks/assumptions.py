@@ -26,7 +26,8 @@ from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 
 MIN_BACKLASH = 1e-9
-"""m; teeth without a thickness allowance have none but rounding."""
+"""Least backlash that counts, m. Teeth without a thickness allowance have only rounding errors as backlash.
+"""
 
 
 @dataclass(frozen=True)

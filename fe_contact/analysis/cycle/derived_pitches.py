@@ -327,7 +327,7 @@ def _support_arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[An
 
 
 def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
-    """Return what a receipt says of the contact in pitches that were not solved."""
+    """Return the receipt's fields of the contact in pitches that were not solved."""
     shape = envelope.minimum.ste.shape
     return {
         "status": np.full(shape, int(Status.CONVERGED)),
@@ -340,7 +340,7 @@ def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
 def _contact(
     first: SolvedContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
 ) -> SolvedContact:
-    """Return what a table keeps; problem and forces are those of the first pitch."""
+    """Return the contact as a table stores it; problem and forces are those of the first pitch."""
     solved = {
         name: _flat(envelope.exact_in(values, envelope.arrays[name][1:])) for name, values in arrays.items()
     }

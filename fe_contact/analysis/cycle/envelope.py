@@ -291,7 +291,7 @@ class Envelope:
         return self.exact_in(self.minimum.ste - self.drawn_errors.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
-        """Return one quantity that is followed in the same way, (T, P, L)."""
+        """Return the followed quantity q, corrected as the transmission error is, (T, P, L)."""
         values = self.minimum.sums[..., q] - self.drawn_sum_errors(q).correction
         return self.exact_in(values, self.exact_sums[..., q])
 
@@ -302,7 +302,7 @@ class Envelope:
         return values
 
     def nearest(self, name: str) -> NDArray[Any]:
-        """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
+        """Return the kept array of the state whose tangent is least, by its name, (T, P, L, ...)."""
         p, load = np.indices(self.minimum.state.shape[1:])
         return np.asarray(self.arrays[name][self.minimum.state, p, load])
 
@@ -314,7 +314,7 @@ class Envelope:
         return errors
 
     def sum_errors(self, q: int) -> FloatArray:
-        """Return the same of one quantity that is followed; both ends may be missed by the most."""
+        """Return the errors of curves of the followed quantity q; both ends may have the largest error."""
         drawn = self.drawn_sum_errors(q)
         errors = drawn.quantity_errors
         errors[PEAK_TO_PEAK] = 2.0 * drawn.error

@@ -38,7 +38,7 @@ class ToothGaps:
 
     @classmethod
     def of(cls, pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> ToothGaps:
-        """Find those of the `tooth_gaps` of a model, where the flanks without them touch."""
+        """Return the `tooth_gaps` of a model where the flanks without them touch."""
         first, second = (_by_tooth(pair, candidates, gear, model) for gear in (0, 1))
         return cls(np.unique(candidates.pair), model.period, (first, second))
 
@@ -83,7 +83,7 @@ class LoadSums:
         return self.value[p, load] - self.at_state[p, load] + self._added(gaps, pitches, t, p, load)
 
     def about(self, gaps: ToothGaps, pitch: int) -> LoadSums:
-        """Return the same about the state of a base pitch."""
+        """Return the means about the state of a base pitch."""
         p, load = (index.ravel() for index in np.indices(self.value.shape[:2]))
         added = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
         return replace(self, at_state=added.reshape(self.value.shape))
@@ -116,7 +116,7 @@ class Tangent:
     """Means over the load about the same state."""
 
     def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
-        """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
+        """Return the motion by the teeth that meet in pitches (t,), over the state, (J, t, P, L) in m."""
         (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
         beyond = driving - self.at_state[:, None]
         motion = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
@@ -187,6 +187,6 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
 
 
 def _sums_by_tooth(added: FloatArray, loads: int) -> FloatArray:
-    """Return what teeth add (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
+    """Return the contributions of teeth (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
     by_tooth = np.swapaxes(added, 1, 2)
     return np.ascontiguousarray(by_tooth).reshape(*by_tooth.shape[:3], loads, -1)

@@ -23,7 +23,7 @@ from model_studies.stage_clock import StageClock
 MAX_PASSES = 4
 
 OnDraft = Callable[[SteDatabase, str], None]
-"""Called with the table of a pass that is refined, and what is refined in words."""
+"""Callback for the table of a pass that is refined, and the refined parts in words."""
 
 
 @dataclass(frozen=True)

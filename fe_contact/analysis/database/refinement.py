@@ -26,7 +26,7 @@ from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
 
 AIM = 0.9
-"""Part of the tolerance that a pass is planned to use; the rest is for what predictions miss."""
+"""Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
 """Factor within which predictions are right: no pass begins where even the finest is too far off by it."""

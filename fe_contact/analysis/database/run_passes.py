@@ -38,7 +38,7 @@ class Pass:
         return f"{self.decision.checked.model_name}, {self.decision.mesh.option.name}"
 
     def to_json(self) -> Json:
-        """Return what ran, what it cost, what it used, and what was refined before it and why."""
+        """Return model, discretization, cost and refinement of the pass as plain JSON."""
         mesh, made, table = self.decision.mesh, self.refinement, self.table
         failed = {"failure": self.failure} if self.failure else {}
         return failed | {

@@ -99,7 +99,7 @@ class AssessedTable:
         return with_errors if self.inserted is None else with_support_loads(with_errors, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
-        """Return them with what derivatives miss, if any base pitch of the table is by them."""
+        """Return the errors with those of derivatives, if any base pitch of the table follows from them."""
         if derived is None or not derived.tables:
             return self
         errors = [table.errors[:3] for table in derived.tables]
@@ -113,7 +113,7 @@ class AssessedTable:
         )
 
     def to_json(self) -> Json:
-        """Return what the receipt says of the errors."""
+        """Return the receipt's fields of the errors as plain JSON."""
         sources = {"error_by_source": self.by_source, "held_out": self.held_out}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
         return sources | bias | _summary(self.curve_error)
@@ -189,7 +189,7 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
 
 
 def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
-    """Return what the plane leaves out of the curves of a table."""
+    """Return the bias of the plane model in the curves of a table."""
     pair, ste = points.nominal.pair, table.static_transmission_error
     bias = plane_bias(pair, plan.discretization)
     mean = mean_of_curves(table.position, ste, table.period)

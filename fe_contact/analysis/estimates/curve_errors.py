@@ -161,7 +161,7 @@ def _changes(
 def _off_mesh_by_load(
     points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
 ) -> FloatArray:
-    """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
+    """Return the largest contribution of load to an order that is no mesh order, (F, M, D) in m.
 
     What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
     """

@@ -72,7 +72,7 @@ def used_at_nodes(shares: FloatArray, request: Request) -> FloatArray:
 def interval_goal(
     table: SteDatabase, at_nodes: FloatArray, request: Request, bias: PlaneBias | None
 ) -> IntervalGoal:
-    """Return what errors at nodes (6, 23, F, M, D) in m leave of the tolerance of a request to intervals."""
+    """Return the share of a tolerance that errors at nodes (6, 23, F, M, D), m, leave to intervals."""
     tolerance = request.options.allowed
     shares = _with_bias(table, at_nodes, bias) / allowed_errors(table, tolerance)
     return IntervalGoal(tolerance, used_at_nodes(shares, request))

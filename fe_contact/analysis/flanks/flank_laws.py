@@ -147,6 +147,6 @@ class _Flanks:
         return half_width(load, radius, self.problem.modulus)
 
     def _among(self, places: _Places) -> Callable[..., str]:
-        """Return what names a place by its number among `places`, indices of arrays (P, N K)."""
+        """Return a function that names a place by its number among `places`, indices of arrays (P, N K)."""
         stretches = self.flanks.face_position.size
         return lambda i: self._at(int(places[0][i]), *divmod(int(places[1][i]), stretches))

@@ -21,7 +21,7 @@ class FlankScene:
     """`normal_force`, `torque`: F_bn in N and the torque on the driving gear in N m."""
     misalignment: float
     center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
     start_of_active_profile: Both
     pitch_point: Both
     tip: Both

@@ -57,7 +57,7 @@ class LoadDistribution:
     """One load on P positions, N tooth pairs and K stretches of the common face, several a slice."""
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (N,)."""
     face_position: FloatArray
@@ -66,8 +66,8 @@ class LoadDistribution:
     """Static transmission error, m. Shape (P,)."""
     roll_length_1: FloatArray
     roll_length_2: FloatArray
-    """`roll_length_1`, `roll_length_2`: Where the flanks touch or come closest, on either gear, m. Shape (P,
-    N, K) each.
+    """`roll_length_1`, `roll_length_2`: Roll lengths on either gear at which the flanks touch or come
+    closest, m. Shape (P, N, K) each.
     """
     on_path: BoolArray
     """Whether any part of the stretch lies between A and E, where plain involutes touch. Shape (P, N, K)."""
@@ -159,7 +159,7 @@ class LoadDistribution:
         return _estimate(largest, self.errors.largest_face_load_factor, "1")
 
     def at(self, positions: BoolArray) -> LoadDistribution:
-        """Return the same at some of the positions (P,), without errors."""
+        """Return the load distribution at some of the positions (P,), without errors."""
         per_position = {name: getattr(self, name)[positions] for name in _PER_POSITION}
         edge = np.broadcast_to(self.at_edge, self.force.shape)[positions]
         return replace(self, **per_position, at_edge=edge, errors=FlankErrors())

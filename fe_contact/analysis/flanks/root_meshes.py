@@ -9,7 +9,9 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 
 FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
-"""Elements along the root, and their depth below both flanks, against those of the contact's sectors."""
+"""Number of elements along the root, and element size in the depth below both flanks, over those of the
+sectors of the contact.
+"""
 
 
 @dataclass(frozen=True)

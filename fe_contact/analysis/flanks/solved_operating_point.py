@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray, Json, Status
 from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
-"""Over one mesh cycle, where none are requested."""
+"""Number of positions over one mesh cycle where none is requested."""
 LISTED = 5
 """Positions without a solution that a message names."""
 

@@ -46,7 +46,7 @@ class CondensedContacts:
         )
 
     def with_flanks(self, pair: ParallelAxes) -> CondensedContacts:
-        """Return the same bodies with other flanks; they share what is assembled.
+        """Return the bodies with other flanks; they share the assembled compliance.
 
         Where flanks touch does not depend on the bodies. The contacts in the same slices share one record of
         it, which `touch` fills; other slices do not fit that record.
@@ -85,7 +85,7 @@ class CondensedContacts:
             self.fine.keep_rows(model, position, rows)
 
     def at_distance(self, change: float) -> CondensedContacts:
-        """Return the same bodies at a center distance larger by `change` in m; nothing is assembled there.
+        """Return the bodies at a center distance larger by `change`, m; nothing is assembled at it.
 
         What is assembled (`_problems`) depends on the center distance, so it is not shared.
         """

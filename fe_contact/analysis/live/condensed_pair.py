@@ -200,7 +200,7 @@ class CondensedPair:
     def posed(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
     ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
-        """Return what the contact is solved with: request, bodies with the flanks, positions and plan.
+        """Return the data of a contact solution: request, bodies with the flanks, positions and plan.
 
         Parameters and errors are those of `table`.
         """
@@ -306,7 +306,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 
 
 def _plain(pair: Any) -> list[object]:
-    """Return what a pair is but for the modification of its flanks."""
+    """Return the pair without the modification of its flanks."""
     gears = pair.pinion, pair.wheel
     sizes = [getattr(pair, part.name) for part in fields(pair) if part.name not in ("pinion", "wheel")]
     for gear in gears:

@@ -37,7 +37,7 @@ from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers
 
 TASK_SECONDS = 0.1
-"""CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
+"""Predicted CPU seconds of a block: five times the cost of its distribution by Dask."""
 
 R = TypeVar("R")
 
@@ -130,7 +130,7 @@ def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
 
 
 def _joined_contact(parts: list[SolvedContact], problem: ContactProblem, pitches: int) -> SolvedContact:
-    """Put what is kept of the blocks of a line together; forces are those of one base pitch."""
+    """Join the contacts of the blocks of a line; forces are those of one base pitch."""
     solutions = [part.solution for part in parts]
     forces = _rows([solution.force for solution in solutions], 1)
     solution = replace(_joined_arrays(solutions, pitches, ("load", "force")), force=forces)

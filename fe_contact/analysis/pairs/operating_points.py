@@ -93,20 +93,20 @@ class OperatingPoints:
         return self._with_contacts(lambda contact: contact.in_coarse_patches)
 
     def on_bodies(self, nominal: PairContact) -> OperatingPoints:
-        """Return the same places over other compliances of the gears, those of `nominal`."""
+        """Return the operating points over other compliances of the gears, those of `nominal`."""
         points = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
         return replace(points, nominal=nominal)
 
     def on(self, contact: PairContact) -> OperatingPoints:
-        """Return the same places, which are of one center distance, with another contact."""
+        """Return the operating points, which are of one center distance, with another contact."""
         return self._with_contacts(lambda _contact: contact)
 
     def in_slices(self, count: int) -> OperatingPoints:
-        """Return the same places in other slices."""
+        """Return the operating points in another number of slices."""
         return self._with_contacts(lambda contact: contact.in_slices(count))
 
     def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> OperatingPoints:
-        """Return the same places with other contacts; those of one center distance share their compliance."""
+        """Return the operating points with other contacts; one center distance has one compliance."""
         contacts = {id(point.contact): change(point.contact) for point in self.places}
         points = tuple(replace(point, contact=contacts[id(point.contact)]) for point in self.places)
         return replace(self, places=points)

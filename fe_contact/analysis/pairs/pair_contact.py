@@ -65,7 +65,9 @@ class PairContact:
     """Compliances in the plane before the correction for the finite width; None if there was no correction.
     """
     varied: bool = False
-    """Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not."""
+    """Whether the flanks of the pair are to vary. Problems then have the change of the compliance along the
+    flanks, with or without slopes.
+    """
     touches: dict[bytes, Touch] = field(default_factory=dict, repr=False)
     """Touching points of the flanks under the gaps of the one model that the pair is used with, by the bytes
     of the positions. Where the mapping lacks positions, each problem finds its own touching points.
@@ -147,7 +149,7 @@ class PairContact:
         return replace(self, plane=self.uncorrected, uncorrected=None, _problems={})
 
     def in_slices(self, count: int) -> PairContact:
-        """Return the same bodies in another number of slices; itself in the plane."""
+        """Return the contact with another number of slices; itself in the plane."""
         made = self.plan.discretization
         if not isinstance(made, FaceDiscretization):
             return self
@@ -177,7 +179,7 @@ class PairContact:
         return contact_candidates(self.pair, model, position, self.plan.patch, slices)
 
     def key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
-        """Return what a kept compliance depends on, beside the bodies."""
+        """Return the key of an assembled compliance for the same bodies."""
         return (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
 
     def _keep(self, model: ContactModel, candidates: Candidates) -> None:

@@ -81,7 +81,7 @@ class Decision:
         return self.checked.predicted(self.plan, cache)
 
     def to_json(self) -> Json:
-        """Return what was chosen, as plain JSON."""
+        """Return the chosen model and mesh as plain JSON."""
         return {"model": self.checked.model_name} | self.mesh.to_json()
 
 

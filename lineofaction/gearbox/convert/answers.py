@@ -22,7 +22,7 @@ GEARS = "pinion", "wheel"
 _RIPPLE = np.linspace(0.0, 2.0, 49)
 """Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
 _NOTHING = 1e-12
-"""m: what rounding leaves."""
+"""Length in m below which a value is rounding."""
 
 
 def curve_json(

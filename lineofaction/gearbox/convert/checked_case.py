@@ -1,4 +1,4 @@
-"""Cases that can be computed: what a schema cannot check and a request can afford."""
+"""Cases with the checks that a schema cannot do: feasibility and predicted cost."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class CheckedCase:
 
     @property
     def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
-        """All three, as the library takes them."""
+        """Pair, axes and options, as the library takes them."""
         return self.pair, self.axes, self.options
 
     @cached_property

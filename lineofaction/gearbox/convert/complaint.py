@@ -37,7 +37,7 @@ from model_studies import in_unit
 KM_H = 1.0 / 3.6
 HARMONICS, TOLERANCE = 10, 0.05
 NEAREST, NAMED = 6, 3
-"""Harmonics that are listed beside a complaint, and that are named where none passes."""
+"""Number of harmonics listed around the order of a complaint, and number named if none passes."""
 EXCITATION, HARMONIC = "excitation", "harmonic number"
 """Grounds on which harmonics near a complaint are ranked: by the force that excites, or, where no force is
 known, as if the force fell with the number of the harmonic.

@@ -1,4 +1,4 @@
-"""The effect ledger of a table or a run, its influences, and what was checked, in lines for people."""
+"""The effect ledger of a table or a run, its influences and its checks, in lines for people."""
 
 from __future__ import annotations
 

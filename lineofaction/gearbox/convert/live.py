@@ -148,7 +148,7 @@ def _short(values: FloatArray) -> Any:
 
 @dataclass(frozen=True)
 class CondensedCase:
-    """A case whose gears have their compliance, and what its questions have in common."""
+    """A case with condensed gears, and state that its questions share."""
 
     case: Case
     pair: ParallelAxes

@@ -1,4 +1,4 @@
-"""Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
+"""Conversion of the tables of a scene file to parts in SI, by the fields that both declare.
 
 Scenes that have the same tables of a kind share its parts: they are made once, and the same objects.
 """

@@ -1,4 +1,4 @@
-"""The account of an import: what became of every component and attribute of a file."""
+"""The account of an import: the fate of every component and attribute of a file."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from lineofaction.gearbox.from_rexs.assumptions import ASSUMED, FORMER, attribut
 from lineofaction.gearbox.rexs.model import Attribute, Component, Model
 
 Fate = Literal["taken", "assumed", "derived", "defaulted", "ignored", "refused"]
-"""Taken as it is; assumed by the caller over the file; derived from other values; defaulted for want of a
-usable one; ignored, since nothing here uses it; refused with a reason: the unit has it, the scene has not."""
+"""Fates of a component or value: taken as it is; assumed by the caller over the file; derived from other
+values; defaulted, because no usable value is stated; ignored, because no analysis uses it; refused with a
+reason, because the unit has it and the scene cannot."""
 FATES: tuple[Fate, ...] = get_args(Fate)
 
 UNUSED = "no analysis uses it"
@@ -38,9 +39,9 @@ class Line:
 
 
 class Account:
-    """The account of one model. Whoever reads a value states what becomes of it; the last word counts.
+    """The account of one model. A reader of a value states the fate of the value; the last statement counts.
 
-    `model`: of the newest version.
+    `model` has the newest version of REXS.
     """
 
     def __init__(self, model: Model) -> None:

@@ -18,10 +18,10 @@ _REFERENCE = "reference_component_for_position"
 
 @dataclass(frozen=True)
 class Placement:
-    """A place in the model's own frame."""
+    """A point with axes u, v, w in the frame of the model."""
 
     origin: FloatArray
-    """m. Shape (3,)."""
+    """Origin in the frame of the model, m. Shape (3,)."""
     axes: FloatArray
     """Unit vectors u, v, w by rows, a right-handed system. Shape (3, 3)."""
 

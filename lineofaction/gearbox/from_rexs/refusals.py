@@ -1,4 +1,4 @@
-"""Refusals of an import: what a file has and its scene has not, by the reason."""
+"""Refusals of an import: parts of a file that its scene lacks, by the reason."""
 
 from __future__ import annotations
 

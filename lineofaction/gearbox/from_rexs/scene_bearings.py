@@ -22,12 +22,12 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
-"""N/m, and N m/rad, of a coupling that does not yield."""
+"""Stiffness, N/m and N m/rad, of a coupling that does not yield."""
 _CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
 
 
 class SceneBearings:
-    """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
+    """Tables of bearings and couplings as a scene file has them; the account says what is left out and why.
 
     `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
     """

@@ -21,7 +21,7 @@ class ShaftPart:
 
     component: int
     turn: FloatArray
-    """Takes components along u, v, w to x, y, z. Shape (3, 3)."""
+    """Rotation from components along u, v, w to x, y, z. Shape (3, 3)."""
     sense: int
     """+1 where u is along z, -1 where it is against it."""
     zero: float
@@ -34,7 +34,7 @@ class BearingPart:
 
     component: int
     turn: FloatArray
-    """Takes components along its u, v, w to x, y, z. Shape (3, 3)."""
+    """Rotation from components along the bearing's u, v, w to x, y, z. Shape (3, 3)."""
     shaft_inside: bool
     """Whether the shaft is on the inner side."""
 

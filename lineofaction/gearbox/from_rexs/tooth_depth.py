@@ -19,7 +19,7 @@ _ADDENDUM_BOUND, _DEDENDUM_BOUND = (0.1, 3.0), (0.1, 4.0)
 _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool", "profile_tool")
 
 _DIGIT = 1e-3 * MM
-"""Last digit of root diameters, m: those of one tool at one place differ by half of it at most."""
+"""Last digit of root diameters, m: root diameters by one tool at one place differ by half of it at most."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
 
 @dataclass(frozen=True)
 class _GeneratedRoot:
-    """Depth h_fP of the root in normal modules, and what removes the thickness allowance."""
+    """Depth h_fP of the root in normal modules, and the tool that removes the thickness allowance."""
 
     dedendum_coefficient: float
     tooth_thinning: str = GENERATING

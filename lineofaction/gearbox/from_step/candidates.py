@@ -12,7 +12,7 @@ from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.placement import Placement
 
 NEAR = 1e-4
-"""Distance from the axis of a bearing to that of its bore, m."""
+"""Largest distance from the axis of a bearing to the axis of its bore, m."""
 
 PARALLEL = 1e-4
 """Sine of the angle between axes that are parallel."""

@@ -121,7 +121,7 @@ class Element(ABC):
 
 @dataclass(frozen=True)
 class Written:
-    """An element to write: fields with a value in their order, and groups of what is inside."""
+    """An element to write: fields with a value in their order, and groups of inner elements."""
 
     name: str
     fields: dict[str, str | int]

@@ -1,4 +1,4 @@
-"""A file inside a scene: its name, and what it holds, compressed."""
+"""A file inside a scene: its name, and its compressed content."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FileContentInput(BoundaryModel):
     content: str = Field(
         min_length=1,
         max_length=_LARGEST_TEXT,
-        description="What it holds, compressed by zlib and written in Base64",
+        description="Content of the file, compressed by zlib and written in Base64",
         examples=["eJwDAAAAAAE="],
     )
 

@@ -1,4 +1,4 @@
-"""TOML of cases and scenes: read from anybody within bounds, written without what is not given."""
+"""TOML of cases and scenes: untrusted text read within bounds, written without fields that are not set."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
 OFF_MESH = 6
-"""Orders beside the mesh orders that are listed of a mesh."""
+"""Number of orders between the mesh orders that are listed for a mesh."""
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Excitation]:

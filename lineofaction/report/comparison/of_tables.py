@@ -43,7 +43,7 @@ _TORQUE_ROUNDING = 1e-9
 """Relative rounding by which the ends of two torque ranges may differ."""
 
 Named = dict[str, SteDatabase]
-"""One or two tables by the names they are shown under, in the order given."""
+"""One or two tables by the names of their curves, in the sequence of the call."""
 
 
 def compare_tables(

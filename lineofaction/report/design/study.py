@@ -1,4 +1,4 @@
-"""A study of scenes: maps and curves over the grid, distributions, what matters, worst and failed runs."""
+"""A study of scenes: maps and curves over the grid, distributions, influences, worst and failed runs."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ LIGHT = (0.1, 0.6, 0.1)
 SHADE = 0.34
 """Brightness of a surface without light."""
 CONTOUR = 0.4
-"""Brightness of an edge over that of its surface."""
+"""Brightness of an edge over the brightness of its surface."""
 FINER = 2
 """Rays per pixel, across and down."""
 SIDES = 48
@@ -153,7 +153,7 @@ def _end(z: float, radii: tuple[float, float], eye: FloatArray, ray: FloatArray,
 
 @dataclass(frozen=True)
 class _Cone:
-    """A wall about z between two ends: its radius at the lower one and what that gains along z."""
+    """A wall about z between two ends: its radius at the lower end, and the growth of the radius per z."""
 
     low: float
     high: float

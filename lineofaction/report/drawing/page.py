@@ -102,7 +102,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """A main result: what, its value and its error or remark."""
+    """A main result: its name, its value, and its error or remark."""
 
     name: str
     value: str
@@ -120,7 +120,7 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class Page:
-    """All of a report; `alarms` are what the reader must know before any number.
+    """The contents of a report; `alarms` are warnings to be read before any number.
 
     `records` are what its results were made from and with, by the names of their files.
     """

@@ -1,4 +1,4 @@
-"""An accuracy study: what was chosen, the knee, the plot, every fidelity, and what was not run."""
+"""Page of an accuracy study: the choice, the knee, the plot, every fidelity, and fidelities not run."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ from lineofaction.report.drawing.marks import order_label
 
 MAX_ORDERS, MAX_CAUSES = 6, 3
 MIN_NARROWED = 0.1
-"""dB."""
+"""Least amount in dB by which a measure must narrow a band to be advised."""
 
 NARROWER = {
     "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",

@@ -27,7 +27,7 @@ from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
 
 MIN_SHARE = 1e-3
-"""%, of what is listed."""
+"""Least share that is listed."""
 
 MAX_ORDERS, MAX_PEAKS, PRINTED_PEAKS = 6, 15, 4
 """Peaks of a quantity on the page and on a terminal."""

@@ -49,7 +49,7 @@ _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
 }
-"""Sources of error, and the unit of what they do to transmission errors."""
+"""Name of each source of error, and unit of the error of transmission errors by it."""
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:

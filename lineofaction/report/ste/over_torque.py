@@ -106,7 +106,7 @@ def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
 
 @dataclass(frozen=True)
 class _Deviation:
-    """One axis of more than one value: how it is named, its values, and the curves (n, F) there."""
+    """An axis with more than one value: its name, its values, and the curves (n, F) at these values."""
 
     name: str
     axis: Axis

@@ -1,4 +1,4 @@
-"""Mesh stiffness, load sharing, and what yields: parts of the mean transmission error."""
+"""Mesh stiffness, load sharing, and deflections by part: shares of the mean transmission error."""
 
 from __future__ import annotations
 

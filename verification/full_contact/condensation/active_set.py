@@ -32,9 +32,9 @@ class ActiveSetSolution:
     """Solution of a `ContactSystem`."""
 
     pressure: FloatArray
-    """Pa. Shape (h,)."""
+    """Pressure of the hats, Pa. Shape (h,)."""
     lag: float
-    """m."""
+    """Lag of the driven gear, m."""
     gap: FloatArray
     """Weak gaps, m^2. Shape (h,)."""
     status: Status

@@ -58,6 +58,6 @@ class Resolution:
         return share * module * min(USUAL / self.per_half_width, COARSEST)
 
     def coarser(self, factor: float = 1.5) -> Resolution:
-        """Return the same with elements larger by `factor`."""
+        """Return the resolution with elements larger by `factor`."""
         layers = max(1, round(self.layers / factor))
         return Resolution(self.per_half_width / factor, self.corner, layers, self.outermost)

@@ -47,7 +47,7 @@ class FlankStrip:
     """Nodes of a flank from its foot to the tip: corner, mid-side, corner ..."""
 
     nodes: IntArray
-    """Shape (2 e + 1,)."""
+    """Numbers of the nodes of the strip. Shape (2 e + 1,)."""
     s: FloatArray
     """Flank coordinates, m. Shape (2 e + 1,)."""
 
@@ -164,7 +164,7 @@ class FaceBody:
     starts: dict[int, int]
     """First freedom of a tooth."""
     compliance: FloatArray
-    """m/N. Shape (m, m)."""
+    """Compliance of the strips, m/N. Shape (m, m)."""
     unknowns: int
     spread: float
     """Elements to either side over which loads are spread on its mesh: a narrow load that slants through its

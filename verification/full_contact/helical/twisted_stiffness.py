@@ -77,7 +77,7 @@ class Section:
     twist: float
     """Turn of the section along z, counter-clockwise, rad/m."""
     base_radius: float
-    """m."""
+    """Base radius of the gear, m."""
 
 
 def twisted_stiffness(section: Section, layers: Layers, material: Material) -> ExtrudedStiffness:

@@ -79,7 +79,7 @@ def _assembled(
 
 
 def _eliminated(dense: FloatArray, pivots: int) -> FloatArray:
-    """Return what a front leaves to its unknowns beyond the first `pivots`, the lower triangle."""
+    """Return the front without its first `pivots` unknowns, the lower triangle."""
     try:
         factor = cholesky(dense[:pivots, :pivots], lower=True, check_finite=False)
     except LinAlgError as error:

@@ -36,7 +36,7 @@ class Toggled(Part):
 
 
 class Level(Part):
-    """Change of the level of what a scene is computed for, at the order that changes most."""
+    """Change of the level of the scene's quantity at the order that changes most."""
 
     quantity: str
     unit: str
@@ -51,10 +51,10 @@ def _estimate(estimate: Any) -> Json | None:
 
 
 class AblateFigures(Figures):
-    """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
+    """Influence of all effects: for a case at its loads, for a scene at its meshes and bearings."""
 
     class EffectFigures(Part):
-        """One effect toggled: the figures with and without it, and their changes without it."""
+        """An effect toggled: the figures with and without it, and the changes without it."""
 
         name: str
         on: bool

@@ -71,7 +71,7 @@ _AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
 
 
 class FlankLevels(NamedTuple):
-    """Levels (L, K), dB, and by what share of the mesh force flanks part (L,), 0: not at all."""
+    """Levels (L, K), dB, and share of the mesh force by which flanks part (L,), 0: they do not."""
 
     level: FloatArray
     parting: FloatArray

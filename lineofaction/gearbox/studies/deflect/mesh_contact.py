@@ -44,7 +44,7 @@ class MeshContact:
     pair: ParallelAxes
     bodies: CondensedPair
     torques: FloatArray
-    """Torques on the case's pinion, N m: those of the load cases, a lower and a higher one. Shape (F,)."""
+    """Torques on the case's pinion, N m: torques of the load cases, a lower and a higher one. Shape (F,)."""
     tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
     """Tables computed so far, by misalignment, m."""
 

@@ -1,4 +1,4 @@
-"""Deflection of a scene: bodies and meshes in agreement, and what happens on the flanks."""
+"""Deflection of a scene: bodies and meshes in agreement, and the results on the flanks."""
 
 from __future__ import annotations
 

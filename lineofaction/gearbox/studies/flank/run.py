@@ -1,4 +1,4 @@
-"""Flank results of a case: from one load and one alignment to what happens on the flanks."""
+"""Flank results of a case at one load and one alignment."""
 
 from __future__ import annotations
 

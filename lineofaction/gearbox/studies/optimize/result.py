@@ -19,9 +19,9 @@ from model_studies import in_unit
 from model_studies.spread import quantiles
 
 FALL = 25.0
-"""dB below the loudest line: what is lower is not told."""
+"""Level in dB below the loudest line from which a line is not mentioned."""
 MORE = 0.01
-"""Parts by which a pressure or a face load factor has to rise to be told."""
+"""Relative rise of a pressure or a face load factor from which the rise is mentioned."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,13 @@ class HeardDesign:
     """A design under L load cases in K lines."""
 
     values: dict[str, float]
-    """``gear.quantity`` to m."""
+    """Values of the variables in m, by ``gear.quantity``."""
     objective: Estimate
-    """dB."""
+    """Level that is minimized, with its error, dB."""
     level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
-    """`level`, `level_error`: dB; the error is that of the discretization of the contact. Shape (L, K) each.
+    """`level`, `level_error`: Levels and the errors of the contact's discretization in them, dB. Shape (L, K)
+    each.
     """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
@@ -62,14 +63,15 @@ class HeardDesign:
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full(1, np.nan))
-    """`pressure_error`, `face_load_factor_error`: Of the discretization; NaN: not estimated. Shape (L,) each.
+    """`pressure_error`, `face_load_factor_error`: Errors of the discretization; NaN: not estimated. Shape
+    (L,) each.
     """
 
 
 @brief
 @dataclass(frozen=True)
 class HeardOptimization:
-    """The start and the optimum of a search by what is heard."""
+    """The start and the optimum of a search for the quietest flanks."""
 
     mesh: str
     quantity: str

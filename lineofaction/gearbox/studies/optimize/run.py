@@ -58,7 +58,7 @@ from lineofaction.gearbox.units import UM, factor, in_um
 
 MPA = 1e6
 OF_CASE = ("torque_n_m", "misalignment_um", "objective")
-"""Fields that a scene has in its load cases, and in what is heard."""
+"""Fields of a case that a scene has in its load cases and its objective."""
 
 
 def _write_case(

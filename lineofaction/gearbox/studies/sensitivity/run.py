@@ -52,9 +52,9 @@ class PairStudy:
     name: str
     normal_force: float = field(metadata=in_unit("n"))
     center_distance: float = field(metadata=in_unit("m"))
-    """`normal_force`, `center_distance`: N; m."""
+    """`normal_force`, `center_distance`: Normal force of the curves, N; center distance, m."""
     curves: tuple[Sensitivity, ...]
-    """Without and with corner contact."""
+    """Curves over each deviation, without and with corner contact."""
 
 
 Studies = tuple[PairStudy, ...]
@@ -130,7 +130,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
 
 class _TableByTable:
-    """Turns the progress of each table into that of the study."""
+    """Progress of the study from the progress of each table."""
 
     def __init__(self, report: Progress) -> None:
         self._report, self._tables = report, list[TableFraction]()

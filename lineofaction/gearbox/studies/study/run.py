@@ -1,4 +1,4 @@
-"""Study of a scene: its runs, and where they are kept."""
+"""Study of a scene: its runs, and their storage."""
 
 from __future__ import annotations
 
