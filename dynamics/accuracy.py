@@ -43,7 +43,7 @@ HALF, TABLE_REST = "table_half", 1.0 / 3.0
 """Name of the fidelity of every second position node, and share of its error that the whole table has: second
 order.
 """
-MIN_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+MIN_RATE = 1.5  # least fall of errors from fidelity to fidelity that allows an extrapolation
 STEPS = 0.2
 """Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 

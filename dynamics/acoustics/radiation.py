@@ -38,7 +38,7 @@ class RadiationModel(Protocol):
         Parameters
         ----------
         frequency : float
-            Hz, above zero.
+            Frequency, Hz, above zero.
         shapes : (T, M) array
             Normal velocity of the panels per unit of each shape's amplitude, > 0 outwards.
 
@@ -121,7 +121,7 @@ def panel_power(
     Parameters
     ----------
     frequency : float
-        Hz.
+        Frequency, Hz.
     normal_velocity : (T,) array
         Complex peak amplitudes, m/s.
     """

@@ -22,8 +22,8 @@ from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
 
 SAMPLE_RATE = 48_000
-HALF_LENGTH = 64  # of the resampling filter, in samples of the lower rate
-LARGEST_STEP = 20_000  # of the lower of two rates in their ratio
+HALF_LENGTH = 64  # half length of the resampling filter, in samples of the lower rate
+LARGEST_STEP = 20_000  # largest denominator of the ratio of two rates
 PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
@@ -112,7 +112,7 @@ def order_recording(
     time : (B,) array
         s, increasing.
     frequency : (K, B) array
-        Hz, at most `PASSED` times the sample rate.
+        Frequencies, Hz, at most `PASSED` times the sample rate.
     amplitude : (K, B) array
         Complex or real peak amplitudes, in `unit`.
     """

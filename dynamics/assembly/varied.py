@@ -42,9 +42,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     Parameters
     ----------
     mesh : int
-        Its index in the scene.
+        Index of the mesh in the scene.
     table : MeshTable
-        At one misalignment and center distance.
+        Table at one misalignment and center distance.
     """
     used, plain, spatial = _used(system, mesh, table), *_laws(system)
     plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())

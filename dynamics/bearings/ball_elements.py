@@ -28,7 +28,7 @@ from dynamics.types import FloatArray, IntArray
 
 HOLDS = ALONG | AGAINST
 STEPS = 100
-SETTLED = 1e-12  # of the sum of the loads of all balls
+SETTLED = 1e-12  # thrust over the sum of the loads of all balls, at which a sliding ring rests
 Seat = tuple[float, float, float, float, float, float, float, float]
 Thrust = tuple[float, float, float, float, float, float, float]
 DIRECTIONS, AXIAL = 5, 2

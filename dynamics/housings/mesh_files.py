@@ -91,7 +91,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
         ``.msh`` (gmsh), ``.inp`` (Abaqus, CalculiX), ``.bdf``, ``.nas``, ``.fem`` (Nastran), ``.vtu``,
         ``.vtk``.
     unit : str
-        Of its coordinates, "m" or "mm": files do not say it.
+        Unit of the coordinates, "m" or "mm": files do not state it.
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
     return _checked(_content(Path(path)), scale)

@@ -70,7 +70,7 @@ def _start_gmsh() -> Any:
 def step_answer(request: dict[str, Any]) -> dict[str, Any]:
     """Mesh the one solid of a file, measure it or draw it; raises MemoryError, or Exception by gmsh."""
     gmsh = _start_gmsh()
-    gmsh.clear()  # of an earlier file in the same process
+    gmsh.clear()  # the model of an earlier file in the same process
     try:
         gmsh.model.occ.importShapes(request["step"])
         gmsh.model.occ.synchronize()

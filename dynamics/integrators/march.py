@@ -298,7 +298,8 @@ def march_on(
 ) -> RunStatus:
     """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration, rate = march.system.scene.duration, march.system.sampling.rate
-    work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
+    # least work of a block, samples times freedoms
+    work = BLOCK_WORK if progress is None and cancel is None else 0
     minimum, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
     block = min(max(duration / CHUNKS, minimum), longest)
     code = StructureCode(march.control.implicit, march.structure)

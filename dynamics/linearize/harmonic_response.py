@@ -125,7 +125,7 @@ def harmonic_response(
     Parameters
     ----------
     speed : (S,) array
-        Of the first drive that turns, rad/s, either sign.
+        Speeds of the first drive that turns, rad/s, either sign.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float

@@ -167,7 +167,7 @@ def modal_analysis(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive or free rotation that turns, rad/s, increasing, >= 0; empty: none.
+        Speeds of the first drive or free rotation that turns, rad/s, increasing, >= 0; may be empty.
     orders : int
         Multiples of the mesh frequencies whose crossings with modes are found.
     time : float
@@ -175,8 +175,8 @@ def modal_analysis(
     progress : callable, optional
         Called with the fraction done; an exception in it ends the analysis.
     highest_frequency : float, optional
-        Hz to which flexible shafts are resolved, independent of the scene's output; left out: the highest of
-        the `orders` at the highest of the speeds, or of the scene if none is given.
+        Frequency to which flexible shafts are resolved, Hz, independent of the scene's output. Left out: the
+        highest of the `orders` at the highest of the speeds, or of the scene if no speed is given.
 
     Raises
     ------

@@ -49,7 +49,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 from model_studies.cached_file import cached_in
 
 BLOCK = 4_000_000  # complex displacements held at once
-SAME = 1e-9  # of the gradients of rows that are the same
+SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
 """Raised with every change of the numbers of a transfer function, or of what is kept with them."""
 
@@ -285,7 +285,7 @@ def flank_transfer(
     ----------
     system : System
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing, > 0.
+        Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float

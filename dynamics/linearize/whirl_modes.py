@@ -28,7 +28,7 @@ OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
 
 
 STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
-SAME = 1e-6  # of a frequency: nearer modes count as repeated
+SAME = 1e-6  # relative difference of frequencies, below which modes count as repeated
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class MeshTable(Protocol):
     deflection : (M, D, P, L) array
         Transmission error in m at each level, strictly increasing along the levels.
     deflection_slope : (M, D, P, L) array
-        Its derivative in position, m per base pitch.
+        Derivative of the deflection in position, m per base pitch.
     stiffness, stiffness_slope : (M, D, P, L) arrays
         Tangent stiffness dF/d(deflection) in N/m at the knots and its derivative in position.
 

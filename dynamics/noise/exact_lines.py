@@ -94,11 +94,11 @@ def corrected_radiation(
     Parameters
     ----------
     response, housing, bearings
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     model : BoundaryElements
-        With progress and workers.
+        Boundary elements with their progress and workers.
     cache : Path, optional
-        As of `cached_radiation`.
+        Cache as in `cached_radiation`.
     budget : float
         Predicted CPU seconds on the reference host: the lines are the same on every host.
     """

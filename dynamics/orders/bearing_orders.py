@@ -188,7 +188,7 @@ def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | 
     Parameters
     ----------
     result : RunResult
-        With bearing forces.
+        Run with bearing forces.
     orders : int, optional
         Highest multiple of the mesh frequency of the first mesh that turns; default: 10, or what the run's
         output holds.

@@ -14,7 +14,7 @@ from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
 
 USUAL = 10
-ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
+ROUNDING = 1e-9  # relative, for an order on the edge of the pass band
 KAISER = 12.0  # shape of the filter's window: 118 dB
 NYQUIST = 0.5  # cycles a sample
 REMOVED, TRANSITION = 80.0, 0.1

@@ -15,7 +15,7 @@ from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 
-ON_LINE = 1e-6  # of a line's distance
+ON_LINE = 1e-6  # distance from a line over the distance of lines, up to which a value is on it
 MIN_LINES = 3.0
 """Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
 REFERENCE = 1000.0  # Hz, the center of band 0
@@ -207,7 +207,7 @@ def band_sums(
     width : float
         Distance of the lines, Hz.
     power : (..., K) array
-        Of the lines at 1, 2, ... K times it.
+        Power of the lines at 1, 2, ... K times that distance.
     top, bottom : float
         Edges that no band crosses, Hz.
     """

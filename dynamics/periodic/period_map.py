@@ -35,13 +35,13 @@ HALVINGS = 8
 """A step in which a flank lifts off or lands is halved down to 1/256 around it, so that its kink costs no
 digits and the end of the march depends smoothly on its start."""
 
-SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
+SAME = 1e-11  # over the period: nearer knots count as one, nearer step sizes as equal
 MAX_STEPS = 1_000_000
 MAX_GAIN = 100.0
-STEPS_PER_CYCLE = 24  # of the highest natural frequency
-STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
-NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
-DIFFERENCE = 1e-6  # of the size of the state, for derivatives
+STEPS_PER_CYCLE = 24  # least steps per cycle of the highest natural frequency
+STEPS_PER_PITCH = 64  # per pitch of the mesh with the most, or per cycle of a load's highest order
+NEWTON_SHARE = 1e-12  # last update in an implicit stage, over the largest force
+DIFFERENCE = 1e-6  # step of differences for derivatives, over the size of the state
 
 
 @compiled

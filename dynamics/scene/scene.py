@@ -35,7 +35,7 @@ from dynamics.types import FloatArray
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
 IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
-AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
+AXIS_AGREEMENT = 1e-9  # distance over a shaft's length, below which shafts share an axis
 ON_VIOLATION = ("repeat", "fail", "report")
 TOLERANCES = (1e-6, 0.5)
 LEVEL_TOLERANCES = (1e-9, 3.0)  # dB

@@ -120,7 +120,7 @@ def _probe(system: System, time: float) -> _Probe:
         )
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
-        is_entire = stretch >= system.scene.duration  # of a short run all its steps are few
+        is_entire = stretch >= system.scene.duration  # the stretch is the entire short run
         if not first and (is_entire or (steps >= MIN_STEPS and seconds > ENOUGH)):
             light = outlives_windows(system, choice)
             return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)

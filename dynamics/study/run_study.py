@@ -259,16 +259,16 @@ def study(
     Parameters
     ----------
     task : StudyTask
-        Its factors are those of the design.
+        Task whose factors are those of the design.
     design : Design
     workers : Workers
         Who does the batches: this process, an executor of threads or processes, a cluster.
     progress : callable
         Called as progress("runs", fraction).
     confidence : float
-        Of the bounds of quantiles.
+        Confidence of the bounds of quantiles.
     keep_worst : int
-        How many points of the largest first response to name in `Study.worst`; see `keep_runs`.
+        Number of points with the largest first response that `Study.worst` names; see `keep_runs`.
     """
     if task.factors != design.names:
         raise InputError("design.factors", design.names, f"those of the task: {', '.join(task.factors)}")

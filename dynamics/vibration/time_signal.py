@@ -154,9 +154,9 @@ def point_signal(
     Parameters
     ----------
     housing, time, force, quantity
-        As in `motion_pieces`.
+        Arguments of `motion_pieces`.
     points : sequence of str, optional
-        By default all, in their order.
+        Points by name; by default all, in their order.
 
     Returns
     -------
@@ -190,13 +190,13 @@ def motion_pieces(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     time : (T,) array
         s, uniform.
     force : (T, s) array
-        On the motions of the seats, N and N m (`run_seat_forces`).
+        Forces on the motions of the seats, N and N m (`run_seat_forces`).
     rows : (q, r) array
-        What is returned per reduced coordinate, such as `PointMotion.motion`.
+        Quantities to return per reduced coordinate, such as `PointMotion.motion`.
     quantity : MotionQuantity
         Displacement, velocity or acceleration.
 
