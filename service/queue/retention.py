@@ -31,7 +31,7 @@ from service.store.retries import retried
 logger = structlog.get_logger(__name__)
 
 _AT_ONCE = 500
-_IDENTIFIER = 36  # of a computation: other logs are not ours to remove
+_IDENTIFIER = 36  # characters of a computation's identifier: other logs are not this program's
 FIRST_S, EVERY_S = 60.0, 3600.0
 
 

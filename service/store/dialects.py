@@ -83,8 +83,8 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "53100": ROOM,  # disk full
     "58030": _DISK,  # I/O error
 }
-_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
-_LOCKED = "55P03"  # by others, for longer than lock_timeout
+_CANCELED = "57014"  # state of PostgreSQL: the statement exceeded its deadline, the only cause here
+_LOCKED = "55P03"  # state of PostgreSQL: others held the lock for longer than lock_timeout
 
 
 class _Commits(Protocol):
