@@ -21,7 +21,7 @@ from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
 
-SAMPLE_RATE = 48_000
+SAMPLE_RATE = 48_000  # usual sample rate, Hz; the only one for which loudness is computed
 HALF_LENGTH = 64  # half length of the resampling filter, in samples of the lower rate
 LARGEST_STEP = 20_000  # largest denominator of the ratio of two rates
 PASSED = 0.45

@@ -88,7 +88,7 @@ LOCATING = Declared(
     BOTH,
     later=True,
 )
-ALONG, AGAINST = 1, 2
+ALONG, AGAINST = 1, 2  # bits of the directions in which the seats hold the rings: along z, against z
 LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 """The directions as bits."""
 AXIAL_PRELOAD = Declared(

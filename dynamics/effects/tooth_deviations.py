@@ -20,7 +20,7 @@ from dynamics.types import FloatArray
 
 ASSUMED_CLASS = 6
 """Tolerance class (ISO 1328) assumed for gears whose table states no tooth deviations."""
-SAMPLES = 256
+SAMPLES = 256  # positions of a base pitch at which mesh order 1 is computed
 
 
 class ToothDeviations(MeshEffect):

@@ -107,7 +107,7 @@ def _in_elements(
             continue
         position += power_by_frames(elements, work.local, e)
         if law == UNBALANCE:
-            continue  # its work is what it stores
+            continue  # its work is the change of its energy
         for r in range(first, end):
             if law in (SPEED_TORQUE, APPLIED_FORCE):
                 supplied -= force[r] * (rate[r] + drift[r])

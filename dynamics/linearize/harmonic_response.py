@@ -34,6 +34,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
+"""Most samples of a period, in all and per order, and most orders, for which `extremes` sums orders exactly."""
 
 
 def _none() -> ComplexArray:

@@ -28,7 +28,7 @@ LINE_ERROR = 1.0 / 7.0
 """Largest error of a straight line between two frequencies, over second derivative times square of the step:
 1/8 for a parabola, more for other curves.
 """
-MIN_RATIO = 1e-4
+MIN_RATIO = 1e-4  # damping ratio that stands for a smaller one
 COUNTED = 1e-10
 """Least share of a direction of the rows in the power of all lines, from which the direction is an input."""
 BINS = 8

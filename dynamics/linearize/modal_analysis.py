@@ -25,7 +25,7 @@ from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 from model_studies.record import under_key
 
-MAX_ORDERS = 100
+MAX_ORDERS = 100  # largest multiple of a mesh frequency
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
 """Fields of `Modes` that an analysis keeps of the modes at rest."""

@@ -36,8 +36,8 @@ HALVINGS = 8
 digits and the end of the march depends smoothly on its start."""
 
 SAME = 1e-11  # over the period: nearer knots count as one, nearer step sizes as equal
-MAX_STEPS = 1_000_000
-MAX_GAIN = 100.0
+MAX_STEPS = 1_000_000  # most steps of a period
+MAX_GAIN = 100.0  # largest gain of a resonance that counts
 STEPS_PER_CYCLE = 24  # least steps per cycle of the highest natural frequency
 STEPS_PER_PITCH = 64  # per pitch of the mesh with the most, or per cycle of a load's highest order
 NEWTON_SHARE = 1e-12  # last update in an implicit stage, over the largest force

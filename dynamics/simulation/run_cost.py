@@ -56,7 +56,7 @@ def probe_run(scene: Scene) -> ProbedRun:
     Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
     can be taken.
     """
-    assemble(scene)  # loads what it needs
+    assemble(scene)  # loads modules and compiled code before the measurement
     began = cpu_seconds()
     system = assemble(scene)
     assembling = cpu_seconds() - began

@@ -15,7 +15,7 @@ import llvmlite.binding as llvm
 
 from dynamics.structure_code.module import Module
 
-MAX_IN_MEMORY, MAX_IN_FILES = 32, 256
+MAX_IN_MEMORY, MAX_IN_FILES = 32, 256  # most structures whose code stays in memory, and in files
 SUFFIX = ".structure"
 
 
