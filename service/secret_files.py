@@ -56,7 +56,7 @@ class SecretFiles(PydanticBaseSettingsSource):
 
 
 def _content(file: Path, variable: str, field: str) -> str:
-    """Return what a file holds, without the end of its line."""
+    """Return the content of a file, without the end of its line."""
     tip = f"It is named by {variable}; the user of the service must be able to read it."
     try:
         with file.open(encoding="utf-8") as stream:

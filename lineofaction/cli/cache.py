@@ -75,7 +75,7 @@ def keep_small() -> None:
 
 
 def _limit_bytes() -> int:
-    """Return what the cache may hold: 2 GB, or what the environment says.
+    """Return the largest size of the cache in bytes: 2 GB, or the value of the environment.
 
     Raises `BadInput`: it says something else than a number of bytes.
     """

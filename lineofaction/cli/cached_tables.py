@@ -38,7 +38,7 @@ class CachedTables:
 
     @staticmethod
     def file(case: Case) -> Path:
-        """Return where the table of a case is kept, if it is."""
+        """Return the path of the table of a case in the cache, present or not."""
         content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
         return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
 

@@ -47,7 +47,7 @@ def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[R
 
 
 def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
-    """Say where a run is loudest, and the levels of its orders there."""
+    """Return the time at which a run is loudest, and the levels of its orders then, as cells."""
     where, text = "", "too short for orders"
     if moment is not None:
         levels = [

@@ -83,7 +83,7 @@ def inputs_of_study(
 
 
 def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
-    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    """Return the number of speeds that inputs need if neither speeds nor a run are named; 0: none."""
     if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
         return 0
     return inputs.usual_speeds

@@ -15,7 +15,7 @@ NODES = {
 
 
 def tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
-    """Yield whether the tolerance is met as measured, why not, and passes; `newton_metre`: its force, N."""
+    """Yield lines on the tolerance: met or why not, and the passes; `newton_metre`: force of 1 N m, N."""
     goal = receipt.get("tolerance")
     if not goal:
         return

@@ -58,11 +58,11 @@ def warn(warnings: Iterable[Json]) -> None:
 
 
 def messages() -> list[str]:
-    """Return what the verb has gathered, in words."""
+    """Return the messages of the warnings that the verb has gathered."""
     return [warning["message"] for warning in warnings_so_far()]
 
 
 def warnings_so_far() -> list[Json]:
-    """Return what the verb has gathered."""
+    """Return the warnings that the verb has gathered."""
     warned = _current.get(None)
     return [] if warned is None else list(warned.messages.values())

@@ -286,13 +286,13 @@ class JobCalls(Surface):
 
     @operation
     def result(self, job: str) -> Steps[Result]:
-        """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
+        """Return the reference to the result of a job; raises as `wait`, or `ResultNotReady`."""
         path = f"/v1/jobs/{job}/results"
         return self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES)
 
     @operation
     def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:
-        """Return where the result of inputs is, computed if need be: submit, wait.
+        """Return the reference to the result of inputs, computed if need be: submit, wait.
 
         When the service cannot be reached, the result that it gave for the same inputs before is taken, if
         its file is in the cache; an `OfflineWarning` says so. Raises as `submit` and `wait`.

@@ -167,7 +167,7 @@ class PageCalls(Surface):
 
     @operation
     def result_at(self, address: str) -> Steps[str]:
-        """Return what names the result of an address: a content hash, for `fetch`, or a job's identifier.
+        """Return the name of an address's result: a content hash, for `fetch`, or a job's identifier.
 
         Raises `BadInput`: it is no address of this service's page, or names nothing computed; `Unreachable`,
         `ServiceError`.

@@ -202,7 +202,7 @@ def note_continuing(error: BaseException, job: str) -> None:
 
 
 def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
-    """Return what `once` returns, which is run again while the service is away, for `patience` seconds."""
+    """Return the value of `once`, which runs again while the service is away, for `patience` seconds."""
     begin = time.monotonic()
     while True:
         try:

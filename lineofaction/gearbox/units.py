@@ -90,7 +90,7 @@ _RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "wor
 
 
 def suffix_of(declaration: Declared) -> str:
-    """Return how the boundary's name of a declared field ends."""
+    """Return the ending of a declared field's name at the boundary."""
     if declaration.written:
         return next(suffix for suffix, unit in BY_SUFFIX.items() if unit.name == declaration.written)
     return "_um" if declaration.kind in DEPTHS else _OF_SI.get(declaration.unit, "")
@@ -107,7 +107,7 @@ def unit_of(name: str) -> Unit | None:
 
 
 def unit_name(name: str) -> str | None:
-    """Return how the unit of the boundary field `name` is written; None where it is SI's or none."""
+    """Return the symbol of the unit of the boundary field `name`; None: the unit is SI's, or none."""
     unit = unit_of(name)
     return unit.name if unit else None
 

@@ -206,7 +206,7 @@ def studied(
 
 
 def _as_written(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
-    """Return what is studied as written, and the folder of its files."""
+    """Return the case or scene of a study as written, and the folder of its files."""
     kind = study.takes.subject
     if kind == "scene" or (kind != "case" and _has_shafts(subject)):
         return _scene(subject)

@@ -132,7 +132,7 @@ def _trimmed(title: list[str]) -> list[str]:
 
 
 def _said(texts: Mapping[str, str]) -> str:
-    """Return what texts say: sentences of all of them once, then the others by part."""
+    """Return the texts of all parts as one: sentences of all parts once, then the others by part."""
     sentences = {name: _SENTENCE.split(text) for name, text in texts.items() if text}
     if not sentences:
         return ""

@@ -84,7 +84,7 @@ def is_picture(section: Section) -> bool:
 
 
 def _alternative(bodies: Sequence[Body]) -> str:
-    """Say how many shafts, gears and bearings there are, and name them."""
+    """Return a text with the numbers and names of shafts, gears and bearings."""
     counts = [
         (sum(body.kind in kinds for body in bodies), word)
         for kinds, word in (((SHAFT,), "shaft"), ((PINION, WHEEL), "gear"), ((BEARING,), "bearing"))

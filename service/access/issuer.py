@@ -92,7 +92,7 @@ class Issuer:
         return {key["kid"]: key for key in keys if "kid" in key and key.get("use", "sig") == "sig"}
 
     def _discovered(self, http: httpx2.Client) -> str:
-        """Return where the issuer says its keys are; raise ValueError if that is not its own host."""
+        """Return the address of the issuer's keys by its configuration; raise ValueError: another host."""
         document = _document(http, self.url.rstrip("/") + _DISCOVERY)
         address = str(document["jwks_uri"])
         if document["issuer"] != self.url or _host(address) != _host(self.url):

@@ -147,7 +147,7 @@ class Turns:
             del self._lines[line]
 
     def _busy(self) -> Counter[_Line]:
-        """Return how many of each line are answered."""
+        """Return the number of questions of each line that are being answered."""
         return Counter(map(_line_of, self._answered.values()))
 
     def _refuse_beyond(self, line: _Line) -> None:

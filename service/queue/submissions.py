@@ -55,7 +55,7 @@ class Submissions:
         self._project = project
 
     def within(self, project: str) -> Submissions:
-        """Return the same for another project."""
+        """Return the submissions of another project."""
         return Submissions(self._engine, self._queue_limit, project)
 
     def submit(
@@ -75,7 +75,7 @@ class Submissions:
         return self.find(self.entry(caller, terms).job(process, work, looked or now(), name))
 
     def entry(self, caller: Holder = ANYBODY, terms: Terms = USUAL) -> Entry:
-        """Return what enters jobs and batches of a caller."""
+        """Return the entry of jobs and batches of a caller."""
         return Entry(self._engine, self._queue_limit, self._project, caller, terms)
 
     @retried
@@ -161,7 +161,7 @@ class Submissions:
 
     @retried
     def counts(self) -> dict[str, int]:
-        """Return how many computations of all projects are in each state."""
+        """Return the number of computations of all projects by state."""
         with reading(self._engine) as connection:
             return states_of(connection)
 

@@ -137,7 +137,7 @@ class _Children:
 
 
 def _followed(child: Child, folder: Path) -> Course:
-    """Return what a child sends, until it ends, or takes more time or writes more than it may."""
+    """Return the course of a child until its end, or until it exceeds its time or its written bytes."""
     watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
     course, look, overrun = Course(), time.monotonic() + LOOK_S, ""
     while not child.closed and not overrun and child.received <= MAX_BYTES:
@@ -150,7 +150,7 @@ def _followed(child: Child, folder: Path) -> Course:
 
 
 def _overrun(child: Child, watch: Watch) -> str:
-    """Return what a child should have stayed within, "" if it does."""
+    """Return the limit that a child exceeds, "": none."""
     if watch.late:
         return f"read within {LONGEST_S} s"
     excess = watch.excess(child.pid)

@@ -93,7 +93,7 @@ async def job_filter(
     parent: Parent = None,
     once: Once = False,
 ) -> JobFilter:
-    """Return what the parameters ask for."""
+    """Return the filter of jobs by the parameters."""
     earliest, latest = _interval(instant)
     return JobFilter(
         tuple(process_id),

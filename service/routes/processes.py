@@ -210,7 +210,7 @@ def _summary(process: Process) -> dict[str, Any]:
 
 @cache
 def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
-    """Return what a page needs to offer a study; nothing of what has no action."""
+    """Return the data from which a page offers a study; empty for a process without an action."""
     if not action:
         return AdditionalParameters(parameters=[])
     subjects: list[Any] = [name for name in _SUBJECTS if name in inputs.model_fields]

@@ -137,7 +137,7 @@ async def result_motion(
         ),
     ] = None,
 ) -> Response:
-    """Return how shafts move in a mode or under a load case, and how the surface of a housing does."""
+    """Return the motion of shafts in a mode or under a load case, and of the surface of a housing."""
     stored = await run_in_threadpool(known_result, context, key)
     order = LiveOrder(MOTION, {"kind": stored.kind, "file": str(stored.path), "number": number})
     tag = f'"{stored.sha256}-motion-{number}-{program_tag()}"'

@@ -54,11 +54,11 @@ class ScopedRoute(APIRoute):
         return scope
 
     def answering(self) -> Callable[[Request], Any]:
-        """Return what answers a request that may be answered."""
+        """Return the handler of admitted requests."""
         return super().get_route_handler()
 
     def get_route_handler(self) -> Callable[[Request], Any]:
-        """Return what answers a request if its caller may ask that."""
+        """Return the handler that admits callers with the scope."""
         answer, scope, streams = self.answering(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
         if scope is OPEN_TO_ALL:
             return answer

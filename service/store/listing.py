@@ -82,7 +82,7 @@ def add_listing(op: Operations) -> None:
 
 
 def _values(dialect: str) -> dict[str, str]:
-    """Return what the columns of a line are, by its job j and the computation c of that."""
+    """Return the SQL of a line's columns, by its job j and the job's computation c."""
     end = "coalesce(j.dismissed, c.finished)"
     state = "CASE WHEN j.dismissed IS NULL THEN c.state ELSE 'dismissed' END"
     return {
@@ -133,7 +133,7 @@ class _Trigger(NamedTuple):
     condition: str = ""
 
     def statements(self, dialect: str) -> Iterator[str]:
-        """Yield what makes the trigger; PostgreSQL has it call a function."""
+        """Yield the statements that make the trigger; PostgreSQL has it call a function."""
         body = " ".join(f"{statement};" for statement in self.body)
         when = f"WHEN ({self.condition})" if self.condition else ""
         head = f"CREATE TRIGGER {self.name} AFTER {self.event} FOR EACH ROW {when}"

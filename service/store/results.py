@@ -139,7 +139,7 @@ class ResultStore:
         self.lookups = CacheReads()
 
     def within(self, project: str) -> ResultStore:
-        """Return the same for another project."""
+        """Return the store of another project."""
         if project == self.project:
             return self
         other = ResultStore(self._engine, self.files, project)
@@ -196,7 +196,7 @@ class ResultStore:
         return line
 
     def holds(self, key: str, kind: str) -> bool:
-        """Return whether a result is there; nobody has asked for it."""
+        """Return whether a result is stored; the look is no use of the result."""
         return self._intact(key, kind) is not None
 
     def _intact(self, key: str, kind: str) -> IndexLine | None:

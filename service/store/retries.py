@@ -47,7 +47,7 @@ def _is_busy(error: BaseException, database: Engine) -> bool:
 
 
 def _remedy_of(error: BaseException, database: Engine) -> str | None:
-    """Return what a person has to do if `error` says that the database cannot be used as it is."""
+    """Return the action of a person if `error` means that the database cannot be used as it is."""
     return dialect_of(database).remedy(error, database.url) if isinstance(error, DBAPIError) else None
 
 

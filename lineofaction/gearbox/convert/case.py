@@ -132,7 +132,7 @@ def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:
 
 
 def table_axes(case: Case) -> TableAxes:
-    """Return what the table of a case is computed over, in SI."""
+    """Return the axes of the table of a case, in SI."""
     load, errors, allowed = case.load, case.errors, allowed_misalignment(case)
     with boundary_errors():
         return TableAxes(

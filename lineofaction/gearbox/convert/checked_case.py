@@ -90,7 +90,7 @@ class CheckedCase:
             return check_request(*converted, check_size=check_size, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
-        """Return what a study requests of the library: made once, for its check and for its work.
+        """Return the request of a study to the library, made once for its check and for its work.
 
         Raises `BadInput`.
         """

@@ -50,7 +50,7 @@ class Account:
         self._said: dict[int, dict[str, tuple[Fate, str]]] = {number: {} for number in self._parts}
 
     def location(self, component: Component) -> str:
-        """Return where a component stands: its id, and its load case."""
+        """Return the location of a component: its id, and its load case."""
         return self._places[id(component)]
 
     def say(self, component: Component, item: str, fate: Fate, text: str) -> None:
@@ -58,7 +58,7 @@ class Account:
         self._said[id(component)][item] = (fate, text)
 
     def has_entry(self, component: Component) -> bool:
-        """Return whether something was said of the component itself."""
+        """Return whether the account has a line on the component itself."""
         return "" in self._said[id(component)]
 
     def lines(self) -> tuple[Line, ...]:
@@ -84,7 +84,7 @@ class Account:
 
 
 def _assumed(attribute: Attribute, fate: Fate, text: str) -> tuple[Fate, str]:
-    """Return what became of an assumed value: one that nothing reads is refused."""
+    """Return the fate of an assumed value; a value that nothing reads is refused."""
     if fate == "ignored":
         return "refused", f"assumed to be {attribute_text(attribute)}, and {text}"
     return "assumed", f"{attribute_text(attribute)} instead of {dict(attribute.extra)[FORMER]}: {text}"

@@ -39,7 +39,7 @@ class Assumption:
 
     @classmethod
     def of(cls, text: str) -> Assumption:
-        """Return what ``COMPONENT.ATTRIBUTE=VALUE`` says.
+        """Return the assumption of the text ``COMPONENT.ATTRIBUTE=VALUE``.
 
         Raises `BadInput`: it has another form.
         """

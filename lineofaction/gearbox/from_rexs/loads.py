@@ -72,7 +72,7 @@ class SceneMotion:
             yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
 
     def _of_stages(self, cut: Sequence[GearStage]) -> Iterator[AppliedTorque]:
-        """Yield what stages that are not computed do to shafts of the scene."""
+        """Yield the torques of stages without a case on shafts of the scene."""
         layout = self._layout
         meshed = {gear.id for stage in self._shafts.stages for gear in stage.gears}
         for stage in cut:

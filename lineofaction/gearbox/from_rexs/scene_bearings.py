@@ -92,7 +92,7 @@ class SceneBearings:
         return rotor if rotor in self._shafts.by_rotor else None
 
     def _rolling_bearing(self, entry: Connection) -> Table | str:
-        """Return what a scene file states of a bearing by its geometry, or why it is a bushing."""
+        """Return the table of a bearing by its geometry, or the reason why the bearing is a bushing."""
         part = entry.part
         if part.id in self._loose:
             return "the matrix of the casing is singular, and only linear bearings sit in it"

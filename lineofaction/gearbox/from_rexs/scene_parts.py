@@ -93,7 +93,7 @@ def scene_parts(
 
 
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
-    """Return how the face positions of the case count along u of gear 1's shaft.
+    """Return the sense of the case's face positions along u of gear 1's shaft, 1 or -1.
 
     They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
     pushed back by it.

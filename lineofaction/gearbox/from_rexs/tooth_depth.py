@@ -55,7 +55,7 @@ class ToothDepth:
         )
 
     def infeed(self, pressure_angle: float) -> float:
-        """Return how much deeper in m the cutter stands for the allowance."""
+        """Return the infeed of the cutter for the allowance, m."""
         return (
             0.0 if self.tooth_thinning == FLANK else cutter_infeed(self.thickness_allowance, pressure_angle)
         )
@@ -135,7 +135,7 @@ def _root_at(
 
 
 def _text_of_root(root: _GeneratedRoot, allowance: float) -> str:
-    """Return how h_fP follows from the root diameter."""
+    """Return the formula by which h_fP follows from the root diameter, as text."""
     text = f"dedendum_coefficient {root.dedendum_coefficient:.6g} = (d - d_f) / (2 m_n) + "
     if root.tooth_thinning == FLANK:
         return f"{text}x: the tool reaches it before the flanks are ground, tooth_thinning {FLANK}"

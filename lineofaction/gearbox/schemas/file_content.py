@@ -43,7 +43,7 @@ class FileContentInput(BoundaryModel):
         return cls(name=name, content=base64.b64encode(zlib.compress(content, 9)).decode("ascii"))
 
     def unpacked(self, maximum: int = LARGEST) -> bytes:
-        """Return what the file holds; raises ValueError if it is damaged or has more than so many bytes."""
+        """Return the bytes of the file; raises ValueError: damaged, or more than `maximum` bytes."""
         reader = zlib.decompressobj()
         try:
             data = reader.decompress(base64.b64decode(self.content, validate=True), maximum + 1)

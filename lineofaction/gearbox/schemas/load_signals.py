@@ -139,7 +139,7 @@ def _series(
 
 
 def _stretch(time: FloatArray, values: FloatArray, start: float, end: float) -> tuple[FloatArray, FloatArray]:
-    """Return what lies between two times, with values at both."""
+    """Return the samples between two times, with values at both."""
     inside = time[(time > start) & (time < end)]
     cut = np.concatenate([[start], inside, [end]])
     return cut, np.interp(cut, time, values)

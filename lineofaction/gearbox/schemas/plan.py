@@ -28,7 +28,7 @@ class InputWarning(BaseModel):
 
 
 def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str, Any]]:
-    """Return what an import left out of a scene or a case as warnings."""
+    """Return the omissions of an import from a scene or a case as warnings."""
     nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
     return [
         {

@@ -27,7 +27,7 @@ class Requirement:
 
     @classmethod
     def of(cls, text: str) -> Requirement | None:
-        """Return what ``FIGURE at most|least NUMBER UNIT`` says; None: it has another form."""
+        """Return the requirement of ``FIGURE at most|least NUMBER UNIT``; None: it has another form."""
         match = _FORM.fullmatch(text)
         if match is None:
             return None

@@ -147,7 +147,7 @@ class SceneInput(BoundaryModel):
     @model_validator(mode="before")
     @classmethod
     def _tables(cls, data: Any) -> Any:
-        """Say how a part is written when a single table stands where a list is meant."""
+        """Refuse a single table where a list is meant, with the spelling of a list in TOML."""
         if isinstance(data, dict):
             for kind in _KINDS:
                 if isinstance(data.get(kind), dict):

@@ -121,14 +121,14 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     """Writers of further files of the verb, by their ending: called with result, subject, and file."""
 
     def narrowed(self, subject: Written, _inputs: Inputs) -> Written:
-        """Return what of the subject the inputs choose: it is checked, hashed and computed."""
+        """Return the part of the subject that the inputs choose, which is checked, hashed and computed."""
         return subject
 
     def check(self, subject: Written, inputs: Inputs) -> None:
         """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
 
     def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what it costs once a scene has its tables; None where nothing predicts it.
+        """Return the cost once a scene has its tables; None: nothing predicts it.
 
         The cases of a scene are written out. What is in the cache of compliances costs nothing.
         """
@@ -162,11 +162,11 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         file.write_text(f"{json.dumps(self.figures(result), allow_nan=False)}\n", encoding="utf-8")
 
     def warnings(self, _result: Result) -> list[Json] | None:
-        """Return what a result warns of beside its case, which others assess; None for nothing."""
+        """Return warnings of a result beyond those of its case, which others assess; None: none."""
         return None
 
     def failure(self, _result: Result) -> str:
-        """Say what of a result was not found; empty if nothing is missing."""
+        """Return a sentence on missing parts of a result; empty if nothing is missing."""
         return ""
 
     def stored_runs(self, _result: Result, _means: Means) -> Mapping[str, Path]:

@@ -86,5 +86,5 @@ class StudyCost:
 
 
 def panels_work(housings: int) -> Work:
-    """Return what panels of so many housings usually take: their meshes are not made before."""
+    """Return the usual work of the panels of housings, whose meshes are not made before."""
     return Work("panels", _PANELS, housings)

@@ -127,7 +127,7 @@ def _left(service: JobService) -> tuple[Measured, ...]:
 def _others(
     service: JobService, ended: list[Job], before: FloatArray, *, overtaken: bool
 ) -> tuple[Measured, ...]:
-    """Return how the jobs behind the disturbed one fared, and whether the small one is as ever."""
+    """Return figures on the jobs behind the disturbed one, and on a repetition of the small one."""
     disturbed, dismissed, after = ended
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
     served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None

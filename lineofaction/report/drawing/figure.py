@@ -61,7 +61,7 @@ class Axis:
         return bool(np.isfinite(value)) and (self.scale == "linear" or value > 0.0)
 
     def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
-        """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
+        """Return the place of values on an axis with these ends: 0 at the first, 1 at the last."""
         low, high = ends
         if self.scale == "log":
             values, low, high = np.log10(values), float(np.log10(low)), float(np.log10(high))

@@ -33,7 +33,7 @@ BOLDER = 2.0
 
 
 def marks_of(result: Any) -> Marks | None:
-    """Return what a result says of the complaint of its scene, None without one."""
+    """Return the marks by the complaint of a result's scene, None without a complaint."""
     return metadata_of(result).get(NAME)
 
 

@@ -56,7 +56,7 @@ def _player(figure: Figure) -> str:
 
 
 def sound_json(sound: Sound) -> Json:
-    """Return what the script needs of a sound."""
+    """Return the data of a sound for the script of the page."""
     tracks = [
         {
             "name": one.name,
@@ -164,13 +164,13 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
 
 @cache
 def _library() -> str:
-    """Return what draws plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
+    """Return the library of plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
     packed = gzip.compress(_text("package_data/plotly.min.js", "plotly").encode(), mtime=0)
     return base64.b64encode(packed).decode("ascii")
 
 
 def _margins(page: Page) -> str:
-    """Return what stands on every printed page beside its number."""
+    """Return the margin texts of every printed page, apart from its number."""
     corner = page.block.corner if page.block else ""
     texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
     plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}

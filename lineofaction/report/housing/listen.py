@@ -66,7 +66,7 @@ def _noun(audio: HeardRun) -> str:
 
 
 def _sound(audio: HeardRun, along: FloatArray) -> Sound | None:
-    """Return what the plot sounds like; None of silence."""
+    """Return the sound of the plot; None: silence."""
     recording = audio.recording
     if recording.peak == 0.0:
         return None

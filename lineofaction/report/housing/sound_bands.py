@@ -56,7 +56,7 @@ def _causes(level: Json) -> Iterator[str]:
 
 
 def narrowest(metadata: Json) -> Iterator[str]:
-    """Say what would narrow the band of the largest level most."""
+    """Yield the measure that narrows the band of the largest level most, if any does."""
     level = (metadata["band"] or {}).get("largest_total", {})
     for name, left in level.get("widths_without_db", {}).items():
         if name in NARROWER and level["width_db"] - left >= MIN_NARROWED:

@@ -258,7 +258,7 @@ def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str
 
 
 def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
-    """Say whether the step error meets its tolerance, and how far traces and levels are off in chaos."""
+    """Return rows on the step error and its tolerance, and on the error of traces and levels in chaos."""
     rows = []
     if "met" in steps:
         met = "met" if steps["met"] else "not met"

@@ -108,7 +108,7 @@ def _passed(source: RunSignal) -> float:
 
 
 def _track(source: RunSignal, axis: Axis) -> Track:
-    """Return where a run is on the axis as it plays."""
+    """Return the track of a run: its place on the axis as it plays."""
     run = source.run
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
     along = time
@@ -134,7 +134,7 @@ def stored_sound(inputs: Json) -> Json:
 
 
 def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
-    """Return what is shown of runs, all as of the first."""
+    """Return recordings of the runs' signals, all with the view of the first."""
     runs = [RunResult.from_netcdf(file) for file in files]
     for run in runs:
         _require_short(float(np.ptp(run.time)))

@@ -135,7 +135,7 @@ def load_sharing(database: SteDatabase) -> Figure:
 
 
 def _truncation_text(database: SteDatabase) -> str:
-    """Say where a period is longer than what is drawn."""
+    """Return a sentence if a period is longer than its plot."""
     pitches, period = drawn_pitches(database), database.period
     return f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
 

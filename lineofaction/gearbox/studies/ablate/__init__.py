@@ -46,7 +46,7 @@ class Level(Part):
 
 
 def _estimate(estimate: Any) -> Json | None:
-    """Return what a library estimates of an effect, its lengths in um."""
+    """Return a library's estimate of an effect, its lengths in um."""
     return None if estimate is None else dict(in_um(estimate.to_json()))
 
 

@@ -125,7 +125,7 @@ class _ComplaintStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, _inputs: Inputs, _cache: Path | None
     ) -> StudyCost | None:
-        """Return what the modes and the lines at one speed take; of a case it is a count of teeth."""
+        """Return the cost of the modes and the lines at one speed; for a case it is a count of teeth."""
         if isinstance(subject, CheckedCase):
             return StudyCost((Work("orders", _OF_PAIR),))
         with boundary_errors():

@@ -49,7 +49,7 @@ class MeshContact:
     """Tables computed so far, by misalignment, m."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return how to copy the contact for a task: without the tables, which no task needs."""
+        """Return the recipe to copy the contact for a task: without the tables, which no task needs."""
         return type(self), (self.pair, self.bodies, self.torques)
 
     @property

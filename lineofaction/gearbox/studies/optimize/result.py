@@ -138,7 +138,7 @@ class HeardOptimization:
         return sentences[self.outcome]
 
     def ended(self) -> str:
-        """Return how the search ended, and how many of its starts agree, in a sentence."""
+        """Return a sentence on the end of the search, and on the number of its starts that agree."""
         run, ends = self.runs[self.best_run], np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
         same = max(AUDIBLE, self.optimum.objective.error)
@@ -162,7 +162,7 @@ class HeardOptimization:
         return float(np.mean(self.pairs[1] > self.pairs[0]))
 
     def within_tolerances(self) -> str:
-        """Return what the flanks bring of pairs as they are made, in a sentence; empty where none are."""
+        """Return a sentence on the change for pairs as made; empty without a tolerance class."""
         if not self.pairs.size:
             return ""
         (_, _, before), (_, _, after), (low, median, high) = self.bands
@@ -173,7 +173,7 @@ class HeardOptimization:
         )
 
     def worse(self) -> Iterator[str]:
-        """Yield what gets worse: orders by load case, largest first, then ripple, pressure, K_Hbeta."""
+        """Yield figures that get worse: orders by load case, largest first, ripple, pressure, K_Hbeta."""
         before, after = self.start, self.optimum
         change, error = after.level - before.level, before.level_error + after.level_error
         floor = max(before.level.max(), after.level.max()) - FALL
@@ -200,12 +200,12 @@ class HeardOptimization:
             yield f"{name} at {self.torque[load]:.4g} N m {ends}"
 
     def costs(self) -> str:
-        """Return what gets worse, in a sentence."""
+        """Return a sentence on the figures that get worse."""
         worse = list(self.worse())
         return f"Gets worse: {'; '.join(worse)}." if worse else "Nothing gets worse beyond its error."
 
     def partings(self) -> Iterator[str]:
-        """Yield where flanks would part, so that no linear response holds."""
+        """Yield sentences on load cases in which flanks part, so that no linear response holds."""
         for name, design in (("the start", self.start), ("the optimum", self.optimum)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
                 yield f"Flanks of {name} would part at {self.torque[load]:.4g} N m: no linear level holds."

@@ -66,7 +66,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         return super().normalized(case, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies, the pairs analyzed whole, the model of the others and the table take."""
+        """Return the cost of bodies, pairs analyzed in full, the model of the others, and the table."""
         with boundary_errors():
             request = case.request(scatter_request, inputs)
             predicted = predicted_designs(request.checked, cache)

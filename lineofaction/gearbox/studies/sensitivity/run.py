@@ -98,7 +98,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         _ = case.request(_tables, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the gears and the tables over each deviation take, without and with corner contact."""
+        """Return the cost of the gears and the tables over each deviation, with and without corners."""
         with boundary_errors():
             checked = case.request(_tables, inputs)
             skewed = replace(checked.request, center_distance_change=np.zeros(1))  # a table has one axis
