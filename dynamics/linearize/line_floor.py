@@ -77,7 +77,7 @@ class LineFloor:
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
 
-        What a stiffness that varies may change of it is `changed` (S,), that of the worst bearing if None.
+        `changed` (S,) is its relative change by a varying stiffness; None: the change of the worst bearing.
         """
         changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)

@@ -53,7 +53,7 @@ def driving_speed(result: RunResult, mesh: int = 0) -> FloatArray:
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
     """Return the highest multiple of a mesh's frequency below the pass frequency at its highest speed.
 
-    Of a run without meshes, of its leading shaft's rotation.
+    In a run without meshes, orders are multiples of the leading shaft's rotation.
     """
     top = float(np.max(order_frequency(result, mesh), initial=0.0))
     if top == 0.0:

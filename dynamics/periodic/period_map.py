@@ -340,7 +340,7 @@ def _highest(system: System, frequency: FloatArray) -> float:
     """Return the highest natural frequency that steps resolve, Hz.
 
     Flexible shafts and housings have coordinates far above what is of interest; the implicit method lets them
-    follow as springs do. Of a housing what meshes excite is of interest.
+    follow as springs do. In housings the vibration by meshes is of interest.
     """
     interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
     interest += [system.sampling.mode_frequency for _ in system.rotors.housings]

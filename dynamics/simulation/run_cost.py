@@ -35,7 +35,8 @@ FASTER, MAKING = 2.3, 2.0
 class ProbedRun(NamedTuple):
     """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
 
-    `error_share`: steps of its error estimates over its own. What flanks that part add is not known before.
+    `error_share`: steps of its error estimates over its own. The additional cost of flanks that part is not
+    known in advance.
     """
 
     start: float
