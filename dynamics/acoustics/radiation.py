@@ -62,7 +62,7 @@ class RadiationModel(Protocol):
     def error_band(self, ka: float) -> tuple[float, float]:
         """Return by how much levels are off, dB: from (below 0: too quiet) and to.
 
-        Of bodies that breathe, move as a whole or bend once around, and of walls of boxes
+        The bounds hold for bodies that breathe, move as a whole or bend once around, and for walls of boxes
         (docs/theory/sound-power.md). `ka`: wavenumber times `Hull.equivalent_radius`.
         """
 

@@ -24,7 +24,7 @@ from dynamics.motion.observation import local_state
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
-ITERATIONS = 200
+ITERATIONS = 200  # most damped Newton steps
 SETTLED = 1e-12  # unbalanced force over the largest force, at which the search ends
 SOFTEST = 1e-9  # least damping of a step, over the largest stiffness
 UNRESISTED = 1e-13  # stiffness over the largest, below which no spring resists a motion

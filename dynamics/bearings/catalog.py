@@ -23,6 +23,7 @@ from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
 from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
+"""Ball diameter over pitch diameter, at which `RATING` has values."""
 RATING = (14.7e6, 16.5e6, 16.4e6, 16.1e6, 15.9e6, 15.2e6, 14.0e6, 12.8e6, 11.6e6)  # Pa; straight between
 FILLED = math.radians(187.5)
 NUMBERS = range(5, 41)

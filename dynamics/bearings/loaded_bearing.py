@@ -29,7 +29,7 @@ from dynamics.kernels.routine import Routine
 from dynamics.types import FloatArray
 
 TOLERANCE = 1e-12  # unbalanced force over the load, at which the search ends
-STEPS = 500
+STEPS = 500  # most Newton steps to the displacement under a load
 MIN_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 

@@ -22,7 +22,7 @@ from dynamics.motion.force_balance import (
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
-ITERATION_LIMIT = 50
+ITERATION_LIMIT = 50  # most Newton iterations to equilibrium
 RESIDUAL_LIMIT = 1e-10  # unbalanced force over the largest force, at which the search ends
 CLOSE_LIMIT = 1e-12  # the same for a rest that is compared with a neighboring one
 MIN_TOUCH = 1e-3  # over the first level: force of the first guess without a load

@@ -15,7 +15,7 @@ from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 STAGES = 7  # stages of the method with the most of them
-LEVELS_PER_OCTAVE = 4
+LEVELS_PER_OCTAVE = 4  # step sizes to a factor of 2
 _PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
 _PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 

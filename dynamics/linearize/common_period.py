@@ -14,7 +14,7 @@ from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.mechanism.phases import repeating_phases
 from dynamics.types import FloatArray
 
-AGREEMENT = 1e-12
+AGREEMENT = 1e-12  # relative error of a proportion of integers that counts as exact
 
 
 @dataclass(frozen=True)

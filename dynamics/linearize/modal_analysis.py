@@ -25,7 +25,7 @@ from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 from model_studies.record import under_key
 
-MAX_ORDERS = 100
+MAX_ORDERS = 100  # largest multiple of a mesh frequency
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
 """Fields of `Modes` that an analysis keeps of the modes at rest."""
@@ -49,10 +49,11 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
 class ModalAnalysis(ArrayFile):
     """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.
 
-    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
-    modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
-    cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
-    did not keep them. Points of the surfaces of housings: none where no surface moves.
+    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
+    Fields of modes at rest are those of `Modes`, fields over speed those of `WhirlBranches` (NaN where a mode
+    does not oscillate), fields of crossings with orders those of `CriticalSpeeds`. Points of the axes of
+    shafts (`ShaftAxes`): none in files of versions that did not keep them. Points of the surfaces of
+    housings: none where no surface moves.
     """
 
     SCHEMA = "lineofaction modal analysis"

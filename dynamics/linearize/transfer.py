@@ -279,7 +279,8 @@ def flank_transfer(
 ) -> FlankTransfer:
     """Return the transfer functions of a scene about its loaded equilibrium.
 
-    Of tables of long periods in the `strongest_lines` of its own flanks, the mesh orders always among them.
+    With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
+    always among them.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
 
 
-LATERAL, TILT = (0, 1), (3, 4)
+LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
 
 
 OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size

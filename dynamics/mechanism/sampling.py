@@ -26,7 +26,7 @@ MIN_FACTOR = 3
 """Inner samples at the least, per output sample and per sample that would pass the highest resolved mode."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
-SPEED_POINTS = 257
+SPEED_POINTS = 257  # times of a run at which speeds are evaluated, in addition to the knots of laws
 DIGITS = 3  # significant digits of an automatic rate
 
 

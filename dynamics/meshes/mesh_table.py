@@ -14,7 +14,7 @@ from dynamics.types import FloatArray
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
 LEVERS = ("load_arm", "sliding_share", "sliding_lever")
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
-LARGEST_PERIOD = 1_000_000
+LARGEST_PERIOD = 1_000_000  # most base pitches after which a table repeats
 
 
 @runtime_checkable

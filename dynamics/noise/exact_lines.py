@@ -1,8 +1,8 @@
 """Boundary elements at the loudest lines of a housing, which take the place of the estimate there alone.
 
 The resistance of a line holds for any motion of the housing at its frequency, and with the square of the
-frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. What a line is off says
-nothing of lines farther away.
+frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. The error of the estimate
+at a line says nothing about lines farther away.
 """
 
 from __future__ import annotations

@@ -359,8 +359,8 @@ def cached_radiation(
     Parameters
     ----------
     cache : Path, optional
-        Directory of kept results and of what is known of the host; None: neither read nor written. What takes
-        below a second is not kept.
+        Directory of kept results and of what is known of the host; None: neither read nor written.
+        Results that take less than a second are not stored.
     progress : callable, optional
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
     workers : Workers

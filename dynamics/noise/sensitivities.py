@@ -20,7 +20,7 @@ from dynamics.types import FloatArray
 from model_studies.progress import Progress
 from model_studies.variants import run_variants
 
-STEPS = {"housing_frequency": 0.02}
+STEPS = {"housing_frequency": 0.02}  # relative steps of figures for which `STEP` is too large
 STEP = 0.1
 """Relative step of factors."""
 CURVED = 0.25

@@ -240,7 +240,8 @@ class SoundBand:
     def about(self, power: OrderPower) -> SoundBand:
         """Return the bands, as wide as they are, about the levels of other powers of the same orders, (H, S).
 
-        Those of a response in which stiffness varies, where the ranges were run over the mean stiffness.
+        The levels are those of a response with varying stiffness, while the ranges were run with the mean
+        stiffness.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
         levels = _levels(self.order, loudest, self.order, power).tolist()

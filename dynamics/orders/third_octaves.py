@@ -21,6 +21,7 @@ MIN_LINES = 3.0
 REFERENCE = 1000.0  # Hz, the center of band 0
 SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
 NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+"""Nominal center frequencies of a decade, IEC 61260-1."""
 
 
 @brief

@@ -21,14 +21,14 @@ from dynamics.periodic.shooting import (
 )
 from dynamics.types import FloatArray
 
-ITERATION_LIMIT = 16
+ITERATION_LIMIT = 16  # most Newton iterations to a point of the branch
 FALLING = 0.3  # residual over the one before: where more is left, derivatives are taken anew
 EASY = 1  # derivations for a motion, with no more of which the step along the branch grows
 SMALLEST_STEP = 1e-5  # over the largest step
 LARGEST_STEP = 0.02  # between neighboring motions, over the larger speed or the size of the state
-MAX_POINTS = 500
+MAX_POINTS = 500  # usual limit of the points of a branch
 FOLD_LIMIT = 1e-6  # over the largest speed: distance of a fold beyond the motions found
-FOLD_ITERATIONS = 20
+FOLD_ITERATIONS = 20  # most iterations to a fold
 FOLD_SHARE = 0.1  # least part of a bracket that an iteration takes off
 
 

@@ -12,8 +12,8 @@ from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.types import ComplexArray, FloatArray
 
 ON_THE_CIRCLE = 1e-6  # multipliers of undamped motions lie on it but for rounding
-ITERATION_LIMIT = 30
-HALVINGS = 12
+ITERATION_LIMIT = 30  # most Newton iterations to a motion
+HALVINGS = 12  # most halvings of a Newton step
 RESIDUAL_LIMIT = 1e-9  # largest change over a period, over the size of a state
 SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
 

@@ -25,7 +25,7 @@ from host import cpu_seconds
 from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 
-SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
+SAMPLES_PER_PITCH = 64  # least samples of a pitch; doubled until there are as many as steps
 FINE = 256  # samples per base pitch, for the share of the period that flanks touch
 PER_MESH = (
     "mean_error",
@@ -37,7 +37,7 @@ PER_MESH = (
     "coasting",
 )
 KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
-UP, DOWN, BRANCH = 0, 1, 2
+UP, DOWN, BRANCH = 0, 1, 2  # numbers of the curves: rising speeds, falling speeds, the branch
 CURVES = ("up", "down", "branch")
 SAME = 0.02  # distance over the rms of the transmission error, below which motions are the same
 MESH = ("point", "mesh")

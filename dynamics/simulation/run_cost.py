@@ -35,7 +35,8 @@ FASTER, MAKING = 2.3, 2.0
 class ProbedRun(NamedTuple):
     """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
 
-    `error_share`: steps of its error estimates over its own. What flanks that part add is not known before.
+    `error_share`: steps of its error estimates over its own. The additional cost of flanks that part is not
+    known in advance.
     """
 
     start: float
@@ -56,7 +57,7 @@ def probe_run(scene: Scene) -> ProbedRun:
     Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
     can be taken.
     """
-    assemble(scene)  # loads what it needs
+    assemble(scene)  # loads modules and compiled code before the measurement
     began = cpu_seconds()
     system = assemble(scene)
     assembling = cpu_seconds() - began

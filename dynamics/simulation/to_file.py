@@ -305,8 +305,8 @@ class _Errors:
     def measure(self, end: Ending, run: RunContext) -> tuple[Json, RunStatus]:
         """Return the errors by source, and how the run ended once they are measured.
 
-        That of the steps is measured over the whole run where windows cannot see it, unless effects are found
-        missing, with which the run is to be repeated anyway. A cancelled measurement cancels the run.
+        The error of the steps is measured over the whole run where windows cannot see it, unless missing
+        effects mean that the run is repeated anyway. A cancelled measurement cancels the run.
         """
         system, integration = self.start.system, self.start.system.scene.integration
         if not end.status.usable:

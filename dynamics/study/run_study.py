@@ -26,7 +26,7 @@ from model_studies.record import under_key
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
-FRACTIONS = (0.05, 0.5, 0.95)
+FRACTIONS = (0.05, 0.5, 0.95)  # fractions of the quantiles that are stated
 RUNS = 8
 """Most runs in a batch, which an interruption loses of each worker. The number is the same for all kinds of
 workers.
