@@ -51,7 +51,7 @@ def scene_inputs(scene: SceneLike) -> dict[str, Any]:
 
 
 def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
-    """Return ``{"case": ...}`` or, for an input with shafts, ``{"scene": ...}`` as JSON; raises `BadInput`."""
+    """Return ``{"case": ...}``, or with shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
     if isinstance(source, schemas.Case):
         return case_inputs(source)
     if isinstance(source, schemas.SceneInput):
