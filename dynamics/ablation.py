@@ -92,7 +92,7 @@ def _run_figures(result: RunResult, seconds: float, quantity: LevelQuantity) -> 
     """
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
-    position = np.unwrap(result.position[0], period=1.0)  # of the first mesh, in base pitches
+    position = np.unwrap(result.position[0], period=1.0)  # position of the first mesh, base pitches
     travel = abs(float(np.sum(np.diff(position))))
     pitches = max(1, min(PITCHES, int(travel / 4.0)))  # at least four blocks: two of them in the settled half
     transmission = _largest(result, "dynamic_transmission_error", pitches)
@@ -175,7 +175,7 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     Attributes
     ----------
     nominal, effects, left_out
-        As in `model_studies.Ablation`.
+        Fields of `model_studies.Ablation`.
     """
 
     mesh: tuple[str, ...]

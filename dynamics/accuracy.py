@@ -29,21 +29,21 @@ from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
-MAX_BLOCKS, ORDERS = 6, 5
-MIN_SAMPLES = 32
-MIN_PITCHES = 2.0
+MAX_BLOCKS, ORDERS = 6, 5  # most blocks of a run that are compared, and mesh orders compared in each
+MIN_SAMPLES = 32  # least samples of a block
+MIN_PITCHES = 2.0  # least base pitches of the first mesh in a block
 BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
 IN_PLANE = (*BY_TORSION, "x", "y")
-ORDER_MATCH = 1e-6
-NM = 1e-9
+ORDER_MATCH = 1e-6  # relative difference of orders, below which they are the same
+NM = 1e-9  # nanometer, m
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
 NAN = float("nan")
-WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
+WARM_UP = 1e-4  # duration of a run before the measured ones, s: it compiles their routines
 HALF, TABLE_REST = "table_half", 1.0 / 3.0
 """Name of the fidelity of every second position node, and share of its error that the whole table has: second
 order.
 """
-MIN_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+MIN_RATE = 1.5  # least fall of errors from fidelity to fidelity that allows an extrapolation
 STEPS = 0.2
 """Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 

@@ -16,7 +16,7 @@ DOUBLE = 4  # ordinates are real, double precision
 EVEN = 1  # abscissa by its first value and its increment
 
 
-NO_AXIS = (0, 0, 0, "NONE", "NONE")
+NO_AXIS = (0, 0, 0, "NONE", "NONE")  # fields of an axis that a function does not have
 SPECTRUM = "amplitude (peak), Hann window"
 
 

@@ -58,7 +58,7 @@ def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
     kind : str
         The name under which `run_log` keeps the work.
     cost : Cost
-        On the reference host of `host_speed`.
+        Cost on the reference host of `host_speed`.
     cache : Path, optional
         Directory of what is known of the host; None: its speed is measured once per process.
     """
@@ -81,7 +81,7 @@ def measured(
     Parameters
     ----------
     kind, cost, cache
-        As of `on_this_host`.
+        Arguments of `on_this_host`.
     workers : Workers
         Who does some of it: their time counts.
     """

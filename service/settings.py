@@ -47,11 +47,11 @@ class Settings(BaseSettings):
 
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
-    """`host`, `port`: Where it listens; beyond loopback only with access keys."""
+    """`host`, `port`: Address on which the service listens; beyond loopback only with access keys."""
     management_host: str = "127.0.0.1"
     management_port: int | None = Field(None, ge=0, le=65535)
-    """`management_host`, `management_port`: Where health, readiness and metrics are answered without a key;
-    None: nowhere.
+    """`management_host`, `management_port`: Address that answers health, readiness and metrics without a key;
+    None: no address.
     """
     data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
     """Jobs, results and the compliance cache."""
@@ -63,7 +63,7 @@ class Settings(BaseSettings):
     results_access_key_id: SecretStr | None = None
     results_secret_access_key: SecretStr | None = Field(None, validate_default=True)
     """`results_access_key_id`, `results_secret_access_key`: Credentials of that bucket, both or none; None:
-    those of the AWS_ variables.
+    the AWS_ variables.
     """
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
     """Largest size of the cache of files from another place, MB."""

@@ -57,7 +57,7 @@ def traceparent_of(span: Span) -> str:
 
 
 def current_traceparent(sent: str) -> str:
-    """Return that of the span of the request, or else what its caller `sent`."""
+    """Return the traceparent of the request's span, or else the one that its caller `sent`."""
     return traceparent_of(trace.get_current_span()) or sent
 
 
@@ -101,7 +101,7 @@ def flush_spans() -> None:
 
 @cache
 def span_provider() -> TracerProvider | None:
-    """Return what sends the spans of this process to the receiver of the environment; None: there is none.
+    """Return the provider that sends this process's spans to the receiver of the environment; None: none.
 
     Then they go where the provider of the API sends them, by default nowhere.
     """

@@ -50,7 +50,8 @@ def _far_field_resistance(
 ) -> ComplexArray:
     """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
 
-    Of the kernel e^{+ikr}: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn of panels.
+    The kernel is e^{+ikr}. Arguments: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn
+    of panels.
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())

@@ -162,7 +162,7 @@ def level_bands(
     Parameters
     ----------
     levels : callable
-        From the values of all parameters by name to levels in dB, (L,).
+        Function of the values of all parameters by name that returns levels in dB, (L,).
     cases : int
         Joint cases, spread evenly; best a power of two.
     """

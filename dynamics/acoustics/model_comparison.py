@@ -197,7 +197,7 @@ def compare_models(
     progress : callable
         Called as progress(stage, fraction); before a costly model with its predicted cost behind the stage.
     offered : sequence of RadiationModel, optional
-        Of which cost and error are stated, too; they are not computed.
+        Further models whose cost and error are stated; they are not computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     """

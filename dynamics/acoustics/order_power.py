@@ -43,7 +43,7 @@ class ModalResistance:
         Parameters
         ----------
         frequency : (B,) array
-            Hz.
+            Frequencies, Hz.
         velocity : (B, M) array
             Complex peak amplitudes of the shapes, m/s.
         """
@@ -231,7 +231,7 @@ def order_power(resistance: ModalResistance, frequency: FloatArray, velocity: Co
     Parameters
     ----------
     frequency : (K, B) array
-        Hz, within those of the resistance.
+        Frequencies within those of the resistance, Hz.
     velocity : (K, B, M) array
         Complex peak amplitudes of the M shapes.
     """

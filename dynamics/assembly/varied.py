@@ -42,9 +42,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     Parameters
     ----------
     mesh : int
-        Its index in the scene.
+        Index of the mesh in the scene.
     table : MeshTable
-        At one misalignment and center distance.
+        Table at one misalignment and center distance.
     """
     used, plain, spatial = _used(system, mesh, table), *_laws(system)
     plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())
@@ -132,8 +132,8 @@ def starting_at(system: System, time: float, quanta: IntArray) -> System:
 def operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
     """Return misalignment and center-distance change of every mesh in m, (m, 2).
 
-    Those of the bodies displaced by `displacement` (n,) where the mesh's table follows them, else the mesh's
-    constant ones.
+    Where the mesh's table follows the bodies, the values are those at `displacement` (n,), else the mesh's
+    constants.
     """
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
     points = np.array(

@@ -27,11 +27,11 @@ from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 HOLDS = ALONG | AGAINST
-STEPS = 100
-SETTLED = 1e-12  # of the sum of the loads of all balls
+STEPS = 100  # most safeguarded Newton steps to the place of a ring that slides
+SETTLED = 1e-12  # thrust over the sum of the loads of all balls, at which a sliding ring rests
 Seat = tuple[float, float, float, float, float, float, float, float]
 Thrust = tuple[float, float, float, float, float, float, float]
-DIRECTIONS, AXIAL = 5, 2
+DIRECTIONS, AXIAL = 5, 2  # number of displacements of a bearing (x, y, z, tilt_x, tilt_y), and index of z
 
 
 @dataclass(frozen=True)

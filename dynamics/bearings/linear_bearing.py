@@ -15,7 +15,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-MAX = 5
+MAX = 5  # most rows of a linear bearing
 
 
 class LinearBearingLaws(NamedTuple):

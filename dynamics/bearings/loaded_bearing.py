@@ -28,8 +28,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import Routine
 from dynamics.types import FloatArray
 
-TOLERANCE = 1e-12  # of the load
-STEPS = 500
+TOLERANCE = 1e-12  # unbalanced force over the load, at which the search ends
+STEPS = 500  # most Newton steps to the displacement under a load
 MIN_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 
@@ -95,7 +95,7 @@ class LoadedBearing:
         displacement : (5,) array_like
             x, y, z (m), tilt_x, tilt_y (rad) about the bearing's center.
         angle : float
-            Of the first element from x towards y, rad.
+            Angle of the first element from x towards y, rad.
         """
         local = self._local
         local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)

@@ -19,8 +19,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-EXPONENT = 10.0 / 9.0
-DIRECTIONS = 5
+EXPONENT = 10.0 / 9.0  # exponent of line contact, from load over approach
+DIRECTIONS = 5  # number of displacements of a bearing: x, y, z, tilt_x, tilt_y
 
 
 class RollerElements(NamedTuple):

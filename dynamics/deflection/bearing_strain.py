@@ -18,7 +18,7 @@ from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.types import FloatArray
 
-HALVINGS = 50
+HALVINGS = 50  # bisections that find the clearance
 FREE = 1e-12
 """Part of the force up to which an element does not press."""
 

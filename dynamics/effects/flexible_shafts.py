@@ -26,7 +26,7 @@ from dynamics.types import FloatArray
 
 SHARE = 0.05
 """Least displacement at a mesh, over the deflection of the mesh, at which a scene calls for the effect."""
-ROUNDING = 1e-9
+ROUNDING = 1e-9  # misalignment over displacement, below which it is rounding
 NOTHING_BENDS = (
     "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
 )

@@ -21,7 +21,7 @@ from dynamics.types import FloatArray
 
 SHARE = 0.01
 """Least shift of a natural frequency, over the frequency, at which a scene calls for the effect."""
-LATERAL, TILT = (0, 1), (3, 4)
+LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
 
 
 class Gyroscopic(RotorEffect):

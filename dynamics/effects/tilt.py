@@ -5,7 +5,7 @@ from __future__ import annotations
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 
-CENTERED = 1e-9  # of the shaft's length
+CENTERED = 1e-9  # distance from the center of mass over the shaft's length, below which a force is centered
 
 
 class Tilt(RotorEffect):

@@ -15,7 +15,7 @@ from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 
-MAX_TEETH = 100_000
+MAX_TEETH = 100_000  # largest number of teeth of a gear
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,7 @@ def meshed_step(
     Parameters
     ----------
     path, element_size
-        As `mesh_step` takes them, and it raises the same.
+        Arguments of `mesh_step`, which decides the errors too.
     cache : Path, optional
         Directory of kept results; None: neither read nor written.
     """
@@ -87,7 +87,7 @@ def reduced_housing(
         Directory of kept results (see `host.default_cache_directory`) and of what is known of the host; None:
         neither read nor written.
     limit : CostLimit, optional
-        What computing it may cost. Default: 600 CPU s and 8 GB.
+        Limits of the cost of the reduction. Default: 600 CPU s and 8 GB.
     expected : callable, optional
         Called with the predicted cost before it is computed; not where it is in the cache.
     """

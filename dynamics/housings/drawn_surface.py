@@ -24,7 +24,7 @@ from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
-MAX_TRIANGLES = 20_000
+MAX_TRIANGLES = 20_000  # largest number of triangles of a drawn surface
 WANTED_TRIANGLES = 6_000
 """Most triangles of a drawn solid without small faces; a solid with them may have up to the maximum."""
 _FARTHEST = from_to(0.0, 1e3, "m")

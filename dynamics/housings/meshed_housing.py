@@ -16,7 +16,7 @@ from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
 from dynamics.types import FloatArray, IntArray
 
-HIGHEST_RATIO = 1.0
+HIGHEST_RATIO = 1.0  # largest damping ratio of a mode
 
 
 class _Damping(Protocol):

@@ -23,7 +23,7 @@ from dynamics.solid_housing import STEP_SUFFIXES
 from host import ChildFailed, ChildOutOfMemory, ask_child
 
 STEP_WORKER = Path(__file__).with_name("step_worker.py")
-STEP_SECONDS = 600.0
+STEP_SECONDS = 600.0  # usual limit of the time that gmsh takes for a STEP file, s
 WALL_ELEMENTS = 0.7
 """Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
 Made = TypeVar("Made")

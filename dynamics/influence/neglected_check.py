@@ -46,7 +46,7 @@ _KNOWN: dict[_Key, dict[str, Influence]] = {}
 """Influences by content of the scene, for the last `KNOWN` scenes: a scene is often run again with other
 steps or outputs.
 """
-KNOWN = 64
+KNOWN = 64  # most scenes whose influences stay in memory
 _SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
 """CPU seconds of one line at one speed over the square of the freedoms, of varying stiffness at one speed,
 and of one effect apart from its lines.

@@ -23,7 +23,7 @@ from dynamics.motion.motion import (
     add_motion,
 )
 
-STAGE_COUNT = 7
+STAGE_COUNT = 7  # stages of the method, the last at the end of the step
 
 
 @routine

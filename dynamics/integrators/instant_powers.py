@@ -67,7 +67,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
     """Return the power that changing speeds w of a shaft and W of its frame store in element `e`, W.
 
-    Of the term (c_3 w W + c_4 W^2) y^2/2 and of the load -W^2 l y.
+    The energies are the term (c_3 w W + c_4 W^2) y^2/2 and the load -W^2 l y.
     """
     entry, row, spin_rate, frame_rate = system.elements.entry[e], system.elements.first[e], 0.0, 0.0
     for k in range(work.motion.shape[0]):
@@ -107,7 +107,7 @@ def _in_elements(
             continue
         position += power_by_frames(elements, work.local, e)
         if law == UNBALANCE:
-            continue  # its work is what it stores
+            continue  # its work is the change of its energy
         for r in range(first, end):
             if law in (SPEED_TORQUE, APPLIED_FORCE):
                 supplied -= force[r] * (rate[r] + drift[r])

@@ -10,7 +10,7 @@ from dynamics.integrators.linear_elimination import gauss_jordan
 from dynamics.integrators.workspace import Workspace
 from dynamics.kernels.compiled import inner
 
-ITERATION_LIMIT = 25
+ITERATION_LIMIT = 25  # most Newton iterations of a stage
 
 
 WEAK = 0.01

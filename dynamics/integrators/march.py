@@ -37,10 +37,10 @@ from model_studies.stage_clock import TimeTaken
 
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
-CHUNKS = 50
+CHUNKS = 50  # usual number of blocks of a run, between which progress is reported
 BLOCK_WORK = 25_000
 """Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
-FIRST_STEP = 1e-6
+FIRST_STEP = 1e-6  # size of the first step without a fixed one, s
 NO_SAMPLES = np.zeros(0, dtype=np.int64)
 STEP_SHARE = 0.07
 """Error allowed per step over the tolerance of the run.
@@ -298,7 +298,8 @@ def march_on(
 ) -> RunStatus:
     """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration, rate = march.system.scene.duration, march.system.sampling.rate
-    work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
+    # least work of a block, samples times freedoms
+    work = BLOCK_WORK if progress is None and cancel is None else 0
     minimum, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
     block = min(max(duration / CHUNKS, minimum), longest)
     code = StructureCode(march.control.implicit, march.structure)

@@ -22,13 +22,13 @@ from dynamics.motion.force_balance import (
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
-ITERATION_LIMIT = 50
-RESIDUAL_LIMIT = 1e-10  # of the largest force
-CLOSE_LIMIT = 1e-12  # of a rest that is compared with one beside it
-MIN_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
+ITERATION_LIMIT = 50  # most Newton iterations to equilibrium
+RESIDUAL_LIMIT = 1e-10  # unbalanced force over the largest force, at which the search ends
+CLOSE_LIMIT = 1e-12  # the same for a rest that is compared with a neighboring one
+MIN_TOUCH = 1e-3  # over the first level: force of the first guess without a load
 ROUNDED = 4.0  # times the rounding of all terms of a balance
-TURNS = 8  # of a first guess, whose meshes turn on as it loads them
-LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
+TURNS = 8  # iterations of a first guess, whose meshes turn on under their load
+LOST_CONTACT = 1e-6  # force over the largest, below which an endless search has lost contact
 
 
 @dataclass(frozen=True)

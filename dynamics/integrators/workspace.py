@@ -14,8 +14,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-STAGES = 7  # of the method with the most stages
-LEVELS_PER_OCTAVE = 4
+STAGES = 7  # stages of the method with the most of them
+LEVELS_PER_OCTAVE = 4  # step sizes to a factor of 2
 _PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
 _PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
@@ -39,14 +39,14 @@ LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
 class Count(IntEnum):
     """Entries of the step statistics."""
 
-    LEVEL = 0  # of the current step size
+    LEVEL = 0  # level of the current step size
     OUTPUT = 1  # next output sample
     ACCEPTED = 2
     REJECTED = 3
     NEWTON_TOTAL = 4
-    NEWTON_MOST = 5  # in one stage
+    NEWTON_MOST = 5  # most Newton iterations in one stage
     NEWTON_FAILED = 6  # steps repeated because Newton failed
-    SMALLEST_LEVEL = 7  # of an accepted step: the largest step
+    SMALLEST_LEVEL = 7  # smallest level of an accepted step: the largest step
     LARGEST_LEVEL = 8
     FIRST_ROW = 9  # output sample that the first row of the output arrays is for
     POINT = 10  # next point of the inner grid

@@ -16,7 +16,7 @@ from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.whirl_modes import SAME, WhirlModes, terms_at, whirl_modes_with, whirl_sense
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
+TIE = 0.05  # weight of frequencies against shapes: it decides between modes of equal shape
 INTERVALS, FINEST = 8, 32
 """Number of equal parts of a range of speeds over which modes are followed, and most parts of each of them.
 """

@@ -15,9 +15,9 @@ from dynamics.linearize.operating_speeds import mesh_frequencies
 from dynamics.linearize.speed_matrices import SpeedMatrices, speed_matrices
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
-ITERATIONS = 12
-HALVINGS = 12
+CLOSE = 1e-9  # last step of a crossing over the eigenvalue; the error is of the order of its square
+ITERATIONS = 12  # most Newton steps to a crossing
+HALVINGS = 12  # most halvings of an interval with a crossing
 ALIKE = 0.5  # modal assurance with the mode at either speed
 
 

@@ -118,7 +118,7 @@ def forced_response(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+        Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float

@@ -34,6 +34,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
+"""Most samples of a period, in all and per order, and most orders, up to which `extremes` is exact."""
 
 
 def _none() -> ComplexArray:
@@ -125,7 +126,7 @@ def harmonic_response(
     Parameters
     ----------
     speed : (S,) array
-        Of the first drive that turns, rad/s, either sign.
+        Speeds of the first drive that turns, rad/s, either sign.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -278,7 +279,7 @@ def along_rows(u: ComplexArray, rows: FloatArray) -> ComplexArray:
 def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
     """Return the bearing forces (b, 3 or 6, S, H) by motions (S, H, n) at omega (S, H).
 
-    Those of a motion less those of none, real and imaginary parts apart.
+    The forces are those with the motion less those without, for real and imaginary part one after the other.
     """
     system, rest = at.system, np.zeros((1, u.shape[2]))
     elements, rows = system.arrays.elements, system.arrays.direction.T

@@ -28,7 +28,7 @@ LINE_ERROR = 1.0 / 7.0
 """Largest error of a straight line between two frequencies, over second derivative times square of the step:
 1/8 for a parabola, more for other curves.
 """
-MIN_RATIO = 1e-4
+MIN_RATIO = 1e-4  # damping ratio that stands for a smaller one
 COUNTED = 1e-10
 """Least share of a direction of the rows in the power of all lines, from which the direction is an input."""
 BINS = 8
@@ -77,7 +77,7 @@ class LineFloor:
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
 
-        What a stiffness that varies may change of it is `changed` (S,), that of the worst bearing if None.
+        `changed` (S,) is its relative change by a varying stiffness; None: the change of the worst bearing.
         """
         changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)

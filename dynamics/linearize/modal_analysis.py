@@ -25,7 +25,7 @@ from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
 from model_studies.record import under_key
 
-MAX_ORDERS = 100
+MAX_ORDERS = 100  # largest multiple of a mesh frequency
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
 """Fields of `Modes` that an analysis keeps of the modes at rest."""
@@ -49,10 +49,11 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
 class ModalAnalysis(ArrayFile):
     """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.
 
-    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
-    modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
-    cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
-    did not keep them. Points of the surfaces of housings: none where no surface moves.
+    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
+    Fields of modes at rest are those of `Modes`, fields over speed those of `WhirlBranches` (NaN where a mode
+    does not oscillate), fields of crossings with orders those of `CriticalSpeeds`. Points of the axes of
+    shafts (`ShaftAxes`): none in files of versions that did not keep them. Points of the surfaces of
+    housings: none where no surface moves.
     """
 
     SCHEMA = "lineofaction modal analysis"
@@ -167,7 +168,7 @@ def modal_analysis(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive or free rotation that turns, rad/s, increasing, >= 0; empty: none.
+        Speeds of the first drive or free rotation that turns, rad/s, increasing, >= 0; may be empty.
     orders : int
         Multiples of the mesh frequencies whose crossings with modes are found.
     time : float
@@ -175,8 +176,8 @@ def modal_analysis(
     progress : callable, optional
         Called with the fraction done; an exception in it ends the analysis.
     highest_frequency : float, optional
-        Hz to which flexible shafts are resolved, independent of the scene's output; left out: the highest of
-        the `orders` at the highest of the speeds, or of the scene if none is given.
+        Frequency to which flexible shafts are resolved, Hz, independent of the scene's output. Left out: the
+        highest of the `orders` at the highest of the speeds, or of the scene if no speed is given.
 
     Raises
     ------

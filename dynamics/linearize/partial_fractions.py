@@ -37,7 +37,8 @@ class PartialFractions:
         if count < MIN or not scale > 0.0:
             return None
         mobility = np.linalg.inv(mass)
-        motion = np.zeros((2 * count, 2 * count))  # of displacements times the scale, and rates
+        # derivative of the state: displacements times the scale, and rates
+        motion = np.zeros((2 * count, 2 * count))
         motion[:count, count:] = scale * np.eye(count)
         motion[count:, :count] = -mobility @ stiffness / scale
         motion[count:, count:] = -mobility @ damping

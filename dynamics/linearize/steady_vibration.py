@@ -25,7 +25,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 Terms = tuple[FloatArray, FloatArray]
 EXCITATIONS = ("static_error", "blocked_force")
 BLOCK = 1_000_000  # entries of the matrices solved at once
-NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+NOTHING = 1e-12  # force over the largest exciting force, below which harmonics are left out
 ROUNDED = 1e-3
 """Largest part of the exciting force that rounding of the elastic forces may be."""
 SWEPT = 0.34
@@ -127,7 +127,7 @@ def with_blocked(
 def _is_excited(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
     largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
-    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # what is not a number excites
+    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # NaN counts as excited
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
@@ -292,7 +292,8 @@ def _solve(
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
         swept = _swept(terms[part], per_meter)
-        with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
+        # an undamped mode at its natural frequency divides by 0
+        with np.errstate(divide="ignore", invalid="ignore"):
             if by_modes is not None:
                 solution, miss = by_modes.solve(omega[part], exciting)
                 if not np.max(miss, initial=0.0) <= PRECISE * maximum:

@@ -1,7 +1,7 @@
 """The lines of a long common period that a response is solved in: the strongest of every mesh order.
 
-Over a hunting cycle of 1 541 base pitches ten mesh orders are 15 410 lines. Those of the mesh, of both shafts
-and their sidebands are some 90 an order; what lies between them is products of small ones.
+Over a hunting cycle of 1 541 base pitches ten mesh orders are 15 410 lines. Lines of the mesh, of both shafts
+and their sidebands are some 90 per order; the lines between them are products of small ones.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 from model_studies.cached_file import cached_in
 
 BLOCK = 4_000_000  # complex displacements held at once
-SAME = 1e-9  # of the gradients of rows that are the same
+SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
 """Raised with every change of the numbers of a transfer function, or of what is kept with them."""
 
@@ -279,13 +279,14 @@ def flank_transfer(
 ) -> FlankTransfer:
     """Return the transfer functions of a scene about its loaded equilibrium.
 
-    Of tables of long periods in the `strongest_lines` of its own flanks, the mesh orders always among them.
+    With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
+    always among them.
 
     Parameters
     ----------
     system : System
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing, > 0.
+        Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float

@@ -48,14 +48,14 @@ def varied(at: Excited, steady: Steady) -> tuple[Steady, FloatArray]:
     Parameters
     ----------
     steady : Steady
-        With mean tangents; its receptances are those of all rows of the driving flanks.
+        Vibration with mean tangents; its receptances belong to all rows of the driving flanks.
 
     Returns
     -------
     Steady
-        Its `force` has what the varying tangents take; bit-equal where none vary.
+        Vibration whose `force` includes that of the varying tangents; bit-equal where none vary.
     (m, S) array
-        By how much the mean transmission errors differ from the mean static ones, m.
+        Mean transmission errors less the mean static ones, m.
 
     Raises
     ------

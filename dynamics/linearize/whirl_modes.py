@@ -21,14 +21,14 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
 
 
-LATERAL, TILT = (0, 1), (3, 4)
+LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
 
 
 OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
 
 
 STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
-SAME = 1e-6  # of a frequency: nearer modes count as repeated
+SAME = 1e-6  # relative difference of frequencies, below which modes count as repeated
 
 
 @dataclass(frozen=True)

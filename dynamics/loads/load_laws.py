@@ -15,7 +15,7 @@ from dynamics.loads.load_course import BySpeed, Course, Orders
 from dynamics.loads.time_law import TimeLaw
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
+BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2  # kinds of factors: the variable that they depend on
 
 
 class ForceCourseLaws(NamedTuple):

@@ -57,7 +57,7 @@ class Seats:
 def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to what holds them.
 
-    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    Bearings in a housing without mass, or with neglected mass, have the housing's matrix in series.
     """
     housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
     full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}

@@ -14,7 +14,7 @@ from dynamics.mechanism.columns import column_count, section_rows
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-ROTATION = 5
+ROTATION = 5  # index of the rotation about the axis among six strains
 
 
 ACROSS = (0, 1, 3, 4)

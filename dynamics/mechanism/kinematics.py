@@ -15,7 +15,7 @@ from dynamics.mechanism.train_speeds import TrainSpeeds
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-STANDSTILL = 1e-12  # of the fastest law: slower is at rest
+STANDSTILL = 1e-12  # speed over that of the fastest law, below which a part is at rest
 STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
 
 

@@ -13,7 +13,7 @@ from dynamics.mechanism.coupling_rows import full_matrix
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 
-RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
+RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)  # indices of strains: x and y, z, tilt_x and tilt_y
 
 
 def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:

@@ -11,7 +11,7 @@ from dynamics.mechanism.nominal_forces import levers, load_moments, shaft_accele
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knots
+BETWEEN_KNOTS = 8  # moments between two knots of a law
 
 
 def mean_forces(mechanism: Mechanism) -> FloatArray:

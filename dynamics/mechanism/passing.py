@@ -64,7 +64,7 @@ class Passing:
 def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int) -> tuple[Excitation, ...]:
     """Return the excitations of `shaft`: meshes to their `harmonics`, shafts, rolling bearings.
 
-    All drives keep the proportion of their extreme speeds. What is at rest does not pass.
+    All drives keep the proportion of their extreme speeds. Parts at rest excite nothing.
 
     Raises
     ------

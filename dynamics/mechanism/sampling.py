@@ -26,8 +26,8 @@ MIN_FACTOR = 3
 """Inner samples at the least, per output sample and per sample that would pass the highest resolved mode."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
-SPEED_POINTS = 257
-DIGITS = 3  # of a rate that is chosen
+SPEED_POINTS = 257  # times of a run at which speeds are evaluated, in addition to the knots of laws
+DIGITS = 3  # significant digits of an automatic rate
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def _filter_taps(taps: int, factor: int) -> FloatArray:
     at = np.arange(taps) - taps // 2
     if factor == 0:
         return np.asarray(at == 0, dtype=float)
-    shape = 0.1102 * (DESIGN - 8.7)  # of a stop band above 50 dB (Kaiser 1974)
+    shape = 0.1102 * (DESIGN - 8.7)  # shape of the window for a stop band above 50 dB (Kaiser 1974)
     weight = np.sinc(at / factor) * np.kaiser(taps, shape)
     return np.asarray(weight / np.sum(weight))
 

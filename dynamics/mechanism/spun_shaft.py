@@ -13,7 +13,7 @@ from dynamics.types import FloatArray
 
 MIN_SHIFT = 1e-4
 """Relative shift of a natural frequency below which a part of the moments is left out of time integration."""
-TILT_X, TILT_Y = 3, 4
+TILT_X, TILT_Y = 3, 4  # indices of the tilts among the freedoms of a rotor
 
 
 def spun_inertia(rotor: Rotor) -> FloatArray:

@@ -1,8 +1,8 @@
 """A scene at its steady temperatures: warm parts in place of the parts as drawn.
 
 All parts expand freely and alike in all directions. Parts whose sizes matter to 1e-4 stay as drawn: lengths,
-radii, base pitches. What is left are differences: play and axial force of bearings, center distance, backlash
-and misalignment of meshes.
+radii, base pitches. Differences remain: play and axial force of bearings, center distance, backlash and
+misalignment of meshes.
 """
 
 from __future__ import annotations

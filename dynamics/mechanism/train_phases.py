@@ -85,10 +85,12 @@ class _Train:
                 self.thickness.setdefault(flank.gear, base_thickness(scene, flank, index, line))
                 self.count[flank.gear] = self.count.get(flank.gear, 0) + 1
         self.used = {flank.key for pair in self.pairs for flank in pair}
-        self.angle: dict[tuple[int, int], float] = {}  # of flanks, by gear and side
-        self.moves: dict[int, dict[int, float]] = {}  # of gears: pitches per pitch of each assumed angle
+        self.angle: dict[tuple[int, int], float] = {}  # angle of each placed flank, by gear and side
+        # motion of each gear, pitches per pitch of each assumed angle
+        self.moves: dict[int, dict[int, float]] = {}
         self.assumed_angles: list[tuple[int, int]] = []
-        self.assumed_thickness: dict[int, None] = {}  # in the order in which they were assumed
+        # gears of assumed thickness, in the order of the assumptions
+        self.assumed_thickness: dict[int, None] = {}
 
     def assign(self, key: tuple[int, int], angle: float, moves: dict[int, float]) -> None:
         """Place a flank."""

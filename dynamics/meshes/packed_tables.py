@@ -13,7 +13,7 @@ from dynamics.meshes.level_energies import ORDER, energy_below
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
-BUCKETS_PER_KNOT = 4
+BUCKETS_PER_KNOT = 4  # equal buckets of position per knot, from which a look-up starts
 MIN = 4  # knots of a table that can be decimated
 
 

@@ -15,8 +15,8 @@ from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
 # Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
-FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
-MOTION_COLUMNS = 4
+FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3  # columns of the motion of a law
+MOTION_COLUMNS = 4  # number of these columns
 QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""

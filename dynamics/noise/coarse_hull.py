@@ -94,7 +94,7 @@ def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
 def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
     """Return the number of the next seed of every node; parts of the surface without a seed are one cell."""
     _, _, source = dijkstra(edges, directed=False, indices=seeds, min_only=True, return_predecessors=True)
-    number = np.full(edges.shape[0], len(seeds))  # that of nodes that no seed reaches
+    number = np.full(edges.shape[0], len(seeds))  # number of the nodes that no seed reaches
     number[seeds] = np.arange(len(seeds))
     reached = source >= 0  # a negative number of scipy's says that no seed is connected
     cell = np.where(reached, number[np.where(reached, source, 0)], len(seeds))

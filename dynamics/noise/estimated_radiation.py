@@ -43,7 +43,7 @@ def allowed_levels(
     ka : (F,) array
         Wavenumber times `Hull.equivalent_radius`.
     resolved : (F,) bool array
-        Where there are monopoles.
+        Whether there are levels by monopoles.
     """
     monopoles_off, plane_off = (
         np.array([model.error_band(float(value)) for value in ka]).T[:, :, None]

@@ -1,8 +1,8 @@
 """Boundary elements at the loudest lines of a housing, which take the place of the estimate there alone.
 
 The resistance of a line holds for any motion of the housing at its frequency, and with the square of the
-frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. What a line is off says
-nothing of lines farther away.
+frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. The error of the estimate
+at a line says nothing about lines farther away.
 """
 
 from __future__ import annotations
@@ -94,11 +94,11 @@ def corrected_radiation(
     Parameters
     ----------
     response, housing, bearings
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     model : BoundaryElements
-        With progress and workers.
+        Boundary elements with their progress and workers.
     cache : Path, optional
-        As of `cached_radiation`.
+        Cache as in `cached_radiation`.
     budget : float
         Predicted CPU seconds on the reference host: the lines are the same on every host.
     """

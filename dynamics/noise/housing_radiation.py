@@ -271,9 +271,9 @@ def housing_radiation(
     Parameters
     ----------
     housing : ReducedHousing
-        With a surface.
+        Housing with a surface.
     frequencies : array
-        Hz, above zero; the range grows outwards to the edges of third octaves.
+        Frequencies, Hz, above zero; the range grows outwards to the edges of third octaves.
     progress : callable
         Called with the fraction done.
     expected : callable, optional
@@ -281,7 +281,7 @@ def housing_radiation(
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     workers : Workers
-        They compute a frequency each.
+        Workers, which compute a frequency each.
     """
     air, requested = air or Air(), np.asarray(frequencies, dtype=float)
     if not requested.size:
@@ -359,12 +359,12 @@ def cached_radiation(
     Parameters
     ----------
     cache : Path, optional
-        Directory of kept results and of what is known of the host; None: neither read nor written. What takes
-        below a second is not kept.
+        Directory of kept results and of what is known of the host; None: neither read nor written.
+        Results that take less than a second are not stored.
     progress : callable, optional
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
     workers : Workers
-        As of `housing_radiation`.
+        Workers as in `housing_radiation`.
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
     file = (

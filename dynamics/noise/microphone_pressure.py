@@ -60,7 +60,7 @@ def microphone_pressure(
     Parameters
     ----------
     response : BearingHarmonics
-        As of `radiated_sound`.
+        Response as in `radiated_sound`.
     microphone : (3,) array
         m.
     power_bands : sequence of LevelBand, optional

@@ -51,13 +51,13 @@ def models_at(
     Parameters
     ----------
     response, housing, bearings
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     at : (int, int)
         Numbers of speed and order.
     models : sequence of RadiationModel
-        From coarse to fine.
+        Radiation models from coarse to fine.
     progress, offered, cache
-        As of `compare_models`.
+        Arguments of `compare_models`.
     """
     air, hertz = Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
@@ -119,11 +119,11 @@ def panel_sound(
     Parameters
     ----------
     response, housing, bearings, radiation
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     at : (int, int)
         Numbers of speed and order.
     model, air
-        Those of the radiation.
+        Model and air of the radiation.
     """
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])

@@ -243,13 +243,13 @@ def radiated_sound(
     response : BearingHarmonics
         Linear, or the orders of a run (`bearing_orders`); in the frame of the housing's mesh.
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     bearings : sequence of str or None
         Bearings in the order of the seats; None: those with the names of the seats.
     radiation : HousingRadiation
-        Of this housing, over the frequencies of the response.
+        Radiation of this housing, over the frequencies of the response.
     name : str
-        Of the housing.
+        Name of the housing.
     """
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
     if radiation.matrix.shape[1] != len(housing.stiffness):
@@ -260,7 +260,7 @@ def radiated_sound(
         )
     force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
-    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # of each bearing
+    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # force of each bearing alone
     amplitudes = modal_amplitudes(housing, response.frequency.ravel(), alone)
     powers = _powers(response.frequency, amplitudes, housing, radiation)
     floor = response.floor

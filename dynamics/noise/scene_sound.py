@@ -70,7 +70,7 @@ def scene_sound(
     response : BearingHarmonics
         Linear, or the orders of the run; in the frame of the meshes of the housings.
     surfaces : sequence of SurfaceHousing
-        At least one.
+        Housings with their surfaces, at least one.
     run : RunResult, optional
         Whose sound over time is found too.
     """

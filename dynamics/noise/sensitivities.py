@@ -20,7 +20,7 @@ from dynamics.types import FloatArray
 from model_studies.progress import Progress
 from model_studies.variants import run_variants
 
-STEPS = {"housing_frequency": 0.02}
+STEPS = {"housing_frequency": 0.02}  # relative steps of figures for which `STEP` is too large
 STEP = 0.1
 """Relative step of factors."""
 CURVED = 0.25
@@ -133,9 +133,10 @@ def sound_sensitivities(
     Parameters
     ----------
     model, speed, orders
-        As of `forced_power`; the level is the `largest_level`.
+        Arguments of `forced_power`; the level is the `largest_level`.
     scenes : callable
-        From one of them to the scene by its value: its level is by `flank_transfer`.
+        Function of a figure of the flanks that returns a function from its value to the scene. Its level is
+        computed by `flank_transfer`.
     progress : callable
         Called as progress("sensitivities", fraction).
 

@@ -240,7 +240,8 @@ class SoundBand:
     def about(self, power: OrderPower) -> SoundBand:
         """Return the bands, as wide as they are, about the levels of other powers of the same orders, (H, S).
 
-        Those of a response in which stiffness varies, where the ranges were run over the mean stiffness.
+        The levels are those of a response with varying stiffness, while the ranges were run with the mean
+        stiffness.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
         levels = _levels(self.order, loudest, self.order, power).tolist()
@@ -258,9 +259,9 @@ class SoundBand:
         Parameters
         ----------
         power : OrderPower
-            Of the nominal response, (H, S).
+            Power of the nominal response, (H, S).
         below, above : (H, S) arrays
-            By how much a level may lie below and above, dB, at least 0.
+            Distance of the ends of the band below and above a level, dB, at least 0.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
 
@@ -296,14 +297,14 @@ def sound_band(
     Parameters
     ----------
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing.
+        Speeds of the first drive that turns, rad/s, increasing.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     ranges : mapping of str to Range, optional
         Ranges of factors, by name in `GUESSES`; default: their usual ranges. Figures that a scene does not
         have, e.g. mounts, contribute nothing.
     cases : int
-        As of `level_bands`.
+        Number of joint cases, see `level_bands`.
     alternatives : mapping of str to SoundModel, optional
         Further models that may be right, e.g. with the resistance of another radiation model, by the name of
         their contribution: their difference, both ways.
@@ -351,11 +352,11 @@ def band_about(
     Parameters
     ----------
     model, speed, orders, ranges, progress
-        As of `sound_band`.
+        Arguments of `sound_band`.
     power : OrderPower
-        Of the sound at these speeds, (H, S).
+        Power of the sound at these speeds, (H, S).
     error : (2, S, H) array
-        From and to where its levels may be off, dB; below 0: too quiet.
+        Bounds of the error of its levels, dB: lower and upper; a negative error is a level that is too low.
     """
     below, above = np.maximum(error[1].T, 0.0), np.maximum(-error[0].T, 0.0)
     band = sound_band(model, speed, orders, ranges, progress=progress).about(power)

@@ -100,9 +100,9 @@ def sound_over_time(
     Parameters
     ----------
     result : RunResult
-        With bearing forces, in the frame of the housing's mesh.
+        Run with bearing forces, in the frame of the housing's mesh.
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     bearings : sequence of str or None
         Bearings in the order of the seats; None: those with the names of the seats.
     radiation : HousingRadiation

@@ -180,15 +180,15 @@ class _Row:
 def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | None = None) -> BearingOrders:
     """Return the mesh orders of the forces on the bearings of a run, window by window.
 
-    Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. What
-    changes within the window is averaged: see `_smearing`. Raises `InputError`: the run holds no bearing
-    forces or not those orders, no mesh turns, windows are too short to tell orders apart, or the run is too
-    short or too fast for any window.
+    Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. Changes
+    within the window are averaged, see `_smearing`. Raises `InputError`: the run holds no bearing forces or
+    not those orders, no mesh turns, windows are too short to tell orders apart, or the run is too short or
+    too fast for any window.
 
     Parameters
     ----------
     result : RunResult
-        With bearing forces.
+        Run with bearing forces.
     orders : int, optional
         Highest multiple of the mesh frequency of the first mesh that turns; default: 10, or what the run's
         output holds.

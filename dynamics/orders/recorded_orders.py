@@ -22,7 +22,7 @@ from dynamics.types import FloatArray
 
 PASSED = 0.42
 """Highest frequency over the sample rate that keeps its amplitude in the interpolation between samples."""
-MIN_PER_PITCH, MAX_IN_BLOCK = 64, 1 << 22
+MIN_PER_PITCH, MAX_IN_BLOCK = 64, 1 << 22  # least samples of a base pitch, and most samples of a block
 SLOWEST = 0.02
 """Least mesh frequency of a block over the highest one: slower blocks last too long to hold one speed."""
 

@@ -15,12 +15,13 @@ from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 
-ON_LINE = 1e-6  # of a line's distance
+ON_LINE = 1e-6  # distance from a line over the distance of lines, up to which a value is on it
 MIN_LINES = 3.0
 """Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
 REFERENCE = 1000.0  # Hz, the center of band 0
 SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
 NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+"""Nominal center frequencies of a decade, IEC 61260-1."""
 
 
 @brief
@@ -207,7 +208,7 @@ def band_sums(
     width : float
         Distance of the lines, Hz.
     power : (..., K) array
-        Of the lines at 1, 2, ... K times it.
+        Power of the lines at 1, 2, ... K times that distance.
     top, bottom : float
         Edges that no band crosses, Hz.
     """

@@ -35,13 +35,13 @@ HALVINGS = 8
 """A step in which a flank lifts off or lands is halved down to 1/256 around it, so that its kink costs no
 digits and the end of the march depends smoothly on its start."""
 
-SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
-MAX_STEPS = 1_000_000
-MAX_GAIN = 100.0
-STEPS_PER_CYCLE = 24  # of the highest natural frequency
-STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
-NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
-DIFFERENCE = 1e-6  # of the size of the state, for derivatives
+SAME = 1e-11  # over the period: nearer knots count as one, nearer step sizes as equal
+MAX_STEPS = 1_000_000  # most steps of a period
+MAX_GAIN = 100.0  # largest gain of a resonance that counts
+STEPS_PER_CYCLE = 24  # least steps per cycle of the highest natural frequency
+STEPS_PER_PITCH = 64  # per pitch of the mesh with the most, or per cycle of a load's highest order
+NEWTON_SHARE = 1e-12  # last update in an implicit stage, over the largest force
+DIFFERENCE = 1e-6  # step of differences for derivatives, over the size of the state
 
 
 @compiled
@@ -340,7 +340,7 @@ def _highest(system: System, frequency: FloatArray) -> float:
     """Return the highest natural frequency that steps resolve, Hz.
 
     Flexible shafts and housings have coordinates far above what is of interest; the implicit method lets them
-    follow as springs do. Of a housing what meshes excite is of interest.
+    follow as springs do. In housings the vibration by meshes is of interest.
     """
     interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
     interest += [system.sampling.mode_frequency for _ in system.rotors.housings]

@@ -12,9 +12,9 @@ from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.types import ComplexArray, FloatArray
 
 ON_THE_CIRCLE = 1e-6  # multipliers of undamped motions lie on it but for rounding
-ITERATION_LIMIT = 30
-HALVINGS = 12
-RESIDUAL_LIMIT = 1e-9  # of the size of a state
+ITERATION_LIMIT = 30  # most Newton iterations to a motion
+HALVINGS = 12  # most halvings of a Newton step
+RESIDUAL_LIMIT = 1e-9  # largest change over a period, over the size of a state
 SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
 
 
@@ -109,14 +109,14 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
     Parameters
     ----------
     speed : float
-        rad/s, of the leading law.
+        Speed of the leading law, rad/s.
     guess : (2n,) array, optional
         State at t = 0 in meters; the static equilibrium without one.
 
     Returns
     -------
     Orbit
-        With the status of the search; nothing is raised where it fails.
+        Orbit with the status of the search; nothing is raised where it fails.
     """
     over_period = PeriodMap(problem, speed)
     y = np.array(problem.rest if guess is None else guess, dtype=float)

@@ -25,7 +25,7 @@ from host import cpu_seconds
 from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 
-SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
+SAMPLES_PER_PITCH = 64  # least samples of a pitch; doubled until there are as many as steps
 FINE = 256  # samples per base pitch, for the share of the period that flanks touch
 PER_MESH = (
     "mean_error",
@@ -37,9 +37,9 @@ PER_MESH = (
     "coasting",
 )
 KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
-UP, DOWN, BRANCH = 0, 1, 2
+UP, DOWN, BRANCH = 0, 1, 2  # numbers of the curves: rising speeds, falling speeds, the branch
 CURVES = ("up", "down", "branch")
-SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
+SAME = 0.02  # distance over the rms of the transmission error, below which motions are the same
 MESH = ("point", "mesh")
 
 
@@ -281,7 +281,7 @@ def steady_states(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+        Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     branch : bool
         Whether to follow the branch from the lowest to the highest speed, through folds and unstable parts.
     repeat : int
@@ -293,7 +293,7 @@ def steady_states(
     progress : callable, optional
         Called with the curve (`CURVES`) and the fraction of it done; an exception in it ends the study.
     workers : Workers
-        They take a sweep each.
+        Workers, which take a sweep each.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:

@@ -22,7 +22,7 @@ def unwrapped(position: FloatArray) -> FloatArray:
 def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> FloatArray:
     """Return the amplitudes (..., orders) of the multiples of the mesh order in `values` (..., T).
 
-    Those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
+    The amplitudes are those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
     """
     cycles = np.outer(position - position[0], np.arange(1, orders + 1))
     solved = _fit(cycles, values.reshape(-1, position.size), None)[1]

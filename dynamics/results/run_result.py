@@ -36,7 +36,7 @@ PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffl
 DIRECTIONS = ("x", "y", "z")
 TIME = Stored(("time",), "s", "time")
 SCHEMA = "lineofaction dynamics run"
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 3  # version of the layout of result files
 DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
 """JSON attributes, and the default of those that older files lack."""
 

@@ -14,7 +14,7 @@ from dynamics.errors import InputError
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.shafts import GearBody, Inertia, Shaft
 
-TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit both central gears
+TOOTH_FIT = 1e-6  # in teeth: largest misfit of a planet's teeth in both central gears by its angle
 
 
 Stiffness = BearingStiffness | float | None

@@ -34,10 +34,10 @@ from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
-IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
-AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
+IRRATIONAL = 1.0  # rad; a matrix that this turn leaves unchanged is isotropic
+AXIS_AGREEMENT = 1e-9  # distance over a shaft's length, below which shafts share an axis
 ON_VIOLATION = ("repeat", "fail", "report")
-TOLERANCES = (1e-6, 0.5)
+TOLERANCES = (1e-6, 0.5)  # least and largest relative tolerance of a scene
 LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 MIN_RATE = 1000.0  # Hz, of an output whose rate is chosen

@@ -11,7 +11,7 @@ from dynamics.errors import InputError
 
 STEEL_YOUNGS_MODULUS = 210e9
 """Young's modulus of steel, Pa."""
-STEEL_POISSON_RATIO = 0.3
+STEEL_POISSON_RATIO = 0.3  # Poisson's ratio of steel
 STEEL_DENSITY = 7850.0
 """Density of steel, kg/m^3."""
 STEEL_EXPANSION = 11.5e-6

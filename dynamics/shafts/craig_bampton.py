@@ -50,7 +50,7 @@ def craig_bampton(
     interface : (a,) int array
         Freedoms where forces act; without repeats, enough to hold the body.
     highest : float
-        Hz; modes up to it are kept.
+        Highest frequency of the modes that are kept, Hz.
     """
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 

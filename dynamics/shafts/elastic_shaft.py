@@ -199,11 +199,11 @@ def elastic_shaft(
     Parameters
     ----------
     sections : tuple of BeamSection
-        From the left end.
+        Sections from the left end.
     highest : float
-        Hz; modes of the free shaft up to it, and the first of each family anyway, are of interest.
+        Highest frequency of interest, Hz: for modes of the free shaft; the first of each family always is.
     imposed : float or None
-        Where along the shaft its rotation is imposed, m: one of the points of application.
+        Position at which the rotation is imposed, m: one of the points of application.
     """
     beam, error = _fine_beam(sections, discs, points, highest, imposed)
     across, along, turn = _families(beam, discs, imposed)

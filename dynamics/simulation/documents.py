@@ -52,10 +52,10 @@ from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
-MIN_SHARE = 0.05  # of a part in the kinetic energy of a mode
+MIN_SHARE = 0.05  # least share of a part in the kinetic energy of a mode that is listed
 ROWS = (Law.BALLS, Law.ROLLERS)
-ERROR_CHECK_FACTOR = 0.1
-IMPLICIT_STAGES_PER_STEP = 5
+ERROR_CHECK_FACTOR = 0.1  # tolerance or step of the finer run over that of the run
+IMPLICIT_STAGES_PER_STEP = 5  # implicit stages of a step: all but the first
 
 
 @dataclass(frozen=True)

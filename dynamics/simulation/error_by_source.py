@@ -26,7 +26,7 @@ from dynamics.simulation.documents import (
 from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 
-WINDOWS = 3
+WINDOWS = 3  # windows of a run, if it is long enough
 SHARE = 0.045
 """Most samples in all windows, over the samples of a run: integrating them anew takes some 12 % of the run.
 """
@@ -35,7 +35,7 @@ MIN_SAMPLES, MAX_SAMPLES = 24, 512
 has decayed. On a gear pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows stated no
 better errors.
 """
-ORDERS = 5
+ORDERS = 5  # mesh orders whose errors are stated
 CAP = 0.63
 """Longest steps of a finer run over those of the run where no tolerance sets them: 0.1^(1/5)."""
 

@@ -35,7 +35,8 @@ FASTER, MAKING = 2.3, 2.0
 class ProbedRun(NamedTuple):
     """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
 
-    `error_share`: steps of its error estimates over its own. What flanks that part add is not known before.
+    `error_share`: steps of its error estimates over its own. The additional cost of flanks that part is not
+    known in advance.
     """
 
     start: float
@@ -56,7 +57,7 @@ def probe_run(scene: Scene) -> ProbedRun:
     Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
     can be taken.
     """
-    assemble(scene)  # loads what it needs
+    assemble(scene)  # loads modules and compiled code before the measurement
     began = cpu_seconds()
     system = assemble(scene)
     assembling = cpu_seconds() - began
@@ -120,7 +121,7 @@ def _probe(system: System, time: float) -> _Probe:
         )
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
-        is_entire = stretch >= system.scene.duration  # of a short run all its steps are few
+        is_entire = stretch >= system.scene.duration  # the stretch is the entire short run
         if not first and (is_entire or (steps >= MIN_STEPS and seconds > ENOUGH)):
             light = outlives_windows(system, choice)
             return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)

@@ -199,7 +199,7 @@ def _needed_effects(
     scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
 ) -> dict[str, str]:
     """Return the effects with which a run is to be repeated; raises where the run cannot stand."""
-    if not ledger:  # of a run that nothing is said of, whose assumptions all hold
+    if not ledger:  # a run without a ledger: all its assumptions hold
         return {}
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
@@ -305,8 +305,8 @@ class _Errors:
     def measure(self, end: Ending, run: RunContext) -> tuple[Json, RunStatus]:
         """Return the errors by source, and how the run ended once they are measured.
 
-        That of the steps is measured over the whole run where windows cannot see it, unless effects are found
-        missing, with which the run is to be repeated anyway. A cancelled measurement cancels the run.
+        The error of the steps is measured over the whole run where windows cannot see it, unless missing
+        effects mean that the run is repeated anyway. A cancelled measurement cancels the run.
         """
         system, integration = self.start.system, self.start.system.scene.integration
         if not end.status.usable:
@@ -430,7 +430,7 @@ def simulate_to_file(
     Returns
     -------
     RunStatus
-        How the run ended, also in the file.
+        Status of the run, also in the file.
 
     Raises
     ------
@@ -452,7 +452,7 @@ def simulate_to_file(
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
-            checkpoint.unlink()  # of a system without these effects
+            checkpoint.unlink()  # the checkpoint of a system without these effects
         before.write(folder)
         run = _run_to_file(before.of(decision), path, before, going, run)
     if run.status is not RunStatus.CANCELLED:

@@ -103,7 +103,7 @@ class Module:
             self._end(statements, statements.inline(python, arguments), function.function_type.return_type)
         except Unsupported:
             function.blocks.clear()
-            function.linkage = ""  # of a declaration, which nothing calls
+            function.linkage = ""  # external, as a declaration has to be; no code calls it
             if not (statements.lost and anything):
                 raise
             before = self.expressions

@@ -43,7 +43,7 @@ FEW, MANY = 4, 16
 class Statements(ArrayAccess):
     """Writes one function. Methods have the names of the nodes of Python's grammar that they write.
 
-    Those of statements return whether control has left them for good.
+    Methods for statements return whether control has left them for good.
     """
 
     def __init__(self, module: Any, function: Any) -> None:

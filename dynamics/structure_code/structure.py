@@ -16,7 +16,7 @@ import numpy as np
 from dynamics.structure_code.arrays import LONGEST, Known
 from dynamics.types import BoolArray, IntArray
 
-MAX_AXES = 3
+MAX_AXES = 3  # most axes of an array
 
 
 class _Layout(NamedTuple):

@@ -16,7 +16,7 @@ from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
-MAX_POINTS = 1_000_000
+MAX_POINTS = 1_000_000  # most points of a design
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ class _Window:
     def orders(self) -> tuple[FloatArray, dict[int, FloatArray]]:
         """Amplitudes of the transmission error (H,) in m, and of the force of each bearing (3, H) in N.
 
-        Of one fit to all of them, up to the highest order H.
+        All orders come from one fit, up to the highest order H.
         """
         if self.mesh not in self._fits:
             checked_order(self.run, "order", self.highest_order, self.mesh)

@@ -26,7 +26,7 @@ from model_studies.record import under_key
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
-FRACTIONS = (0.05, 0.5, 0.95)
+FRACTIONS = (0.05, 0.5, 0.95)  # fractions of the quantiles that are stated
 RUNS = 8
 """Most runs in a batch, which an interruption loses of each worker. The number is the same for all kinds of
 workers.
@@ -259,16 +259,16 @@ def study(
     Parameters
     ----------
     task : StudyTask
-        Its factors are those of the design.
+        Task whose factors are those of the design.
     design : Design
     workers : Workers
         Who does the batches: this process, an executor of threads or processes, a cluster.
     progress : callable
         Called as progress("runs", fraction).
     confidence : float
-        Of the bounds of quantiles.
+        Confidence of the bounds of quantiles.
     keep_worst : int
-        How many points of the largest first response to name in `Study.worst`; see `keep_runs`.
+        Number of points with the largest first response that `Study.worst` names; see `keep_runs`.
     """
     if task.factors != design.names:
         raise InputError("design.factors", design.names, f"those of the task: {', '.join(task.factors)}")

@@ -161,11 +161,11 @@ def modal_amplitudes(housing: ReducedHousing, frequency: FloatArray, force: Comp
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     frequency : (N,) array
-        Hz.
+        Frequencies, Hz.
     force : (N, e, q) or (1, e, q) complex array
-        On the first q reduced coordinates, e loads at each frequency.
+        Forces on the first q reduced coordinates, e loads at each frequency.
 
     Returns
     -------
@@ -217,9 +217,9 @@ def housing_motion(housing: ReducedHousing, frequency: FloatArray, force: Comple
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     frequency : (...,) array
-        Hz, any shape.
+        Frequencies, Hz, any shape.
     force : (..., s) array
         Complex peak amplitudes on the motions of the seats, N and N m (`seat_forces`).
 

@@ -48,7 +48,7 @@ class MotionQuantity(StrEnum):
         ----------
         displacement : array
         frequency : array
-            Hz, of a shape that spreads over that of `displacement`.
+            Frequencies, Hz, of a shape that spreads over that of `displacement`.
         """
         return np.asarray((2j * math.pi * np.asarray(frequency)) ** self.rate * displacement)
 
@@ -202,13 +202,13 @@ def housing_vibration(
     Parameters
     ----------
     response : BearingHarmonics
-        Of a scene with the housing, linear or a run's; the forces on its bearings move it.
+        Response of a scene with the housing, linear or of a run; the forces on the bearings move the housing.
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     bearings : sequence of str, optional
         Bearings in the order of the seats; by default those with the names of the seats.
     points : sequence of str, optional
-        By default all, which may be none.
+        Points by name; by default all, which may be none.
     """
     force = seat_forces(response, housing, bearings)
     motion = housing_motion(housing, response.frequency, force)

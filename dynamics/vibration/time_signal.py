@@ -154,9 +154,9 @@ def point_signal(
     Parameters
     ----------
     housing, time, force, quantity
-        As in `motion_pieces`.
+        Arguments of `motion_pieces`.
     points : sequence of str, optional
-        By default all, in their order.
+        Points by name; by default all, in their order.
 
     Returns
     -------
@@ -183,20 +183,20 @@ def motion_pieces(
     sinc(1/n)^4 3/(2 + cos(2 pi/n)), 1 - (2 pi/n)^4/720 for large n: 0.02 % low at 10 samples a period, 0.3 %
     at 6, 1.5 % at 4, and with images about multiples of the sampling rate, (n - 1)^-4 of it.
 
-    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero. What
-    is held beside the force does not grow with its length. Raises `InputError`: shapes differ, times are not
+    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero. Memory
+    beyond that of the force does not grow with its length. Raises `InputError`: shapes differ, times are not
     uniform, a force is no number, or the housing has no mass.
 
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     time : (T,) array
         s, uniform.
     force : (T, s) array
-        On the motions of the seats, N and N m (`run_seat_forces`).
+        Forces on the motions of the seats, N and N m (`run_seat_forces`).
     rows : (q, r) array
-        What is returned per reduced coordinate, such as `PointMotion.motion`.
+        Quantities to return per reduced coordinate, such as `PointMotion.motion`.
     quantity : MotionQuantity
         Displacement, velocity or acceleration.
 

@@ -50,9 +50,9 @@ class Parts:
         Parameters
         ----------
         frequency : float
-            Hz.
+            Frequency, Hz.
         force : (s,) complex array
-            On the motions of the seats (`seat_forces`).
+            Forces on the motions of the seats (`seat_forces`).
         """
         owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
         separate = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
@@ -110,12 +110,12 @@ def transfer_functions(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     frequency : (n,) array
-        Hz.
+        Frequencies, Hz.
     response : (q, r) array
     excitation : (e, r) array, optional
-        By default the motions of the seats.
+        Excited coordinates; by default the motions of the seats.
 
     Returns
     -------
@@ -137,9 +137,9 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
     Parameters
     ----------
     frequency : (n,) array
-        Hz.
+        Frequencies, Hz.
     weight : (r, r) array
-        Of the surface (`surface_weight`).
+        Weight of the surface (`surface_weight`).
 
     Returns
     -------
@@ -264,11 +264,11 @@ def analyze_vibration(
     response : ReportedHarmonics
         A forced response, or the orders of a run.
     housing : ReducedHousing
-        With mass, and with a surface or named points.
+        Housing with mass, and with a surface or named points.
     name : str
-        Of the housing.
+        Name of the housing.
     bearings, points
-        As in `housing_vibration`.
+        Arguments of `housing_vibration`.
     speed, order : float, optional
         Whose parts are wanted, the nearest ones, rad/s; by default where the motion is largest
         (`HousingVibration.largest`).

@@ -1,4 +1,4 @@
-"""``loa compare``: pages of two results, designs or flanks beside each other."""
+"""``loa compare``: pages that compare two results, designs or flanks."""
 
 from __future__ import annotations
 

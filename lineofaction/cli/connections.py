@@ -138,7 +138,7 @@ def http_server(app: FastAPI) -> Server:
 
 
 class Server(uvicorn.Server):
-    """Tells those who wait for a live answer at once that the service stops; the rest have time to end.
+    """HTTP server that, as it stops, ends waits for live answers at once and other requests in time.
 
     Attributes
     ----------

@@ -14,7 +14,7 @@ from lineofaction.gearbox.units import DEGREE, MM
 OVERLAP = 1.5
 """Overlap ratio that a helical face width makes."""
 LOAD = 60.0
-"""Tangential force over face width and module, N/mm^2: about what hardened gears carry for long."""
+"""Tangential force over face width and module, N/mm^2: roughly the endurable load of hardened gears."""
 _FRACTIONS = (0.1, 0.25, 0.5, 0.75, 1.0)
 _BORE = 0.45
 """Bore diameter over root diameter."""

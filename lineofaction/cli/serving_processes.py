@@ -1,4 +1,4 @@
-"""Several serving processes on one socket, and beside them the scheduler of their jobs."""
+"""Serving processes on one socket, and the scheduler of their jobs in the process that starts them."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def _managed_work(
 
 
 def _until_stopped() -> threading.Event:
-    """Return what is set at SIGTERM and SIGINT."""
+    """Return an event that SIGTERM and SIGINT set."""
     stopped = threading.Event()
     at_stop(lambda _number, _frame: stopped.set())
     return stopped

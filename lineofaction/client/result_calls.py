@@ -1,4 +1,4 @@
-"""Stored results: their files, their figures, and what the service answers from them."""
+"""Calls on stored results: files, figures, and answers that the service computes from them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Column = float | Collection[float]
 
 
 class LiveOptions(TypedDict, total=False):
-    """Options of `ste`, in the words of a case file; what is left out is as in the case."""
+    """Options of `ste` by the names of a case file; the case supplies the options that are left out."""
 
     misalignment_um: float
     center_distance_change_mm: float

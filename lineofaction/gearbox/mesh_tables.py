@@ -22,7 +22,7 @@ yields no request."""
 
 
 class _TableSource(Protocol):
-    """Who holds and computes STE databases."""
+    """A source of STE databases, which stores and computes them."""
 
     def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Return the database of a content hash."""

@@ -67,7 +67,7 @@ def _value_text(value: object) -> str:
 
 
 def _pieces(value: object) -> Iterator[str]:
-    """Yield what `repr` would write, piece by piece, so that no more of a long list is written than shown."""
+    """Yield the text of `repr` piece by piece, so that of a long list only the shown part is written."""
     if type(value) is list:
         yield "["
         for index, item in enumerate(value):
@@ -197,7 +197,7 @@ class QueueFull(TryLater):
 
 
 class NotAnalyzed(_Failed):
-    """There is nothing to answer a live question from."""
+    """The service lacks what a live question is answered from."""
 
     status = 409
     type = f"{_OURS}not-analysed"

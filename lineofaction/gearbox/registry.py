@@ -53,7 +53,7 @@ F_co = TypeVar("F_co", bound="Figures", covariant=True)
 
 
 class _Work(Protocol[Q, T_co, F_co]):
-    """A `Computation`, by what the types of its study follow from."""
+    """A `Computation` by the members that determine the types of its study."""
 
     @property
     def inputs(self) -> Callable[Q, object]: ...

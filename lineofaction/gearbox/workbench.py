@@ -46,7 +46,7 @@ from model_studies.workers.content_digest import content_digest
 
 
 class InputWarning(UserWarning):
-    """Warning of an implausible input, or of a part that is left out of it."""
+    """Warning of an implausible input, or of a part that an import leaves out."""
 
 
 def open_unit(
@@ -206,7 +206,7 @@ def studied(
 
 
 def _as_written(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
-    """Return what is studied as written, and the folder of its files."""
+    """Return the case or scene of a study as written, and the folder of its files."""
     kind = study.takes.subject
     if kind == "scene" or (kind != "case" and _has_shafts(subject)):
         return _scene(subject)

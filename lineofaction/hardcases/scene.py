@@ -1,4 +1,4 @@
-"""Hard scenes: why they are hard, what they must obey, what was measured."""
+"""Hard scenes: the reason why each is hard, its law, and its measured figures."""
 
 from __future__ import annotations
 
@@ -64,10 +64,11 @@ class HardScene:
 
     name: str
     family: str
-    """`name`, `family`: Its name, and "contact", "table", "dynamics" or "service"."""
+    """`name`, `family`: Name of the scene, and "contact", "table", "dynamics" or "service"."""
     hard_because: str
     criterion: str
-    """`hard_because`, `criterion`: What makes it hard; what must hold, from physics, in words."""
+    """`hard_because`, `criterion`: Reason why the scene is hard, and the physical law that must hold, in
+    words."""
     measure: Callable[[], Sequence[Measured]]
     """Computes the scene and returns its figures; a function of a module, so that it can be sent to another
     process.

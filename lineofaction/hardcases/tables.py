@@ -11,7 +11,7 @@ from fe_contact.types import FloatArray
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
 COMPLIANCE = 2.5e-9
-"""m/N of a pair of teeth."""
+"""Compliance of a pair of teeth, m/N."""
 _GEOMETRY = PairGeometry(
     teeth=(20, 20),
     base_radius=(BASE_RADIUS, BASE_RADIUS),

@@ -51,7 +51,7 @@ _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
     "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
     "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
 }
-"""Attribute of the file, and what reads it."""
+"""Attribute that identifies a file, and the reader of the file, by kind."""
 
 
 def stored_study(attributes: Mapping[str, object]) -> Study | None:
@@ -87,7 +87,7 @@ def page_with_database(study: Study, result: object, database: SteDatabase | Non
 
 @dataclass(frozen=True)
 class Inputs:
-    """The results that were read; at least one of them.
+    """The results of a report, at least one.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
     `view` is what of the run is shown, `marks` what its scene complains of, `unit` the bodies that this is

@@ -1,4 +1,4 @@
-"""A pair: its name, what speaks against it, its drawing and its data sheet."""
+"""A pair in a report: its name, its warnings, its drawing and its data sheet."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
 _HEIGHT = 3.4
 """Modules drawn above and below the pitch point."""
 _WIDTH = 3.4
-"""Width of the drawing over its height, nearly that of a panel."""
+"""Width of the drawing over its height, nearly the ratio of a panel."""
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
 _DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
 _SYMBOLS = {"um": "µm", "deg": "°"}

@@ -43,7 +43,7 @@ class Presentation:
 
 
 def presentation_of(study: Study) -> Presentation:
-    """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
+    """Return the presentation of a study; its file, in the folder of its subject, is loaded on demand."""
     files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
     with LOADING:
         presentation: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
@@ -74,7 +74,7 @@ def dynamics_presentation(
     headlines: Callable[[Any], tuple[Headline, ...]],
     text: Callable[[Any], Iterable[Table | str]],
 ) -> Presentation:
-    """Return how a study of a scene shows its result, whose metadata say what its model neglects."""
+    """Return the presentation of a study of a scene, whose metadata say what its model neglects."""
 
     def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)

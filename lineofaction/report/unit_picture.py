@@ -25,7 +25,7 @@ from lineofaction.report.drawing.page import Page, Section
 SIZE = (1000, 560)
 """Pixels across and down."""
 ABOVE, EDGE = 14.0, 6.0
-"""Pixels above and below the unit, and beside its names."""
+"""Pixels above and below the unit, and at the sides of its names."""
 COLORS = {
     SHAFT: (0.62, 0.64, 0.67),
     BEARING: (0.42, 0.46, 0.52),
@@ -84,7 +84,7 @@ def is_picture(section: Section) -> bool:
 
 
 def _alternative(bodies: Sequence[Body]) -> str:
-    """Say how many shafts, gears and bearings there are, and name them."""
+    """Return a text with the numbers and names of shafts, gears and bearings."""
     counts = [
         (sum(body.kind in kinds for body in bodies), word)
         for kinds, word in (((SHAFT,), "shaft"), ((PINION, WHEEL), "gear"), ((BEARING,), "bearing"))

@@ -1,4 +1,4 @@
-"""Who sends a request: the name, scopes and limits of a caller."""
+"""The sender of a request: the name, scopes and limits of a caller."""
 
 from __future__ import annotations
 

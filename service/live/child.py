@@ -1,4 +1,4 @@
-"""The live worker process: many short questions, one after the other, with what they share kept in memory.
+"""The live worker process: many short questions one after the other, with shared state in memory.
 
 Started as ``python -m service.live.child DESCRIPTOR`` in a session of its own. Orders are frames on standard
 input: first its `Share`, then questions; one of the kind "stop" stops the work on one of them, by its number.

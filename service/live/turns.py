@@ -23,12 +23,13 @@ _RETRY_S = 1
 
 @dataclass(frozen=True)
 class Asker:
-    """Who asks a question."""
+    """The sender of a question."""
 
     key: str = NOBODY
     """Name of the access key."""
     slider: str | None = None
-    """Name that the caller gives to questions of which the newest counts; it is one of the key's alone."""
+    """Name that the caller gives to questions of which only the newest counts; each key has names of its own.
+    """
     submits: bool = False
     """Whether a submission waits for the answer. Such a question has a line of its own, before all others."""
 
@@ -146,7 +147,7 @@ class Turns:
             del self._lines[line]
 
     def _busy(self) -> Counter[_Line]:
-        """Return how many of each line are answered."""
+        """Return the number of questions of each line that are being answered."""
         return Counter(map(_line_of, self._answered.values()))
 
     def _refuse_beyond(self, line: _Line) -> None:

@@ -31,7 +31,7 @@ _LONGEST_WAIT_S = 60.0
 
 
 def wait_s(lost_runs: int) -> float:
-    """Return how long a computation waits after so many lost runs in a row: 1 s, twice as long each time."""
+    """Return the wait of a computation after lost runs in a row, s: 1 s, twice as long each time."""
     return float(min(2.0 ** (lost_runs - 1), _LONGEST_WAIT_S)) if lost_runs else 0.0
 
 
@@ -193,7 +193,7 @@ class Claims:
 
     @retried
     def running(self) -> list[Claim]:
-        """Return what runs by the table; after a start, what a server left that died."""
+        """Return the running computations of the table; at a start those of a server that died."""
         runs = (computations.c.state == "running") & ~of_batch
         with reading(self._engine) as connection:
             return [_claimed(row) for row in connection.execute(select(computations).where(runs))]

@@ -117,7 +117,7 @@ class Task:
         return [self._steps.popleft() for _ in range(len(self._steps))], ended
 
     def finish(self) -> Outcome:
-        """Return how it ended; what Dask keeps of it is there until it is killed."""
+        """Return the outcome of the task, which Dask keeps until the task is killed."""
         assert self._outcome is not None
         return self._outcome
 
@@ -129,7 +129,7 @@ class Task:
 
 
 class Cluster:
-    """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
+    """The tasks of a server on a shared Dask scheduler; a `deployment` distinguishes the servers.
 
     `maximum` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """

@@ -42,7 +42,7 @@ logger = structlog.get_logger(__name__)
 
 
 class Scheduler:
-    """Lets a crew do what waits: children of this machine, or the workers of a Dask cluster."""
+    """A thread that lets a crew execute waiting computations: children of this machine, or a Dask cluster."""
 
     def __init__(
         self,

@@ -51,7 +51,7 @@ class Course:
             self.answer = None
 
     def bound_of_end(self, ended: Ended) -> str:
-        """Return what a file should have been that a child ended over; "" if no file ended it.
+        """Return the bound of the file over which a child ended; "": no file ended it.
 
         A kill comes from outside, by the system that lacks memory or by its operator; but for that of whoever
         follows the child, and that of a process at the end of its CPU time.

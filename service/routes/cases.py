@@ -34,7 +34,7 @@ from service.version import program_tag
 from service.worker.process import ANALYZE
 
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
-"""Refusals of a reader of foreign bytes, beside faults of the bytes."""
+"""Refusals of a reader of foreign bytes, in addition to faults of the bytes."""
 _MAX_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
@@ -53,7 +53,7 @@ class CaseInputs(BoundaryModel):
 
 
 class CaseRequest(BoundaryModel):
-    """A case, where an execution of analyze has it."""
+    """A case under the name that an execution of analyze has for it."""
 
     inputs: CaseInputs = Field(description="The case, as in an execution of analyze")
 
@@ -134,7 +134,7 @@ class SceneInputs(BoundaryModel):
 
 
 class SceneRequest(BoundaryModel):
-    """A scene, where an execution of simulate has it."""
+    """A scene under the name that an execution of simulate has for it."""
 
     inputs: SceneInputs = Field(description="The scene, as in an execution of simulate")
 

@@ -46,7 +46,7 @@ class DraftRoute(ScopedRoute):
     """A route of questions about drafts: faults of the draft are an answer."""
 
     def answering(self) -> Callable[[Request], Any]:
-        """Return what answers, with the result or with the faults."""
+        """Return the handler that answers with the result or with the faults."""
         answer = super().answering()
 
         async def answered(request: Request) -> Response:

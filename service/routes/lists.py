@@ -1,4 +1,4 @@
-"""Answers with lists: made in a few threads of their own, with a tag by which they are not sent again."""
+"""Answers with lists, made in a few separate threads, with a tag that saves sending them again."""
 
 from __future__ import annotations
 

@@ -127,5 +127,5 @@ def described_headers(*names: str) -> dict[str, Any]:
 
 
 def answer(description: str, *headers: str, **further: Any) -> dict[str, Any]:
-    """Return what a route declares of an answer; `further`: its ``model`` or its ``content``."""
+    """Return a route's declaration of an answer; `further`: its ``model`` or its ``content``."""
     return {"description": description, **further, "headers": described_headers(*headers)}

@@ -118,7 +118,7 @@ _FURTHER_MODELS = (ProblemBody, QueryInput, InputWarning, ReportSection)
 
 
 def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
-    """Return what a route declares of the problems that are its own, as the framework takes it."""
+    """Return a route's declaration of its problems, as the framework takes it."""
     return {
         status: {"description": HTTPStatus(status).phrase, _KINDS: kinds}
         for status, kinds in _by_status(problems).items()

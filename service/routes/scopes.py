@@ -40,7 +40,7 @@ def needs(
 
 
 class ScopedRoute(APIRoute):
-    """A route that callers with its scope reach; there is none whose endpoint declares no scope."""
+    """A route that callers with its scope reach; an endpoint without a scope cannot be a route."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -54,11 +54,11 @@ class ScopedRoute(APIRoute):
         return scope
 
     def answering(self) -> Callable[[Request], Any]:
-        """Return what answers a request that may be answered."""
+        """Return the handler of admitted requests."""
         return super().get_route_handler()
 
     def get_route_handler(self) -> Callable[[Request], Any]:
-        """Return what answers a request if its caller may ask that."""
+        """Return the handler that admits callers with the scope."""
         answer, scope, streams = self.answering(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
         if scope is OPEN_TO_ALL:
             return answer

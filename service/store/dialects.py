@@ -88,7 +88,7 @@ _LOCKED = "55P03"  # by others, for longer than lock_timeout
 
 
 class _Commits(Protocol):
-    """A connection of its own that hears of commits; of the thread that made it alone."""
+    """A connection that hears of commits, for the thread that made it."""
 
     def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""
@@ -177,7 +177,7 @@ class _Dialect(Protocol):
         """Whether the statement was ended by its deadline."""
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Return what a person has to do before any attempt can succeed; None if it is not that."""
+        """Return the action of a person without which no attempt can succeed; None: none is needed."""
 
     def folder(self, url: URL) -> Path | None:
         """Return the folder of this machine that it writes to; None: it is elsewhere."""
@@ -375,7 +375,7 @@ _DIALECTS: Mapping[str, _Dialect] = {"sqlite": _SQLite(), "postgresql": _Postgre
 
 
 def dialect_of(database: Engine | Connection | URL) -> _Dialect:
-    """Return what is particular to the database."""
+    """Return the dialect of the database."""
     if isinstance(database, URL):
         return _DIALECTS[database.get_backend_name()]
     return _DIALECTS[database.dialect.name]

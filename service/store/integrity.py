@@ -15,7 +15,7 @@ a cold disk."""
 
 
 class IntegrityCheck:
-    """One look through a database, in a thread that ends with it.
+    """A check of a database in a thread that ends with the check.
 
     Attributes
     ----------

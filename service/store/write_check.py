@@ -1,4 +1,4 @@
-"""Check whether a service can write, by a trial write on request, in a thread of its own."""
+"""Check whether a service can write, by a trial write in a separate thread."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class _Writable:
 
 
 class WriteCheck:
-    """Writes to database and place of results, at most once in `VALID_S`, whoever asks.
+    """Trial writes to the database and the place of results, at most once in `VALID_S`.
 
     What a look through the database finds damaged counts as not written.
     """
@@ -57,7 +57,7 @@ class WriteCheck:
         self._succeeded = -math.inf
 
     def outcome(self) -> _Writable:
-        """Return what can be written, within `PATIENCE_S`."""
+        """Return the faults of writing, within `PATIENCE_S`."""
         with self._lock:
             old = time.monotonic() - self._begun > VALID_S
             if self._outcome is None or (old and self._outcome.done()):
@@ -88,7 +88,7 @@ class WriteCheck:
 
     @staticmethod
     def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:
-        """Return what went wrong, and whether it may be late only; names of files are for the log."""
+        """Return the fault of a step, and whether it may only be late; names of files are for the log."""
         try:
             step()
         except BadInput as error:

@@ -87,7 +87,7 @@ def signed_headers(key: bytes, identifier: str, timestamp: int, body: bytes) -> 
 
 
 class Deliverer:
-    """Makes calls until it is stopped; what it was about to make then is made by another after its lease."""
+    """Makes calls until it is stopped; another deliverer makes a call in progress after its lease."""
 
     def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox

@@ -1,4 +1,4 @@
-"""A worker of Dask that is told to end (SIGTERM) finishes the job that it does, and gives its result away.
+"""Draining of a Dask worker on SIGTERM: it finishes its job and hands its result over.
 
 Dask itself ends a worker at once. As ``dask worker --no-nanny --preload service.worker.draining`` it begins
 no further task, waits for those that it does until their results are elsewhere, and leaves; a second SIGTERM

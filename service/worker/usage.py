@@ -25,7 +25,7 @@ def begin_work() -> None:
 
 @dataclass(frozen=True)
 class Usage:
-    """Resources that a worker used: elapsed s, CPU s with what it has waited for, most resident memory in MB.
+    """Resources of a worker: elapsed s, CPU s including ended children, largest resident memory in MB.
 
     The memory is what the process reported with its outcome; of one that did not, at least that of the
     process that started it, whose memory the system counts until the program is loaded.

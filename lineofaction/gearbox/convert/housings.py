@@ -64,7 +64,7 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
 
 
 def response_content(housing: HousingInput) -> tuple[str, bytes]:
-    """Return how the name of the file of a measured housing ends, and what is in it.
+    """Return the ending of a measured housing's file name, and the content of the file.
 
     Raises `BadInput`: another kind of file, or damaged content.
     """

@@ -209,7 +209,7 @@ class GearUnit:
         return (relation for relation in self.model.relations if relation.type in types)
 
     def load_cases(self) -> tuple[tuple[Part, ...], ...]:
-        """Return what each load case of the first spectrum sets, empty without a spectrum."""
+        """Return the components of each load case of the first spectrum, empty without a spectrum."""
         spectra = self.model.spectra[:1]
         return tuple(
             tuple(Part(part, self) for part in case.components)

@@ -1,4 +1,4 @@
-"""The layout of a gear unit: where its shafts stand, as the file says, else by its stages and couplings."""
+"""The layout of a gear unit: positions of its shafts by the file, else by its stages and couplings."""
 
 from __future__ import annotations
 

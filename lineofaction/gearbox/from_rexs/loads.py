@@ -30,7 +30,7 @@ class AppliedTorque:
     z: float
     """Place of the torque along z, m."""
     torque: float
-    """N m about z."""
+    """Torque about z, N m."""
 
 
 class SceneMotion:
@@ -72,7 +72,7 @@ class SceneMotion:
             yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
 
     def _of_stages(self, cut: Sequence[GearStage]) -> Iterator[AppliedTorque]:
-        """Yield what stages that are not computed do to shafts of the scene."""
+        """Yield the torques of stages without a case on shafts of the scene."""
         layout = self._layout
         meshed = {gear.id for stage in self._shafts.stages for gear in stage.gears}
         for stage in cut:
@@ -157,7 +157,7 @@ class LoadCase:
     speed_rpm: float
     """Speed of that shaft, positive."""
     direction: Literal["drive", "coast"]
-    """Whether the flanks that carry are those of the scene."""
+    """"drive" if the loaded flanks are the loaded flanks of the scene, else "coast"."""
     forces: tuple[Mapping[str, Any], ...] = ()
     """Tables of the scene's forces that differ under it."""
 

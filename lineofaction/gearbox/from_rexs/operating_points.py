@@ -36,11 +36,11 @@ class OperatingPoint:
     share: float
     """Share of the time, 0 to 1."""
     speeds: Mapping[int, float]
-    """rad/s about u, by shaft."""
+    """Speeds about u, rad/s, by shaft."""
     torques: Mapping[int, float | None]
-    """N m about u from outside, by external load; None where it follows from the others."""
+    """Torques about u from outside, N m, by external load; None: the torque follows from the others."""
     powers: Mapping[int, float]
-    """W into the unit, by external load whose torque is not stated."""
+    """Powers into the unit, W, by external load whose torque is not stated."""
     forces: Mapping[int, tuple[float, ...]]
     """Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
     moment about u is 0.

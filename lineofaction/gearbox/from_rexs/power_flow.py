@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.operating_points import OperatingPoint
 
 DEFAULT_SPEED = 1000.0 * math.pi / 30.0
-"""rad/s, where the file states none."""
+"""Speed of the first loaded shaft if the file states no speed, rad/s."""
 NO_SPEED = "no speed is stated: the first loaded shaft turns at 1000/min"
 UNBALANCED = "the torques stated do not balance: the first is taken, the others follow from it"
 REPLACED = "it does not balance the first torque stated, from which the scene's follows"

@@ -132,7 +132,7 @@ def _gravity(layout: Layout) -> list[float]:
 
 
 def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
-    """Return how often the first planet of each set is there, and at which angles."""
+    """Return the number of planets of each set, which copy the first, and their angles."""
     tables = []
     for planets in layout.rotors.sets:
         first = planets.planets[0]

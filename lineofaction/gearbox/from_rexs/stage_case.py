@@ -89,7 +89,7 @@ class StageCase:
 
 
 def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
-    """Return what is made of a stage, None if it is refused, which the account says."""
+    """Return the value of `make` for a stage, None: it is refused, with a line in the account."""
     try:
         return make()
     except BadInput as error:

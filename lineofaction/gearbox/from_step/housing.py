@@ -1,4 +1,4 @@
-"""The fields of a housing of a scene from the STEP file of its solid, and what was found in it."""
+"""The fields of a housing of a scene from the STEP file of its solid, and its detected bores."""
 
 from __future__ import annotations
 

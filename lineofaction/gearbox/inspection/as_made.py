@@ -40,7 +40,7 @@ class Inspected:
     cutoff_mm: float | None
 
     def chart(self, case: Case) -> Chart:
-        """Return how the teeth of its sheet follow each other."""
+        """Return the chart from the sheet's teeth to their sequence in mesh."""
         return Chart(_gear(case, self.gear), self.loaded, self.gear == "pinion")
 
 

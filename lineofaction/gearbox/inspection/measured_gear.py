@@ -73,7 +73,7 @@ class MeasuredGear:
 
 
 def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None) -> MeasuredGear:
-    """Return what a sheet says of the loaded flanks of a gear; `cutoff` in m as of `split`.
+    """Return the deviations of the loaded flanks of a gear by a sheet; `cutoff` in m as of `split`.
 
     Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
     """

@@ -1,4 +1,4 @@
-"""A REXS model as its file says it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
+"""A REXS model as its file has it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Attribute:
 
 @dataclass(frozen=True)
 class Component:
-    """A part of the gear unit, or what a load case sets of it.
+    """A part of the gear unit, or the values of a part under a load case.
 
     `line` is that of its element in an XML file, from 1; None in other forms. Components that differ in it
     alone are equal.
@@ -147,7 +147,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Document:
-    """A model and the files that lie beside it in its archive, by their names."""
+    """A model and the other files of its archive, by their names."""
 
     model: Model
     files: Mapping[str, bytes] = field(default_factory=dict)

@@ -81,7 +81,7 @@ class Element(ABC):
         )
 
     def load_case(self, types: Mapping[int, str]) -> LoadCase:
-        """Return what a load case sets."""
+        """Return the values of a load case."""
         number = self.number("id")
         parts = tuple(part.component(types) for part in self.parts("component"))
         return LoadCase(number, parts, self.extra())
@@ -121,7 +121,7 @@ class Element(ABC):
 
 @dataclass(frozen=True)
 class Written:
-    """An element to write: fields with a value in their order, and groups of what is inside."""
+    """An element to write: fields with a value in their order, and groups of inner elements."""
 
     name: str
     fields: dict[str, str | int]

@@ -1,4 +1,4 @@
-"""Upgrades of REXS: what a version renamed is renamed, what it removed is kept and reported."""
+"""Upgrades of REXS: renamed items get their new names, removed items stay and are reported."""
 
 from __future__ import annotations
 

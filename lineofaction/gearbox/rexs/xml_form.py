@@ -38,7 +38,7 @@ _KIND_FIELD = "valueType"
 _STEP = "  "
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
-"""Groups that are elements of their own."""
+"""Groups of parts that XML wraps in an element, by the outer element."""
 
 
 @dataclass(slots=True)

@@ -90,7 +90,7 @@ class OverSpeedsOrRun(OverOrders):
 
 
 class CaseOrScene(BoundaryModel):
-    """A case or a scene, one of both."""
+    """A case or a scene, exactly one."""
 
     model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("case", "scene")))
 

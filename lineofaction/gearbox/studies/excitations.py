@@ -25,11 +25,11 @@ from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
 OFF_MESH = 6
-"""Orders beside the mesh orders that are listed of a mesh."""
+"""Number of orders between the mesh orders that are listed for a mesh."""
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Excitation]:
-    """Return what excites in the harmonics of every mesh with a table, and in orders beside them.
+    """Return the excitations by harmonics of every mesh with a table, and by orders between harmonics.
 
     Of the latter those largest in transmission error, where it is above its error. Copies of a planet excite
     as the one that the scene names.
@@ -116,7 +116,7 @@ def with_scene_metadata(result: Result, subject: TabledScene) -> Result:
 
 
 def scene_metadata(subject: TabledScene) -> Json:
-    """Return what a result says of its scene.
+    """Return the facts of a result about its scene.
 
     Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
     without them. What is `turning`, by which orders are named. The bodies that its `unit` is drawn as. Of a
@@ -134,6 +134,6 @@ def scene_metadata(subject: TabledScene) -> Json:
 
 
 def order_names(order: FloatArray, metadata: Json) -> list[str]:
-    """Return what each order of a result is (`bounds.order_name`); none of files without `turning`."""
+    """Return the name of each order of a result (`bounds.order_name`); empty for files without `turning`."""
     turning = metadata.get("turning")
     return [] if turning is None else [order_name(value, **turning) for value in order.tolist()]

@@ -68,7 +68,7 @@ def figures_of(model: type[Part], *sources: Any, **members: Any) -> Json:
 
 @dataclass(frozen=True)
 class _Declared:
-    """A figure of a model: its names here, without its unit (empty: others share it), and in the document."""
+    """A figure of a model: field, field without unit (empty: not unique), and key in the document."""
 
     name: str
     bare: str

@@ -77,7 +77,7 @@ def bearing_forces(
 
 
 def _run_forces(orders: BearingOrders) -> Json:
-    """Return how the windows of a run hold, by order, then by window."""
+    """Return facts on the quality of a run's windows, by order, then by window."""
     known = bool(np.all(np.isfinite(orders.smearing)))
     return {
         "source": "run",
@@ -125,7 +125,7 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
 def predicted_response(
     scene: SceneInput, inputs: OverOrders, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return what the `sized_response` of a scene takes, before its tables; None: nothing predicts it.
+    """Return the cost of the `sized_response` of a scene before its tables; None: nothing predicts it.
 
     `further`: how many responses of varied scenes there are beside it. Modes that a solid housing keeps are
     not known before and do not count. Raises `BadInput`: no such scene.
@@ -153,7 +153,7 @@ def predicted_response(
 def predicted_forces(
     scene: SceneInput, inputs: OverSpeedsOrRun, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return what the `bearing_forces` take, as `predicted_response`; None of a run: none is read."""
+    """Return the cost of the `bearing_forces`, as `predicted_response`; None: they are those of a run."""
     return predicted_response(scene, inputs, further) if inputs.run is None else None
 
 

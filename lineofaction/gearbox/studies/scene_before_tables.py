@@ -35,7 +35,7 @@ _POSITIONS = 48
 
 @dataclass(frozen=True)
 class SceneText:
-    """A scene by its text: what is made of the last ones is kept, since several verbs are of the same."""
+    """A scene whose text is the key of a cache: several verbs work on the same scene."""
 
     text: str
     scene: SceneInput = field(compare=False)

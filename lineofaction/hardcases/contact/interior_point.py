@@ -147,7 +147,7 @@ def _strips(problem: Problem, half: Array) -> tuple[Array, Array]:
 
 
 class _GuardedLaw:
-    """The law with its secant below a strip of 1e-4 reference lengths and straight on above one of 0.66.
+    """The law from 1e-4 to 0.66 reference lengths of a strip: its secant below, its tangent above.
 
     Strips are tabulated over their length; between the entries the length is found by the secant method.
     """

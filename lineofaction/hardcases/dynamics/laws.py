@@ -49,7 +49,7 @@ def by_method(scene: Scene, method: str) -> Scene:
 
 
 def common_figures(runs: _Runs, scene: Scene) -> tuple[Measured, ...]:
-    """Return how far both integrators are apart, and the energy that the worse one misses.
+    """Return the difference of both integrators, and the energy that the worse one misses.
 
     They agree to their tolerances; where the scene has errors measured (`Integration.estimate_error`), since
     its motion makes more of an error than one tolerance, to these.
@@ -87,7 +87,7 @@ def off_closed_form(runs: _Runs, scene: Scene, exact: Callable[[FloatArray], Flo
 
 
 def _measured_error(run: RunResult) -> float:
-    """Return what a run says its rms error is, m."""
+    """Return the rms error that a run states, m."""
     return float(run.receipt["error"]["time_step"]["rms"])
 
 

@@ -26,11 +26,11 @@ class LevelDifference:
 
     order: int
     levels: tuple[float, float]
-    """dB re one unit rms, mean power over the shared speeds."""
+    """Mean power over the shared speeds, dB re one unit rms."""
     errors: tuple[float, float]
-    """dB, two standard deviations."""
+    """Errors of the levels, two standard deviations, dB."""
     largest: float
-    """The largest difference at one speed, dB; NaN of an order that is not seen."""
+    """The largest difference at one speed, dB; NaN: the order stands out of the noise at no speed."""
     is_seen: bool
     """Whether the order stands out of the noise in both."""
 

@@ -40,7 +40,7 @@ _REMEDY = (
 
 @dataclass(frozen=True)
 class Difference:
-    """One number of two results: what, at which load or speed, and both in the unit they are written in."""
+    """A number of two results: its name, its load or speed, and both values in the unit of the report."""
 
     name: str
     where: str

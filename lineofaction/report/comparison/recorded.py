@@ -1,4 +1,4 @@
-"""A recording beside a computed run: maps over mesh orders, levels of orders, and their differences in dB."""
+"""Comparison of a recording and a run: maps over mesh orders, levels of orders, differences in dB."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Measurement:
     rpm: float = 0.0
     """Constant speed of a recording without a tacho, rpm; 0: the recording has a channel of the speed."""
     ratio: float = 1.0
-    """Speed of the driving gear over that of the shaft whose speed or pulses were recorded."""
+    """Speed of the driving gear over the speed of the recorded shaft."""
 
 
 @dataclass(frozen=True)

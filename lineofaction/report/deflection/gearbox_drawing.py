@@ -30,7 +30,7 @@ AGAINST = " Against z: operating pitch circles, and where the center of each gea
 NEAR = 0.04
 """Distance over the size of the drawing below which names cover each other."""
 VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
-"""Directions across z, those near x first."""
+"""Directions across z, the directions near x first."""
 COAXIAL = 1e-6
 """Distance in m below which two axes are one."""
 EDGE = 0.04

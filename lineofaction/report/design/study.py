@@ -1,4 +1,4 @@
-"""A study of scenes: maps and curves over the grid, distributions, what matters, worst and failed runs."""
+"""A study of scenes: maps and curves over the grid, distributions, influences, worst and failed runs."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def _bars(
 
 
 def _extreme(study: Study) -> str:
-    """Say where the first response is largest."""
+    """Return a sentence on the point of the largest first response."""
     first = study.figure[:, 0]
     if not np.isfinite(first).any():
         return "No run has figures."

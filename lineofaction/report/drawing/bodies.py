@@ -20,7 +20,7 @@ LIGHT = (0.1, 0.6, 0.1)
 SHADE = 0.34
 """Brightness of a surface without light."""
 CONTOUR = 0.4
-"""Brightness of an edge over that of its surface."""
+"""Brightness of an edge over the brightness of its surface."""
 FINER = 2
 """Rays per pixel, across and down."""
 SIDES = 48
@@ -76,7 +76,7 @@ class Camera:
         return np.asarray(light / np.linalg.norm(light))
 
     def pixels(self, points: FloatArray) -> FloatArray:
-        """Return where points (n, 3) are seen, across and down (n, 2)."""
+        """Return the pixels of points (n, 3), across and down (n, 2)."""
         right, up, back = self.axes @ (points - self.eye).T
         return np.asarray(self.middle + self.scale * np.stack([right, -up], axis=1) / -back[:, None])
 
@@ -153,7 +153,7 @@ def _end(z: float, radii: tuple[float, float], eye: FloatArray, ray: FloatArray,
 
 @dataclass(frozen=True)
 class _Cone:
-    """A wall about z between two ends: its radius at the lower one and what that gains along z."""
+    """A wall about z between two ends: its radius at the lower end, and the growth of the radius per z."""
 
     low: float
     high: float
@@ -161,7 +161,7 @@ class _Cone:
     slope: float
 
     def met(self, eye: FloatArray, ray: FloatArray, light: FloatArray, *, outward: bool) -> _Surface:
-        """Return where rays meet it first from outside, or from within."""
+        """Return the first intersection of rays with the wall, from outside or from within."""
         at_eye = self.radius + self.slope * (eye[2] - self.low)
         a = ray[0] ** 2 + ray[1] ** 2 - (self.slope * ray[2]) ** 2
         half_b = ray[0] * eye[0] + ray[1] * eye[1] - self.slope * ray[2] * at_eye
@@ -234,7 +234,7 @@ class _Picture:
         self.color[front] += THROUGH * (over - self.color[front])
 
     def contours(self) -> BoolArray:
-        """Return where a surface ends."""
+        """Return the pixels at which a surface ends."""
         edge = np.zeros(self.surface.shape, dtype=bool)
         for axis in (0, 1):
             changes = np.diff(self.surface, axis=axis) != 0

@@ -29,11 +29,11 @@ DRIVER = "speed of the driving gear, rpm"
 TORQUE = "torque on the driving gear, N m"
 """Labels of axes of runs and tables."""
 BOLDER = 2.0
-"""Width of the line of the order, of what it is without a complaint."""
+"""Width of the complaint's order over the usual width of the line."""
 
 
 def marks_of(result: Any) -> Marks | None:
-    """Return what a result says of the complaint of its scene, None without one."""
+    """Return the marks by the complaint of a result's scene, None without a complaint."""
     return metadata_of(result).get(NAME)
 
 

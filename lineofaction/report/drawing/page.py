@@ -56,7 +56,7 @@ def _player(figure: Figure) -> str:
 
 
 def sound_json(sound: Sound) -> Json:
-    """Return what the script needs of a sound."""
+    """Return the data of a sound for the script of the page."""
     tracks = [
         {
             "name": one.name,
@@ -102,7 +102,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """A main result: what, its value and its error or remark."""
+    """A main result: its name, its value, and its error or remark."""
 
     name: str
     value: str
@@ -120,7 +120,7 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class Page:
-    """All of a report; `alarms` are what the reader must know before any number.
+    """The contents of a report; `alarms` are warnings to be read before any number.
 
     `records` are what its results were made from and with, by the names of their files.
     """
@@ -164,13 +164,13 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
 
 @cache
 def _library() -> str:
-    """Return what draws plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
+    """Return the library of plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
     packed = gzip.compress(_text("package_data/plotly.min.js", "plotly").encode(), mtime=0)
     return base64.b64encode(packed).decode("ascii")
 
 
 def _margins(page: Page) -> str:
-    """Return what stands on every printed page beside its number."""
+    """Return the margin texts of every printed page, apart from its number."""
     corner = page.block.corner if page.block else ""
     texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
     plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}

@@ -91,7 +91,7 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
 
 
 class _LineLabel(NamedTuple):
-    """A label beside a panel; heights are parts of the panel's, 0 at the bottom.
+    """A label at the side of a panel; heights are shares of the panel's height, 0 at the bottom.
 
     `end` is the height at which its line ends, `middle` that of the label.
     """

@@ -48,9 +48,10 @@ _Map = tuple[FloatArray, FloatArray]
 """Roll lengths (R,) in mm and pressures (R, K) in MPa of a contact pattern."""
 MAX_CURVES = 4  # positions
 _VISIBLE_GAP = 0.01
-"""um; a plot of less shows nothing."""
+"""Least gap that is drawn, um; a plot of a smaller gap shows nothing."""
 _ROUNDING = 1e-9
-"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+"""Share of the face width within which a load centroid counts as mid-face, the rounding of a symmetric load.
+"""
 
 
 def _face_axis(flanks: LoadDistribution) -> Axis:

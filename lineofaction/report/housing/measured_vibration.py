@@ -1,4 +1,4 @@
-"""Vibration of a measured housing as people see it: velocities, shares of bearings, what is absent."""
+"""Page of the vibration of a measured housing: velocities, shares of bearings, missing functions."""
 
 from __future__ import annotations
 

@@ -235,7 +235,7 @@ def _loudest_table(sound: RadiatedSound) -> Table:
 
 
 def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
-    """Say what radiates at the loudest point, and through what; nothing in silence."""
+    """Return sentences on the radiating parts at the loudest point and their paths; empty in silence."""
     return tuple(
         f"{_where(point, sound.metadata)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
         f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "

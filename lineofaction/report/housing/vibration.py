@@ -280,7 +280,7 @@ def _first_figure(result: HousingVibrationResult) -> Figure:
 def _by_kind(
     modeled: Callable[[HousingVibrationResult], View], measured: Callable[[MeasuredHousingVibration], View]
 ) -> Callable[[Result], View]:
-    """Return what shows a result by the kind of its housing."""
+    """Return a function that shows a result by the kind of its housing."""
 
     def rendered(result: Result) -> View:
         return measured(result) if isinstance(result, MeasuredHousingVibration) else modeled(result)

@@ -1,4 +1,4 @@
-"""The page of an answered complaint: what passes at its frequency, what is near it, the modes within reach.
+"""Page of an answered complaint: excitations at its frequency and near it, and modes within reach.
 
 What passes is a harmonic of a mesh, a shaft or a rolling bearing; it has an order, a multiple of the rotation
 of the complaint's shaft, and so a frequency. Parts that pass alike, such as the meshes of equal planets, have
@@ -41,7 +41,7 @@ MODE_LABELS = (0.15, 0.35, 0.65)
 
 
 class _GroupLine(NamedTuple):
-    """A group of what passes, and the look of its line in the figure."""
+    """A group of excitations near the complaint, and the style of its line in the figure."""
 
     group: tuple[Passing, ...]
     color: str

@@ -61,7 +61,7 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
 
 
 def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Say how much of a long table's excitation a response does not list; nothing where it lists all."""
+    """Return rows on the share of a long table's excitation that a response does not list; else empty."""
     if not (left_out := metadata.get("lines_left_out")):
         return ()
     share = engineering(100.0 * left_out["force"], 2)

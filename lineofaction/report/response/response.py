@@ -27,7 +27,7 @@ from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
 
 MIN_SHARE = 1e-3
-"""%, of what is listed."""
+"""Least share that is listed."""
 
 MAX_ORDERS, MAX_PEAKS, PRINTED_PEAKS = 6, 15, 4
 """Peaks of a quantity on the page and on a terminal."""
@@ -84,7 +84,7 @@ def _speed_axis(response: ForcedResponse) -> Axis:
 
 
 def _total(response: ForcedResponse) -> FloatArray:
-    """Return what all parts lose, (S,) W."""
+    """Return the power loss of all parts, (S,) W."""
     return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
 
 
@@ -113,7 +113,7 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
 
 
 def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return what is shown by name, (S, H) each."""
+    """Return the shown quantities by name, (S, H) each."""
     quantities = []
     if response.mesh:
         name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
@@ -215,7 +215,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
 
 
 def _left_out_text(response: ForcedResponse) -> Iterator[str]:
-    """Say what the orders that are not listed make of the bearing force that is largest in all orders."""
+    """Yield a sentence on unlisted orders: their part in the largest bearing force of all orders."""
     if response.bearing_floor.size:
         square, floor = response.bearing_mean_square, response.bearing_floor
         at = np.unravel_index(int(np.argmax(square)), square.shape)

@@ -58,7 +58,7 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
 
 
 def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return what is shown by name, (P,) each; without meshes the bearing that feels most."""
+    """Return the shown quantities by name, (P,) each; without meshes the bearing with the largest force."""
     if not states.mesh:
         if not states.bearing:
             return []

@@ -250,7 +250,7 @@ def validity(valid_order: int, top: float, of: str = "mesh") -> str:
 
 
 def counted_by(run: RunResult) -> str:
-    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    """Return the base of a run's orders: "mesh", or "shaft" if the run has no mesh."""
     return "mesh" if run.mesh else "shaft"
 
 
@@ -290,7 +290,7 @@ def along_direction(run: RunResult, signal: Signal) -> RunResult:
 
 
 def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:
-    """Return what is shown of a run as a recording in the signal's unit; of bearings along one direction.
+    """Return the signal of a run as a recording in its unit, for bearings along one direction.
 
     Raises `BadInput`: it does not vary, or the run is shorter than 4 samples.
     """

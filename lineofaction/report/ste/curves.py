@@ -63,7 +63,7 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
 
 
 def drawn_pitches(database: SteDatabase) -> int:
-    """Return how many base pitches plots show: two, or a longer period up to its first 40."""
+    """Return the number of base pitches in plots: two, or a longer period up to its first 40."""
     return 2 if database.period == 1 else min(database.period, MAX_PITCHES)
 
 
@@ -180,7 +180,7 @@ def headline_load(database: SteDatabase, force: float | None = None) -> int:
 
 
 def pair_count_text(database: SteDatabase, load: int) -> str:
-    """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
+    """Return text on the tooth pairs that carry one load of the aligned pair, as "2 to 4 tooth pairs"."""
     low, high = pair_range(database, load)
     if low == high:
         return f"{low} tooth {'pair carries' if low == 1 else 'pairs carry'} the load at every position"
@@ -304,7 +304,7 @@ def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, 
 
 
 def _bands(ripple: Panel) -> str:
-    """Say what the bands are, where there are any, and which are cut."""
+    """Return a sentence on the error bands, if any, and on those that are cut."""
     if not any(line.has_band for line in ripple.lines):
         return ""
     said = "Bands: half the error of peak-to-peak on either side"

@@ -84,7 +84,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 
 
 def _ripple_text(curves: dict[str, Curve]) -> str:
-    """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
+    """Return a sentence on the least and the largest ripple by the names of the curves."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
     minimum, maximum = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
     where = {name: f"{um(e.value, 3)} µm {name}" for name, e in ripple.items()}
@@ -106,7 +106,7 @@ def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
 
 @dataclass(frozen=True)
 class _Deviation:
-    """One axis of more than one value: how it is named, its values, and the curves (n, F) there."""
+    """An axis with more than one value: its name, its values, and the curves (n, F) at these values."""
 
     name: str
     axis: Axis

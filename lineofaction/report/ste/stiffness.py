@@ -1,4 +1,4 @@
-"""Mesh stiffness, load sharing, and what yields: parts of the mean transmission error."""
+"""Mesh stiffness, load sharing, and deflections by part: shares of the mean transmission error."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def load_sharing(database: SteDatabase) -> Figure:
 
 
 def _truncation_text(database: SteDatabase) -> str:
-    """Say where a period is longer than what is drawn."""
+    """Return a sentence if a period is longer than its plot."""
     pitches, period = drawn_pitches(database), database.period
     return f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
 

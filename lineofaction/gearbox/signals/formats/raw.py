@@ -12,7 +12,7 @@ MAX_SAMPLES = 20_000_000
 
 
 class UnusableFile(Exception):
-    """A file holds no channels that can be read: what it must be, what to try, and the field at fault."""
+    """A file without readable channels: the accepted content, a remedy, and the field at fault."""
 
     def __init__(self, bound: str, remedy: str = "Export it again.", value: str = "") -> None:
         self.bound, self.remedy, self.value = bound, remedy, value
@@ -38,7 +38,7 @@ class RawChannel:
 
 
 class SampleBudget:
-    """Counts the samples that a reader is about to take, of at most so many channels."""
+    """Count of the samples that a reader is about to take, up to a number of channels and samples."""
 
     def __init__(self, most_channels: int = MAX_CHANNELS) -> None:
         self.most_channels = most_channels

@@ -69,7 +69,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             _designs(mesh.case, inputs)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what transfer functions and pairs take; gears are condensed with the scene's table."""
+        """Return the cost of transfer functions and pairs; gears are condensed with the scene's table."""
         mesh = flank_mesh(scene, inputs.mesh)
         if mesh.case is None:
             return None

@@ -1,4 +1,4 @@
-"""A complaint: which mesh and harmonic it is, what else passes, which modes are within reach."""
+"""Study of a complaint: the likely mesh and harmonic, other excitations near it, modes within reach."""
 
 from __future__ import annotations
 
@@ -49,12 +49,13 @@ from model_studies.record import under_key
 REACH = 2.0
 """Least amplification by a mode within reach: 6 dB."""
 RESOLVED = 1.5
-"""Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
+"""Frequency up to which flexible shafts are resolved, over that of the complaint. A mode above it amplifies
+less than `REACH`."""
 MAX_ORDERS = 100
 _OF_PAIR, _ASSEMBLED = 1e-3, 3
-"""CPU seconds of the answer about a case; how often a scene is assembled."""
+"""CPU seconds of the answer about a case, and number of assemblies of a scene."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
-"""Facts of the answer about a case: teeth and speeds say it."""
+"""Facts of the answer about a case: it has no equilibrium, no effects and no parting."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +125,7 @@ class _ComplaintStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, _inputs: Inputs, _cache: Path | None
     ) -> StudyCost | None:
-        """Return what the modes and the lines at one speed take; of a case it is a count of teeth."""
+        """Return the cost of the modes and the lines at one speed; for a case it is a count of teeth."""
         if isinstance(subject, CheckedCase):
             return StudyCost((Work("orders", _OF_PAIR),))
         with boundary_errors():

@@ -92,7 +92,7 @@ def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Defle
 
 
 class _Life(NamedTuple):
-    """The life of a bearing over load cases in h, not finite without a number; `rating_life` says why."""
+    """Life of a bearing over load cases in h; without a number `rating_life` has the reason."""
 
     rating_life_hours: float
     rating_life: RatingLife

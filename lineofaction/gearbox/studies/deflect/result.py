@@ -42,15 +42,15 @@ class MeshFlanks:
     face_load_factor: float
     """K_Hbeta over the cycle; NaN in the plane."""
     load_arm_difference: float = field(metadata=in_unit("m"))
-    """Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
-    plane.
+    """Arm of the load on the flanks less the arm in the table by which the shafts were deflected, m; NaN in
+    the plane.
     """
     largest_pressure: float = field(metadata=in_unit("pa"))
     """Largest pressure on the flanks, Pa."""
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
-    """`face_position`, `face_load`: Along the face from the pinion's mid-face, m; mean load over the cycle
-    there, N/m. Shape (41,) each.
+    """`face_position`, `face_load`: Positions along the face from the pinion's mid-face, m, and mean load
+    over the cycle there, N/m. Shape (41,) each.
     """
     roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
     """Roll length of the pinion, m. Shape (40,)."""

@@ -1,4 +1,4 @@
-"""The facts that the file of a sound has beside its arrays, as plain JSON."""
+"""Facts in the file of a sound, in addition to its arrays, as plain JSON."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         require_surface(subject)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what the response, those of its band, and a usual radiation take.
+        """Return the cost of the response, of the responses of its band, and of a usual radiation.
 
         How many panels a housing has its mesh says, which is not made before: of one that is larger or finer
         than a usual gear case the panels take more. Contacts of sensitivities are not predicted.
@@ -143,12 +143,12 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
 
 
 def _usual_lines(points: int) -> int:
-    """Return how many lines boundary elements usually correct: 1 of 4 points, 3 of 36."""
+    """Return the usual number of lines that boundary elements correct: 1 of 4 points, 3 of 36."""
     return min(LINES, math.ceil(0.5 * math.sqrt(points)))
 
 
 def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, ...] | None:
-    """Return where the sound pressure is found, mm; None: nowhere."""
+    """Return the position of the microphone, mm; None: no microphone."""
     if inputs.microphone_mm is not None or scene.complaint is None or inputs.radiation == PLANE.model_name:
         return inputs.microphone_mm
     return scene.complaint.microphone_mm

@@ -115,7 +115,7 @@ def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
 def _sensitivities_of(
     subject: TabledScene, model: SoundModel, speed: FloatArray, orders: int, means: Means
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return what steps of damping, stiffness and flanks change, and why others have no result."""
+    """Return changes by steps of damping, stiffness and flanks, and reasons why others have none."""
 
     def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
         varied = _flank_scenes(subject, flank.name, means.home)

@@ -59,11 +59,11 @@ class HeardAt:
     """Share of the duration; the shares of all load cases add up to 1."""
 
     def power(self, table: SteDatabase) -> FloatArray:
-        """Return what is heard of a table at each speed (S,)."""
+        """Return the counted power of a table at each speed (S,)."""
         return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
     def powers(self, tabled: TabledLoads) -> Powers:
-        """Return what is heard of designs about a table, to first order of what excites."""
+        """Return the counted powers of designs about a table, to first order of the excitation."""
         transfer, form = self.case.transfer, self.case.form
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
@@ -95,7 +95,7 @@ class HeardObjective:
     worst_load: bool
 
     def rows(self, values: FloatArray) -> FloatArray:
-        """Return what is the largest of (R, ...): of values (L, S, ...) by load case and speed."""
+        """Return the rows (R, ...) whose largest counts, from values (L, S, ...) by load case and speed."""
         if not self.worst_load:
             share = np.array([load.share for load in self.at])
             values = np.tensordot(share, values, 1)[None]

@@ -159,7 +159,7 @@ def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: S
 
 
 def usual_sound_designs(search: Search) -> tuple[float, float]:
-    """Return what a usual search takes, in values of designs at few positions and of designs in full."""
+    """Return the numbers of designs of a usual search, at few positions and in full."""
     method, few, many = search.method, 0.0, float(search.evaluations)
     if isinstance(method, StagedLinearProgramming):
         few = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * many)
@@ -174,7 +174,7 @@ def sound_cost(
     request: OptimizationRequest,
     cache: Path | None,
 ) -> StudyCost | None:
-    """Return what a usual search takes; None: nothing predicts it.
+    """Return the cost of a usual search; None: nothing predicts it.
 
     Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
     """

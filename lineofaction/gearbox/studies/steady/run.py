@@ -33,7 +33,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the motions of both sweeps and the points of a branch without folds take.
+        """Return the cost of the motions of both sweeps and of the points of a branch without folds.
 
         A few steps of the scene say what a period takes. Modes that a solid housing keeps are not known
         before and do not count. Of a scene whose motion does not repeat nothing predicts it.
@@ -123,7 +123,7 @@ def _study_cost(cost: SteadyCost) -> StudyCost:
 
 
 def _advice(single: SteadyCost, rpm: float) -> str:
-    """Say what a motion that is not afforded at many speeds takes at one, and what else answers."""
+    """Return advice on a motion that is too expensive at many speeds: its cost at one, alternatives."""
     pitches = " and ".join(map(str, single.pitches))
     repeats = f"repeats after {pitches} base pitches of the meshes and " if pitches else ""
     return (

@@ -1,4 +1,4 @@
-"""Study of a scene: its runs, and where they are kept."""
+"""Study of a scene: its runs, and their storage."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         check_parts(scene, responses_of(inputs))
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what its runs take, by some steps of a few of them, and the tables of other flanks.
+        """Return the cost of the runs, by some steps of a few of them, and of the tables of other flanks.
 
         None: nothing predicts one of these runs.
         """
@@ -123,7 +123,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
 def _flank_tables(
     scene: SceneInput, design: Design, places: Mapping[str, tuple[Location, ...]], cache: Path | None
 ) -> StudyCost:
-    """Return what the tables of all different flanks of the points take."""
+    """Return the cost of the tables of all different flanks of the points."""
     meshes = {name: {mesh_of_case(location) for location in at} - {None} for name, at in places.items()}
     columns = [k for k, name in enumerate(design.names) if meshes[name]]
     if not columns:

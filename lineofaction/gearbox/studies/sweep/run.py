@@ -235,7 +235,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             _ = case.request(_request, inputs).checked
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies and every design at all torques take."""
+        """Return the cost of the bodies and of every design at all torques."""
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)

@@ -110,7 +110,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
             raise BadInput.of("housings", value, "one with mass, a surface or points", _REMEDY)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the forces on bearings take, with which the motion of the housing is a product."""
+        """Return the cost of the forces on bearings, with which the motion of the housing is a product."""
         seen = any(map(_vibrates, scene.housings))
         return predicted_forces(scene, inputs) if seen else None
 
