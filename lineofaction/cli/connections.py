@@ -143,7 +143,7 @@ class Server(uvicorn.Server):
     Attributes
     ----------
     vitals : Vitals
-        Of the process that it serves in.
+        Signs of life of the process that the server runs in.
     metrics : callable
         Returns its figures as text.
     """

@@ -53,7 +53,7 @@ def run_housing(
     stands : tuple of str
         Material, and the direction that the housing stands on.
     placed : dict
-        What is typed of `NAMES`, by field.
+        Typed values of `NAMES`, by field.
     """
     material, stands_on = stands
     _check_known("--material", material, MATERIALS)

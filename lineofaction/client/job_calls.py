@@ -55,11 +55,11 @@ def pages(
     Parameters
     ----------
     path, entries : str
-        Of the list; the name of the entries in its pages.
+        Path of the list; name of the entries in its pages.
     reader : callable
         JSON of an entry to the entry.
     parameters : mapping
-        Of the first page.
+        Query parameters of the first page.
     """
 
     def read(page: dict[str, Any]) -> tuple[list[T], str | None]:
@@ -118,7 +118,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         inputs : dict
-            As JSON.
+            Inputs as JSON.
         idempotency_key : str, optional
             Name of this submission: a later one of the same name is the same job. Default: a new name.
         """
@@ -264,7 +264,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         job : str
-            Its identifier.
+            Identifier of the job.
         progress : callable, optional
             Called with every state seen; default: that of the client.
         timeout : float, optional

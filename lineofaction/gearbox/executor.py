@@ -17,7 +17,7 @@ def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[
     Parameters
     ----------
     processes : int
-        Of this machine.
+        Number of processes of this machine.
     scheduler : str, optional
         Address of a Dask scheduler, or the file in which it left it.
 

@@ -45,7 +45,7 @@ class PacedFraction:
         Parameters
         ----------
         fraction : float
-            Of the stage, 0 to 1.
+            Completed fraction of the stage, 0 to 1.
         elapsed_s : float
             Seconds on a clock that never falls.
         """

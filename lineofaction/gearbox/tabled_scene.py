@@ -45,7 +45,7 @@ def tabled_scene(
     Parameters
     ----------
     folder : Path
-        What the files that the scene names are relative to.
+        Folder to which the names of files in the scene are relative.
     table_of : callable
         ``table_of(index, mesh)``, the database of a mesh.
     home : Path
@@ -55,7 +55,7 @@ def tabled_scene(
     warn : callable
         Takes what is implausible about cases and scene.
     cases : CheckedCases
-        Of this scene: `table_of` goes on from what is checked here.
+        Checked cases of this scene: `table_of` continues from these checks.
     cached_table : callable
         ``cached_table(case)``, the table of a case that was computed before, which needs no check, or None.
 

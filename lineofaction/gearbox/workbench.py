@@ -59,7 +59,7 @@ def open_unit(
     Parameters
     ----------
     file : path
-        Of any version of REXS: XML, JSON or a ZIP of them.
+        File in any version of REXS: XML, JSON or a ZIP of them.
     assume : iterable of str
         Values over those of the file, ``ID.attribute=value`` in its units.
     overrides : mapping of str to object, optional

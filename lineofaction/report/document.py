@@ -421,9 +421,9 @@ def write(result: Any, file: Path | str) -> Path:
     Parameters
     ----------
     result : object
-        Of `analyze`, `simulate` or a study.
+        Result of `analyze`, `simulate` or a study.
     file : path
-        Its ending says as what.
+        File whose ending names the form.
     """
     path = Path(file)
     if hasattr(result, "to_netcdf") and path.suffix == ".nc":

@@ -26,7 +26,7 @@ class KeptAnswers:
     folder : Path
         Made with the first answer. Several processes may use it at once.
     most_bytes : int
-        What it holds at most.
+        Largest size of the folder in bytes.
     """
 
     def __init__(self, folder: Path, most_bytes: int = MAX_BYTES) -> None:

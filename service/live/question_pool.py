@@ -44,9 +44,9 @@ class QuestionPool:
     workers : sequence of QuestionWorker
     limits : Limits
     what : str
-        What the questions are, plural, as refusals name them.
+        Plural noun for the questions in refusals.
     for_submissions : int
-        How many of the workers, the first ones, answer only questions that submissions wait for.
+        Number of workers, the first ones, that answer only questions of waiting submissions.
     idle_s : float
         Time without a question after which a worker ends.
     """

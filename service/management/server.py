@@ -43,7 +43,7 @@ class ManagementServer:
     Parameters
     ----------
     host, port : str, int
-        Where it listens; port 0: a free one.
+        Address of the port; port 0: a free one.
     metrics : callable
         Returns the text exposition.
     """

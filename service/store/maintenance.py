@@ -26,7 +26,7 @@ class Quarantine:
     deployment : Deployment
         Asked before each step: what is another's stays.
     days : float
-        How long a file stays.
+        Number of days for which a file stays.
     """
 
     def __init__(self, files: ResultFiles, deployment: Deployment, days: float) -> None:

@@ -124,13 +124,13 @@ class ResultStore:
     files : ResultFiles
         Place of the files.
     project : str
-        Whose results are put, found, read and listed here: there are no others. Upkeep (`lines`, `enter`,
-        `strike`, `set_aside`) is of all projects.
+        Project whose results are put, found, read and listed here. Upkeep (`lines`, `enter`, `strike`,
+        `set_aside`) covers all projects.
 
     Attributes
     ----------
     lookups : CacheReads
-        How often a result was looked for with `find`, as by submissions, and was there.
+        Number of results that `find` sought, as for submissions, and number found.
     """
 
     def __init__(self, engine: Engine, files: ResultFiles, project: str = COMMON) -> None:

@@ -1,4 +1,4 @@
-"""Who does the tasks of a job: the Dask cluster of the service, and this process if it is away."""
+"""Executor of a job's tasks: the service's Dask cluster, or this process while the cluster is away."""
 
 from __future__ import annotations
 

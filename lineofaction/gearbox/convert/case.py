@@ -69,7 +69,7 @@ def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[st
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-        That of the case.
+        Gear pair of the case.
     changes : mapping
         Figures of flanks of "pinion" and "wheel" by their fields, within the bounds of these.
     """

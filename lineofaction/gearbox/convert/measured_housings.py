@@ -95,7 +95,7 @@ def measured_mobility(
     axes : (3, 3) array, optional
         Columns: the axes of the file in the scene; by default the same.
     field : str
-        What names the file, for errors.
+        Field that names the file, for errors.
     """
     file = Path(file)
     channels, where = read_frequency_responses(file, field), (field, file.name)

@@ -134,9 +134,9 @@ def dynamic_scene(
     Parameters
     ----------
     databases : mapping of str to SteDatabase
-        By name of the mesh; of all meshes that do not state their stiffness.
+        STE databases by name of the mesh, of all meshes that do not state their stiffness.
     reduced : mapping of str to ReducedHousing
-        By name of the housing; of all housings that are given by their solids.
+        Reduced housings by name, of all housings that are given by their solids.
 
     Raises
     ------

@@ -173,7 +173,7 @@ def meshes_of(
     Parameters
     ----------
     base_pitch : tuple of float
-        Of each, m.
+        Base pitch of each, m.
     bent : tuple of bool
         Whether the bending of its shafts is in the table.
     """

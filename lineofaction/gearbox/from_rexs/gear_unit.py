@@ -183,12 +183,12 @@ class GearUnit:
     Parameters
     ----------
     model : Model
-        Of the newest version, its references checked.
+        Model in the newest version, with checked references.
 
     Attributes
     ----------
     account : Account
-        What becomes of its values.
+        Fates of the model's values.
     """
 
     def __init__(self, model: Model) -> None:

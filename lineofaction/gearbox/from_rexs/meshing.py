@@ -45,7 +45,7 @@ class Meshing:
         driver : int, optional
             Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
         torques : tuple of float, optional
-            On the driving gear about its u axis, N m; their sign is its sense of rotation.
+            Torques on the driving gear about its u axis, N m; their sign is the gear's sense of rotation.
         """
         gears = _stage_gears(stage)
         if gears is None or all(gear.type == "ring_gear" for gear in gears):

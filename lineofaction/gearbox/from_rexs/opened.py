@@ -119,7 +119,7 @@ class OpenedUnit:
         Parameters
         ----------
         document : Document
-            Of any version of REXS.
+            Document in any version of REXS.
         assumptions : iterable of Assumption
             Values over those of the file.
         """

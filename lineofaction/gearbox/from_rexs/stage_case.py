@@ -67,8 +67,8 @@ class StageCase:
         Parameters
         ----------
         torques : mapping of int to tuple of float
-            By id of the stage: torques of its shaft on the driving gear about that gear's u axis, N m, all of
-            the sign of its sense of rotation. A stage without gets three load levels, which the account says.
+            Torques of the shaft on the driving gear about that gear's u axis, by id of the stage, N m; all have
+            the sign of the gear's rotation. A stage without torques gets three load levels and an account of it.
         drivers : mapping of int to int, optional
             The driving gear by stage; else as the file marks it, else gear 1 of the stage.
         """

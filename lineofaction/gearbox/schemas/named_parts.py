@@ -16,7 +16,7 @@ class Named:
     Parameters
     ----------
     schema : str
-        Of requests, such as ``Case``, or of a model that `service.routes.openapi` adds.
+        Name of a schema of requests, such as ``Case``, or of a model that `service.routes.openapi` adds.
     """
 
     def __init__(self, schema: str) -> None:

@@ -32,11 +32,11 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     Parameters
     ----------
     document : Document
-        As read, of any version.
+        Document as read, in any version.
     unit : OpenedUnit
-        What it opens to.
+        Unit opened from the document.
     result : GearboxDeflection
-        Of the unit's scene under all or some of its load cases.
+        Deflection of the unit's scene under all or some of its load cases.
     """
     check_same_scene(unit, result)
     numbers = {case.name: case.number for case in unit.load_cases}

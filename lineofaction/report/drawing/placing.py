@@ -57,7 +57,7 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     Parameters
     ----------
     x, y : Axis
-        Of the panel; `x` with limits, and `y`, too, where the panel ends with `y_range`.
+        Axes of the panel; `x` has limits, and `y` too if the panel ends with `y_range`.
     y_range : (float, float)
         Values between which the panel's curves lie.
     """

@@ -138,9 +138,9 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     modes : sequence of str, (a,)
         Names, below the bars.
     shares : sequence of mapping of str to float, (a,)
-        By part, each at least 0; the rest up to 1 is drawn as others.
+        Shares by part, each at least 0; the rest up to 1 is drawn as others.
     energy : str
-        Of the label.
+        Name of the energy in the label.
     """
     position, base = np.arange(float(len(modes))), np.zeros(len(modes))
     bars = []

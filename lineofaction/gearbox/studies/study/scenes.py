@@ -49,7 +49,7 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Location, ...]:
     Parameters
     ----------
     field : str
-        What the path is called in an error.
+        Name of the path in an error.
     path : str
         ``KIND.NAME.FIELD`` of a part, where ``*`` names every part of its kind, or ``TABLE.FIELD``.
     """
