@@ -132,7 +132,7 @@ class Checks:
         return [name for name in known if names is None or name in names]
 
     def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
-        """Check declared fields, each alone; what is left out passes, what is in `beyond` if it is finite."""
+        """Check declared fields, each alone; absent ones pass, those in `beyond` pass if they are finite."""
         may_miss = _left_out(cast("Hashable", type(thing)))
         for field, fact in declarations(type(thing)).items():
             value = getattr(thing, field)

@@ -31,7 +31,7 @@ SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
 def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, high: float) -> str:
-    """Return the unit in which a number makes sense that does not in its own; empty where there is none.
+    """Return the unit in which a number is plausible that is not in the field's unit; empty if there is none.
 
     Parameters
     ----------

@@ -86,12 +86,12 @@ def confine(folder: Path, limits: Limits = READING) -> None:
 
 
 def prepare_confinement() -> None:
-    """Find out once, in a process whose forks are confined, what is the same for all of them."""
+    """Prepare, in a process whose forks are confined, the data that are the same for all of them."""
     _readable()
 
 
 def _threads_and_addresses() -> tuple[int, int]:
-    """Return the number of threads of this process and the bytes of its addresses; 1 and 0 without /proc."""
+    """Return the number of threads and the bytes of address space of this process; 1 and 0 without /proc."""
     with suppress(OSError):
         fields = Path("/proc/self/stat").read_bytes().rpartition(b")")[2].split()
         return int(fields[17]), int(fields[20])

@@ -105,14 +105,14 @@ class LoopCache(FunctionCache):
         return None if data is None else self._impl.rebuild(context, data)
 
     def _save_overload(self, signature: Any, data: Any) -> None:
-        """Keep an entry, unless sources changed since this process looked at them: which it has is open."""
+        """Store an entry, unless sources changed since they were read: its version is then unknown."""
         if self._sources.unchanged():
             with suppress(OSError):  # a full disk costs the next process time, not this one its result
                 super()._save_overload(signature, data)
                 self._remove_old()
 
     def _remove_old(self) -> None:
-        """Remove what the loop was in the folder before its last few versions."""
+        """Remove all versions of the loop in the folder but the last few."""
         loop = self._loop.rpartition("-")[0]  # without its line
         indices = sorted(Path(self._cache_path).glob(f"{loop}-*.nbi"), key=lambda path: -path.stat().st_mtime)
         for index in indices[VERSIONS_KEPT:]:

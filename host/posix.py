@@ -21,7 +21,7 @@ _MIB = 1 << 20
 
 
 def cpu_seconds() -> float:
-    """Return the CPU seconds of this process and of its finished children: what a cost is counted by."""
+    """Return the CPU seconds of this process and of its finished children, the measure of a cost."""
     return time.process_time() + children_cpu_seconds()
 
 

@@ -1,4 +1,8 @@
-"""Positions of the database: equally spaced, or denser where the curves bend."""
+"""Positions of the database: equally spaced, or denser where the curves bend.
+
+A node is a position at which the table is solved; between nodes curves are interpolated. Probes are further
+solved positions that measure the error of interpolation.
+"""
 
 from __future__ import annotations
 

@@ -53,15 +53,19 @@ pairs of class 6, in the plane and over the face.
 _FACE_TILT = 2.7
 """Cost of assembly with the change of the compliance along sloping flanks, over that without it."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)
-"""Positions that the search ends with at one load of a spur pair, and the power of the loads with which they
-grow: handovers move with the load. Pairs at 1 to 12 loads met within 10 %."""
+"""Final positions of the search at one load of a spur pair, and exponent of their growth with the number of
+loads, in the plane and over the face. Handovers move with the load. Pairs at 1 to 12 loads are met within 10
+%.
+"""
 _HANDED_OVER = 0.15
 """Overlap ratio over which teeth come into contact so gently that e times fewer positions are added."""
 _ALLOWED = 1.5e-9
-"""Interpolation error in m that the first positions keep where teeth are handed over gently; what is allowed
-below it asks for as many times as many. The ripple of helical pairs is small, so where no floor holds the
-same part of it asks for more. Fitted to tables of eight helical pairs of overlap 0.25 to 2 at 1 to 16 loads,
-met within 0.6 to 1.5, by closer tolerances 0.6 to 2.3; a further one with a floor of 0.5 µm at 0.6."""
+"""Interpolation error that the first positions keep where teeth are handed over gently, m. A smaller allowed
+error needs more first positions in proportion. The ripple of helical pairs is small, so that a relative
+tolerance without a floor allows less. Fitted to tables of eight helical pairs of overlap 0.25 to 2 at 1 to 16
+loads: met within 0.6 to 1.5, under closer tolerances within 0.6 to 2.3; one more pair with a floor of 0.5 µm
+at 0.6.
+"""
 _RIPPLE_STIFFNESS, _RIPPLE_OVERLAP = 2.8e10, 0.5
 """Line load over ripple, N/m^2, of a spur pair: half of the deflection of a pair of teeth; the overlap
 ratio over which it falls by e."""

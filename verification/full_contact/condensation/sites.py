@@ -1,6 +1,8 @@
 """Sites where tooth pairs may touch at one position, and the element sizes on their flanks.
 
-Hertz' half-width decides element sizes and the length of the strips, and nothing else.
+The slave is the gear whose flank carries the pressure, the mate or master the other one. A strip is the
+stretch of a flank on which pressure may act. Hertz' half-width decides element sizes and the length of the
+strips, and nothing else.
 """
 
 from __future__ import annotations
