@@ -1,4 +1,4 @@
-"""Fields of a dataclass that say what they are: their unit, what they accept, and what they mean."""
+"""Declared fields of a dataclass, with their unit, accepted values and meaning."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ DEPTHS = (Kind.AMOUNT, Kind.SLOPE)
 
 
 class Direction(Flag):
-    """Along what of a flank a figure acts."""
+    """Direction along which a figure of a flank acts."""
 
     NONE = 0
     PROFILE = auto()

@@ -1,4 +1,4 @@
-"""Plausibility: limits of practice, and what is beyond them. A check warns and changes no number."""
+"""Plausibility: limits of practice, and findings beyond them. A check warns and changes no number."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, 
 
 @dataclass(frozen=True)
 class Check:
-    """A limit of practice that a quantity is held against."""
+    """A limit of practice that a quantity is compared with."""
 
     name: str
     """Name of the findings of the check."""

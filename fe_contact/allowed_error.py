@@ -53,7 +53,7 @@ class AllowedError:
         return self.floor / self.relative
 
     def part_text(self, change: float) -> str:
-        """Say which part of what is allowed a change takes, in parts of `scale`."""
+        """Return the text of the part of the tolerance that a change takes, in parts of `scale`."""
         return f"{engineering(100.0 * change / self.relative, 2)} % of the tolerance ({self.text})"
 
     @property

@@ -1,4 +1,4 @@
-"""Extras of the installation, which a base install does not bring; what a system does not offer."""
+"""Optional parts: extras of the installation, and functions that an operating system may lack."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Unavailable(OSError):
 
 
 class MissingExtra(ModuleNotFoundError):
-    """A module of an extra is asked for that is not installed."""
+    """A module of an extra that is not installed was needed."""
 
     def __init__(self, module: str, extra: str) -> None:
         remedy = f"pip install 'lineofaction[{extra}]'"

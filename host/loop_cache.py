@@ -1,4 +1,4 @@
-"""Compiled loops on disk, found by the content of all that they call.
+"""Compiled loops on disk, found by the content of all code that they call.
 
 numba finds an entry by the hash of the file of its loop: an inner loop that another file changed would leave
 the code of its callers as it was. Here an entry has the key of that file and of all that it imports, and of
@@ -66,7 +66,7 @@ class _Implementation(CompileResultCacheImpl):
 
 
 class _Entries(IndexDataCacheFile):
-    """The entries of a loop; what cannot be read is none."""
+    """The entries of a loop; unreadable ones count as absent."""
 
     def load(self, key: Any) -> Any:
         """Return the entry of a signature, None if there is none."""

@@ -36,7 +36,7 @@ State = tuple[int, int, int, int]
 
 
 class Sources:
-    """Files below a folder as they were when they were first looked at, and those of this project.
+    """Files below a folder in the state of their first reading, and the files of this project.
 
     Among foreign packages of an installation, `packages` names those that count.
     """

@@ -43,7 +43,7 @@ class PositionNodes:
 
     @property
     def error(self) -> FloatArray:
-        """Largest error beside each node, m; shape of `interval_error`."""
+        """Largest error near each node, m; shape of `interval_error`."""
         return np.maximum(self.interval_error, np.roll(self.interval_error, 1, axis=0))
 
 

@@ -30,7 +30,7 @@ _DESIGN = 0.75
 
 @dataclass(frozen=True)
 class PlannedLevel:
-    """One mesh level with its slices: what it is predicted to cost, and its expected error."""
+    """A mesh level with its slices: its predicted cost, and its expected error."""
 
     model: str
     level: str
@@ -147,7 +147,7 @@ class PredictedDesigns(NamedTuple):
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
-    """Predict what is solved on condensed gears; nothing is meshed.
+    """Predict the cost of solutions on condensed gears; nothing is meshed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Arrays of the STE database from what a table keeps of the contact."""
+"""Arrays of the STE database from stored arrays of the contact."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Disk cache of flank compliances and root stresses, by the hash of everything that decides them."""
+"""Disk cache of flank compliances and root stresses, by the hash of all their inputs."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def _alone(directory: Path, key: str) -> Iterator[None]:
 
 
 def _locked(descriptor: int) -> bool:
-    """Wait for a lock; say whether it is ours."""
+    """Wait for a lock; return whether this process holds it."""
     deadline = time.monotonic() + PATIENCE_S
     while True:
         try:

@@ -1,4 +1,4 @@
-r"""Strips near a tip edge: where their load presses, and what the corner under them yields.
+r"""Strips near a tip edge: the center of their load, and the yield of the corner under them.
 
 The load patch of finite elements at an edge has one length. The strip is shorter under less load, so that its
 middle is nearer to the edge, where the bodies yield more; and it moves as flanks tilt, less if the edge holds
@@ -72,7 +72,7 @@ def no_edges(slices: int) -> FloatArray:
 
 
 class EdgeMotion(NamedTuple):
-    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner."""
+    """Derivatives of the energy E by force and tilt, and the corner's yield that the local law lacks."""
 
     by_force: float
     by_tilt: float

@@ -258,7 +258,7 @@ class _SliceForces(NamedTuple):
 def _slice_forces(
     loads: FaceLoads, at: IntArray, lever: FloatArray, rank: IntArray, ends: IntArray
 ) -> _SliceForces:
-    """Lay the forces of all slices beside each other."""
+    """Lay the forces of all slices out one after the other."""
     low, width, start = _ranges(loads, at[1], rank, ends)
     count = lever.shape[0]
     force = np.zeros(start[-1] * count)
@@ -272,7 +272,7 @@ def _slice_forces(
 
 @inner()
 def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatArray) -> FloatArray:
-    """Return the rows and columns of a block beside each other in memory, within `room`."""
+    """Return the rows and columns of a block side by side in memory, within `room`."""
     gathered = room[: rows.size * columns.size].reshape(rows.size, columns.size)
     for k in range(rows.size):
         row = block[rows[k]]

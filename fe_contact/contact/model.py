@@ -119,7 +119,7 @@ class ToothGap(Protocol):
         """Bounds of the gap all over the usable flanks, arrays over the teeth of the gear, or numbers."""
 
     def tooth(self, meeting: IntArray) -> IntArray:
-        """Return which of its teeth meet, the first is 0."""
+        """Return the numbers of the gear's teeth that meet, the first is 0."""
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
@@ -129,7 +129,7 @@ class ToothGap(Protocol):
 
 
 class ComplianceTerm(Protocol):
-    """Compliance of what carries the gears, added to that of the teeth and bodies.
+    """Compliance of shafts and seats that carry the gears, added to that of teeth and bodies.
 
     Hashable, so that an assembled problem can be kept with the terms that are in it.
     """

@@ -1,4 +1,9 @@
-"""The contact problem of all positions as plain arrays, independent of how they were obtained."""
+"""The contact problem of all positions as plain arrays, independent of their source.
+
+The common face is divided into slices. A candidate is a point at which a pair of teeth can touch; in three
+dimensions a slice has several. A load patch is the stretch of the profile over which a mesh takes the force
+of a candidate. A strip is the true contact width, which the local law resolves within the patch.
+"""
 
 from __future__ import annotations
 

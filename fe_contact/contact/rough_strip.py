@@ -1,4 +1,4 @@
-r"""Strips of rough flanks: the even gap of parabolas that gives way under load as they do.
+r"""Strips of rough flanks: even gaps of parabolas with the same approach under load.
 
 Flanks with waves as short as the strip touch at a crest, then at the crests beside it, then all over: no
 parabola describes that. Two half planes with the true gap are solved under some loads [1]_, and the breaks of
@@ -105,7 +105,7 @@ def rough_strip(gap_of: GapOf, position: FloatArray, curvature: FloatArray, spre
 def _excess(
     gap_of: GapOf, part: IntArray, position: FloatArray, curvature: FloatArray, spread: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how much more than plain ones flanks give way (n, K) under the loads, and centroids (n,).
+    """Return the approach (n, K) of flanks beyond that of plain ones under the loads, and centroids (n,).
 
     What cells miss is the same on plain flanks.
     """

@@ -1,4 +1,4 @@
-"""Deflection of one pair of teeth that carries the whole load alone: a bound of what a mesh gives way.
+"""Deflection of one pair of teeth that carries the whole load alone: a bound of the deflection of a mesh.
 
 The energy of an elastic contact is the least of all forces that balance the torque (complementary energy).
 Forces even over one pair are among these: with its gap G, its strain energy W and the load F their energy is

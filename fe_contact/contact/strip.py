@@ -367,7 +367,7 @@ def _strip_at_edge(
 
 @inner(error_model="numpy")
 def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
-    """Return integrals over the angle of a strip of what lies past a break, d from it on.
+    """Return integrals over the angle of a strip of the distance d past a break, from the break on.
 
     Parameters
     ----------

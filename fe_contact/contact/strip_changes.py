@@ -71,7 +71,7 @@ class Strips:
         return gap(self.pair, *rolls, self.face) - of_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the means over the strips of what a break removes, m, and of its slope."""
+        """Return the means over the strips of the material that a break removes, m, and of its slope."""
         beyond = start.side * (distance - self.middle)  # from the middle to the break
         jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
         return means_past_break(beyond, self.half, jump, bend)
@@ -133,7 +133,7 @@ class ClosingLag:
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return how far the touching points move (k,), m: those at breaks with these."""
+        """Return the ways of the touching points (k,), m; points at breaks move with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         shift = self.way * slope

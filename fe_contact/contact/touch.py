@@ -102,7 +102,7 @@ def _shifted(
     gaps: tuple[GapTerm, ...],
     teeth: DeviatingTeeth | None,
 ) -> Touch:
-    """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
+    """Move the touching points to the least sum of conjugate gap, `gaps` and gaps of the teeth."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: values.reshape(touch.gap.size, *values.shape[2:]) for name, values in vars(touch).items()}
     near = Touch(**{name: values[possible] for name, values in plain.items()})

@@ -1,4 +1,4 @@
-"""Compose the contact model from the effects a scene calls for, and keep the ledger of what was left out."""
+"""Composition of the contact model from the effects that a scene calls for, and the ledger of all effects."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _REMEDY = "A relief starts on the involute, before the end of the flank to which
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
+    """A coordinate that names a point of a flank, with its conversion to roll length and back."""
 
     text: str
     unit: str

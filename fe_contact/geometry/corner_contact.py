@@ -172,7 +172,7 @@ def _touch_by_tip_gear(
 
 
 def _masked(touch: _Touch, flank: Toothing, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
-    """Blank what lies off the flank's involute or cannot drive."""
+    """Blank points that lie off the flank's involute or cannot drive."""
     slack = 1e-9 * flank.normal_module
     roll = touch.flank_roll_length
     valid = flank.sign * (roll - flank.form_roll_length) >= -slack

@@ -1,4 +1,4 @@
-"""The hub of a gear's mesh: the ring below and beside the real teeth, down to the bore."""
+"""The hub of a gear's mesh: the ring below and between the real teeth, down to the bore."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desig
 
 
 def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
-    """Return who does what follows a search: this process once that is cancelled."""
+    """Return the workers of the steps after a search: this process once it is cancelled."""
     if cancel() or isinstance(workers, InProcess):
         return InProcess()
 

@@ -1,4 +1,4 @@
-"""Analyze a design anew as `analyze` would, with the errors of its curves, at every node of the scatter."""
+"""Full analysis of a design as `analyze` does it, with errors, at every node of the scatter."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class Assessed:
 
 
 class Merit(Protocol):
-    """The merit of designs about one of them."""
+    """The merit of designs near one design."""
 
     def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
@@ -64,7 +64,7 @@ class _Memory(Protocol):
 
 @dataclass(frozen=True)
 class SearchProblem(ABC):
-    """The variables, what is solved of a design, and the limits that it has to keep."""
+    """The problem of a search: variables, evaluator and limits of the designs."""
 
     evaluator: Evaluator
     variables: tuple[DesignVariable, ...]

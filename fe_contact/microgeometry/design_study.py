@@ -85,7 +85,7 @@ class DesignSpace:
         return _with_effects_of(self._with_the_least_removed(), checked)
 
     def _with_the_least_removed(self) -> ParallelAxes:
-        """Return the pair with every variable at its lower bound, less what scatters."""
+        """Return the pair with every variable at its lower bound, less its scatter."""
         present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
         removed = present | dict(self.minimum)
         deviation = {name: -amount for name, amount in self.scatter.modification.items()}
@@ -93,7 +93,7 @@ class DesignSpace:
 
 
 def _with_effects_of(barest: ParallelAxes, checked: Checked) -> Checked:
-    """Turn on what only the design with the least removed calls for: tip edges that a relief keeps apart."""
+    """Turn on effects that only the design with the least removed calls for, such as corner contact."""
     _, ledger = compose(replace(checked.request, pair=barest).scene, checked.request.choices)
     missing = {entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on}
     reasons = {entry.name: CALLED_FOR for entry in ledger if entry.on and entry.name in missing}
@@ -163,7 +163,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decision:
 
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
-    """Refuse to vary what an effect that is off would hide."""
+    """Refuse to vary quantities that an effect hides because it is off."""
     request = checked.request
     effects = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:

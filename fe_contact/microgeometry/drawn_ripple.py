@@ -1,6 +1,6 @@
-"""The ripple of pairs as they are made, on bodies in memory: a few are solved, tangents stand for the others.
+"""The ripple of pairs as they are made, on bodies in memory: some are solved, the others follow by tangents.
 
-As in a tolerance Monte Carlo, but in parts that are short enough for somebody who waits.
+The method is that of a tolerance Monte Carlo, in parts that are short enough for a live answer.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class PitchBounds:
         return cls(single, cumulative, largest, cosine, accumulated)
 
     def places(self, deviation: FloatArray) -> FloatArray:
-        """Return places of teeth (..., z), m, of what each of them is out of its place by itself.
+        """Return places of teeth (..., z), m, with accumulated pitch deviations.
 
         Harmonic j of the teeth grows by the root of 1 - a + a / (2 sin^2(pi j / z)), a the part accumulated:
         the mean square of a single pitch stays, and that of neighbors' difference is the same at every tooth.

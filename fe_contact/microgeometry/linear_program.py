@@ -1,4 +1,4 @@
-"""The merit of designs about one of them to first order: its least value is a linear program."""
+"""The merit of designs near one design to first order: its least value is a linear program."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""Orders beside the mesh that the teeth of one gear make: which pairs are above a limit, and why.
+"""Shaft orders and sidebands by the teeth of one gear: the pairs above a limit, and the causes.
 
 Pairs are solved over one revolution of the gear, whose teeth are drawn; those of its mate are alike. Further
-pairs, and what decides, are told to first order in the deviations of single teeth, about the flanks as
-designed: an order is the Fourier sum of a deviation over the teeth times what one tooth does as it passes
-through the mesh. Where slopes and forms move the point at which teeth touch is left out.
+pairs, and the causes, follow to first order in the deviations of single teeth, about the flanks as designed:
+an order is the Fourier sum of a deviation over the teeth times the contribution of one tooth as it passes
+through the mesh. Motions of the touching point by slopes and forms are left out.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Tolerance Monte Carlo: how peak-to-peak STE is distributed over pairs as they are made and assembled."""
+"""Tolerance Monte Carlo: the distribution of peak-to-peak STE over pairs as they are made and assembled."""
 
 from __future__ import annotations
 

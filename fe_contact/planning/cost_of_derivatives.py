@@ -1,4 +1,4 @@
-"""Cost of contact by its pieces, and of a long cycle: by it pitches are solved or told by derivatives."""
+"""Cost of the contact by parts, and of a long cycle whose pitches are solved or follow from derivatives."""
 
 from __future__ import annotations
 

@@ -168,7 +168,7 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
-    """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
+    """Return the largest number of slices that a mesh resolves, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
     patches = pair.face_width / (FACE_RESOLVED * recipe.flank_size)
     return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)

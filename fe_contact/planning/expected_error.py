@@ -115,7 +115,7 @@ def expected_error(
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
-    """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
+    """Return the median error by mesh of mean and of peak-to-peak, over the mean's rise under load."""
     if not isinstance(plan.discretization, FaceDiscretization):
         return PLANE[plan.level]
     helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]

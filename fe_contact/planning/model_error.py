@@ -115,7 +115,7 @@ def floor_of(pair: ParallelAxes) -> tuple[float, float, float]:
 
 
 def of_bending(pair: ParallelAxes, values: FloatArray) -> FloatArray:
-    """Return of what size the quantities (Q, ...) in m are as far as teeth bend: at least `values`."""
+    """Return the sizes of the quantities (Q, ...) by the bending of teeth, m: at least `values`."""
     ripple = bending_ripple(pair)
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
@@ -129,7 +129,7 @@ def bending_ripple(pair: ParallelAxes) -> float:
 
 
 def helical_share(pair: ParallelAxes) -> float:
-    """Return the part that constants of helical pairs have beside those of spur pairs, 0 to 1.
+    """Return the weight of the constants of helical pairs against those of spur pairs, 0 to 1.
 
     A helix of next to no overlap leaves the errors of a spur pair.
     """

@@ -79,7 +79,7 @@ class NodeRule:
     """Least peak-to-peak STE, m; smaller ones count as this."""
 
     def reached_by_neighbor(self, position: FloatArray) -> BoolArray:
-        """Whether positions (P,) of a base pitch are nodes of interpolants in the pitches beside it."""
+        """Whether positions (P,) of a base pitch are nodes of interpolants in the neighboring pitches."""
         return np.minimum(position, 1.0 - position) * self.start < _REACH
 
     def searched(self, period: int) -> float:
@@ -199,7 +199,7 @@ def make_plan(
 
 
 def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
-    """Return the load patches, wider ones that tell what they cost, and the part of that change that is left.
+    """Return the load patches, wider ones that measure their error, and the part of that change that is left.
 
     Patches are as wide as strips under half the largest load, and as the mesh asks; the wider ones as the
     coarse mesh asks, but no wider than a slice if that tells enough. `force` is the largest requested load in

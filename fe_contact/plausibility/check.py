@@ -204,7 +204,7 @@ SOLVED = ("hertz_pressure", "transmission_error")
 
 
 def merged(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings of a request and of its results: what is solved replaces what was estimated."""
+    """Return the findings of a request and of its results: solved values replace estimated ones."""
     return (*(finding for finding in requested if finding.check not in SOLVED), *solved)
 
 

@@ -1,4 +1,4 @@
-"""Checks of what was computed: contact pressure, root stress, transmission error."""
+"""Plausibility checks of results: contact pressure, root stress, transmission error."""
 
 from __future__ import annotations
 

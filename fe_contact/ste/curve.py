@@ -72,7 +72,7 @@ def at_operating_point(database: SteFields, values: FloatArray, point: Operating
 
 
 def _over_phase(database: SteFields, shares: FloatArray, teeth: int) -> tuple[FloatArray, FloatArray]:
-    """Join what the pairs (P, N) say of one pair of teeth into a curve over phase, zero at each end.
+    """Join the values of the pairs (P, N) of one pair of teeth into a curve over phase, zero at each end.
 
     `teeth` counts the pairs of teeth that meet in a period: it is pair j in whole pitch (j - teeth) modulo
     the period.
@@ -196,7 +196,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
 def _evaluate(
     database: SteFields, force: MeshForce, point: OperatingPoint, position: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Transmission error, its band, and what loads below the smallest one add to it, at the positions."""
+    """Return transmission error, its band, and the error below the smallest load, at the positions."""
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.geometry.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)

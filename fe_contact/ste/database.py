@@ -1,4 +1,4 @@
-"""The STE database: stored arrays with the questions they answer."""
+"""The STE database: stored arrays, with curves, spectra and forces by interpolation."""
 
 from __future__ import annotations
 

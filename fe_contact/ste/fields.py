@@ -1,4 +1,4 @@
-"""The stored arrays of an STE database, and what they must satisfy."""
+"""The stored arrays of an STE database, and the checks of their shapes and values."""
 
 from __future__ import annotations
 

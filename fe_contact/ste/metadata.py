@@ -117,7 +117,7 @@ class PairGeometry:
 
     @classmethod
     def from_json(cls, content: Json) -> PairGeometry:
-        """Read back what `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
+        """Read a record that `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
         try:
             return cls(**content)
         except (TypeError, ValueError, IndexError) as error:

@@ -18,7 +18,7 @@ _UM = 1e-6
 
 @dataclass(frozen=True)
 class PlaneBias:
-    """Excess of the STE of the gears over that of a plane model, which is exact as far as its errors say."""
+    """Bias of a plane model: excess of the STE of the gears over that of the plane, within stated errors."""
 
     subject: str
     """Plane model and face width, in words."""

@@ -1,4 +1,4 @@
-"""Orders of a transmission-error curve: mesh harmonics, and what lies between them over a longer period."""
+"""Orders of a transmission-error curve: mesh harmonics, and the orders between them over a longer period."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The warm process: it has imported and compiled what workers need, and forks one when told.
+"""The warm process: it has imported and compiled the code of workers, and forks a worker on request.
 
 Started as ``python -m host.children.fork_server DESCRIPTOR WORK MODULE ...`` in a session of its own. It
 imports the modules and does what their `warm_up` does, if they have one; then it says so, and obeys one

@@ -1,4 +1,4 @@
-"""Child processes that work on one order each: started anew, or forked from a warm process.
+"""Child processes that work on one order each: new processes, or forks of a warm process.
 
 A child forked from it needs no imports and no compilation. It is started for the first child, which waits for
 it: both take what that child alone would. Where it cannot be had, or not in time, children are started anew.

@@ -1,4 +1,4 @@
-"""Limits that a system does not keep by itself: whoever started a child looks whether it is within them."""
+"""Limits that a system does not enforce: the starter of a child checks them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hash of what a task is made of, the same in every process that makes the same task."""
+"""The hash of the inputs of a task, equal in every process that makes the same task."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Executors of tasks, and what travels to them: in this process, or by a pool of the standard library."""
+"""Executors of tasks and the transport of their inputs: this process, or a pool of the standard library."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Packed:
 
 
 class _PassedFiles:
-    """A folder for what goes to other processes of this machine; it ends with the last reference to it."""
+    """A folder for inputs that other processes of the machine read; it ends with the last reference to it."""
 
     @cached_property
     def path(self) -> Path:
@@ -121,7 +121,7 @@ class RunCost:
 
 @dataclass(frozen=True)
 class _Done(Generic[R]):
-    """The result of one task, and what it cost its worker."""
+    """The result of one task, and its cost for the worker."""
 
     result: R
     cpu_seconds: float
@@ -258,7 +258,7 @@ def cluster_cached(function: Function) -> Function:
 
 @dataclass(frozen=True)
 class OrHere:
-    """Workers that may be lost; what they leave is done in this process.
+    """Workers that may be lost; tasks that they leave are done in this process.
 
     `on_loss` is called once, with the reason, when they are lost; nobody looks for them again.
     """

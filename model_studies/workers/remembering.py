@@ -22,7 +22,7 @@ _CHECKSUM = 32
 
 @dataclass(frozen=True)
 class Remembering:
-    """Workers with a folder for what they did.
+    """Workers with a folder that stores their results.
 
     The folder is of this study alone, as its files are unpickled, and the caller's to remove. Results of
     another `version` of what computes are not taken.

@@ -60,7 +60,7 @@ class Assumption:
 
 
 def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
-    """Check everything that a table took for granted on what it computed."""
+    """Check all assumptions of a table on its results."""
     return (
         *_tip_edges(run, _ripples(run)),
         *_neglected(run),
@@ -74,12 +74,12 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
 
 
 def check_single_point(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
+    """Check the assumptions of flank results and root stress: depth of edges relative to the deflection."""
     return (*_tip_edges(run, np.abs(_means(run))), *check_cheaply(run))
 
 
 def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what needs nothing but the solution."""
+    """Check the assumptions that the solution alone can show."""
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), *_crests(run), _load_patches(run))
 
 
@@ -119,7 +119,7 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects neglected for the tolerance: estimate and bound of their influence beside what was computed."""
+    """Check the effects neglected for the tolerance: estimate and bound of their influence."""
     request = run.checked.request
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)

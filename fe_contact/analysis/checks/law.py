@@ -1,4 +1,4 @@
-"""A law held against a table: its worst place, the value there and the bound."""
+"""A law of mechanics checked on a table: its worst grid point, the value at it and the bound."""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""The least of tangents over all pitches of a cycle, about the nominal gears and pitches that were solved."""
+"""The envelope of a cycle: the least of tangents over all base pitches, about solved states.
+
+A cycle is the period of base pitches after which the teeth of both gears meet again. A state is the solved
+contact of one base pitch, or of the nominal gears. A tangent is the transmission error to first order in the
+gaps of teeth about a state. It lies above the solution (`tangents`), so that the least of several tangents is
+nearest to it.
+"""
 
 from __future__ import annotations
 
@@ -253,9 +259,9 @@ class Envelope:
 
     @property
     def next(self) -> IntArray:
-        """The `BATCH` pitches to solve next, none beside another.
+        """The `BATCH` pitches to solve next, no two of them neighbors.
 
-        First those that may hold an end of the range, then those furthest from what stands for them.
+        First come pitches that may hold an end of the range, then those furthest from their tangent's state.
         """
         ends = self._beyond.max(axis=(0, 2))
         ends = np.argsort(-ends, kind="stable")[: min(BATCH // 2, np.count_nonzero(ends > 0.0))]
@@ -287,7 +293,7 @@ class Envelope:
 
     @property
     def ste(self) -> FloatArray:
-        """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
+        """Transmission error (T, P, L), m: solved, or the least tangent less its mean error."""
         return self.exact_in(self.minimum.ste - self.drawn_errors.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
@@ -348,7 +354,7 @@ def chosen(
 
 
 def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
-    """Whether derivatives give mean and peak-to-peak within a part of what is allowed, at all loads.
+    """Whether derivatives give mean and peak-to-peak within a part of the tolerance, at all loads.
 
     The mean is that of nominal gears: deviations turn the gears, and it may be zero.
     """

@@ -5,8 +5,8 @@ a tooth does at each position is found once for every tooth of either gear, not 
 meets in a hunting cycle.
 
 At a given load the transmission error is concave in the gaps: where teeth part, others take over. So a
-tangent lies above it, and of several tangents the least counts. Flanks that slope touch beside the point at
-which their gap is taken, some nanometers closer; what drawn pitches are missed by holds that too.
+tangent lies above it, and of several tangents the least counts. Flanks that slope touch near the point at
+which their gap is taken, some nanometers closer; the errors measured in drawn pitches contain that.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class SolvedState:
 
 
 def nominal_tangent(gaps: ToothGaps, state: SolvedState) -> Tangent:
-    """Return the tangent about the gears without what differs from tooth to tooth."""
+    """Return the tangent about the gears whose teeth are alike."""
     (tangent,) = _tangents(gaps, state, 1)
     return tangent
 

@@ -176,7 +176,7 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
 
 
 def _settled(resolution: _Resolution) -> _Resolution:
-    """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
+    """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:
         used, sources = resolution.used, resolution.sources
         decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)

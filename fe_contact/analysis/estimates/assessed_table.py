@@ -49,7 +49,7 @@ def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tu
 
 
 def _summary(errors: FloatArray) -> Json:
-    """Return the largest over the alignments of each source by load, m, and what was not estimated.
+    """Return the largest error over the alignments by source and load, m, and the sources not estimated.
 
     A source is not estimated if it is unknown anywhere.
     """
@@ -180,7 +180,7 @@ def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
-    """Return the errors of a table of which none was estimated, but for what is known in closed form."""
+    """Return the errors of a table without estimates, with the errors known in closed form."""
     bias = table_bias(table, points, plan)
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)

@@ -118,7 +118,7 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
 
 
 def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
-    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 23, F, M, D) in m.
+    """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
     `balance` is the least change of a mean over the mean size of the change about it.
     """

@@ -1,4 +1,4 @@
-"""Errors between even positions, measured by half of them: nothing is solved for it.
+"""Errors between even positions, measured by leaving half of them out, without a further solution.
 
 Curves through every second position are held against those through all. What the second half changed is
 carried on to what a third would; corners between the positions, which it may have passed by, are looked for

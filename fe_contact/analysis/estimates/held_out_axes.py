@@ -1,4 +1,7 @@
-"""Interpolation error of a table between the nodes of its axes, measured at points it does not hold."""
+"""Interpolation error of a table between the nodes of its axes, measured at held-out points.
+
+A held-out point is solved, but is no node of the table.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +53,7 @@ class AxisError:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A table with the nodes that were inserted, and what it misses between all of them."""
+    """A table with its inserted nodes, and its errors between all nodes."""
 
     made: SolvedTable
     """Solved table with its inserted alignments."""

@@ -62,7 +62,7 @@ class LoadErrors:
 
 @dataclass(frozen=True)
 class HeldOutLoads:
-    """The first pitch of a table at some positions, held against solutions between its loads."""
+    """The first pitch of a table at some positions, compared with solutions between its loads."""
 
     table: SteDatabase
     """Table of the first base pitch."""
@@ -154,7 +154,7 @@ class HeldOutLoads:
         return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
 
     def _shares(self, probes: SupportLoads, change: FloatArray, goal: IntervalGoal) -> FloatArray:
-        """Return the larger part of what is allowed that the changes take of mean and peak-to-peak, (L,).
+        """Return the larger part of the tolerance that the changes of mean and peak-to-peak take, (L,).
 
         Every point of an interval states the error of the worst: the least that is allowed in it counts.
         """

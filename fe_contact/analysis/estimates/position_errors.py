@@ -147,7 +147,7 @@ def measured_nodes(
 
 
 def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
-    """Return by how much values (K, C) at the knots of a closed axis differ from what the others predict, m.
+    """Return the differences of values (K, C) at the knots of a closed axis from predicted ones, m.
 
     Every second knot is predicted from the rest, then the rest from those.
     """

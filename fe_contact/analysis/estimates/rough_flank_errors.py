@@ -1,4 +1,4 @@
-"""Errors of strips on rough flanks: what the even gap in place of the true one misses."""
+"""Errors of strips on rough flanks, by the even gap that replaces the true one (`contact.rough_strip`)."""
 
 from __future__ import annotations
 

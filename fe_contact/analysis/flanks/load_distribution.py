@@ -181,7 +181,7 @@ class LoadDistribution:
 
     @property
     def mean_face_load_factor(self) -> float:
-        """K_Hbeta of the face load averaged over all positions: what it is over a mesh cycle."""
+        """K_Hbeta of the face load averaged over all positions of a mesh cycle."""
         return float(_largest_over_mean(self.face_load.mean(axis=0)))
 
     @property
@@ -196,7 +196,7 @@ class LoadDistribution:
         return _over_mean_of(self.line_load, self._meshing)
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
+        """Return all fields with units, and derived ones: line load, factors, contact patterns."""
         from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
         return content(self).to_xarray()
@@ -294,7 +294,7 @@ def _estimate(value: float, relative: float | None, unit: str) -> Estimate:
 
 
 def _windows(values: Stretches, count: int) -> Stretches:
-    """Return so many stretches beside each other of values (..., K), (..., K + 1 - count, count)."""
+    """Return windows of `count` neighboring stretches of values (..., K), (..., K + 1 - count, count)."""
     return np.lib.stride_tricks.sliding_window_view(values, count, axis=-1)
 
 

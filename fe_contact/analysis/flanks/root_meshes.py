@@ -1,4 +1,4 @@
-"""Meshes for the stress of the tooth roots, and coarser ones that tell its error."""
+"""Meshes for the stress of the tooth roots, and coarser ones for its error."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ sectors of the contact.
 
 @dataclass(frozen=True)
 class _PlaneRootMeshes:
-    """Sections of both gears, driving gear first: those of the contact, and others half as fine."""
+    """Sections of both gears, driving gear first: the sections of the contact, and sections half as fine."""
 
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
@@ -28,7 +28,7 @@ class _PlaneRootMeshes:
 
 @dataclass(frozen=True)
 class FaceRootMeshes:
-    """Sectors of both gears, driving gear first: those of the contact, finer at the root.
+    """Sectors of both gears, driving gear first: the sectors of the contact, finer at the root.
 
     The coarse ones are the contact's own, with layers of the next coarser mesh.
     """

@@ -1,4 +1,4 @@
-"""An operating point on rougher discretizations: what errors on the flanks and in the roots are told by."""
+"""An operating point on rougher discretizations, for the errors of flank results and root stress."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contact of one load and one alignment: what flank results and deformed gears start from."""
+"""Contact of one load and one alignment, the start of flank results and deformed gears."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LISTED = 5
 def solved_point(
     checked: Checked, at: ArrayLike | None, clock: StageClock, run: Run
 ) -> tuple[SolvedOperatingPoint, Json]:
-    """Solve an operating point at positions, check what that took for granted, and repeat it if needed.
+    """Solve an operating point at positions, check its assumptions, and repeat the solution if needed.
 
     Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError` as
     `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".

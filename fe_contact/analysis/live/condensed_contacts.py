@@ -65,7 +65,7 @@ class CondensedContacts:
         )
 
     def touch(self, model: ContactModel, sample: TableSample) -> None:
-        """Record where the flanks touch: at all positions of a table, and at those of the sample.
+        """Record the touching points of the flanks at all positions of a table, and at those of the sample.
 
         Call it on the result of `with_flanks`: all its contacts in the same slices read this record.
         """
@@ -95,7 +95,7 @@ class CondensedContacts:
         return CondensedContacts.of(nominal, coarse)
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
-        """Assemble what is not kept yet: the fine pair at all positions, others at those of the sample."""
+        """Assemble missing compliances: of the fine pair at all positions, of others at the sample's."""
         candidates = self.fine.candidates(model, sample.position)
         self.fine.assemble(model, candidates)
         positions = sample.position[sample.rows]

@@ -60,7 +60,7 @@ class _Latest:
 
 @dataclass(frozen=True)
 class CondensedPair:
-    """Gears with their compliance, as a table had them."""
+    """Gears with the compliance of a table, for other flanks, loads and alignments."""
 
     checked: Checked
     """Request of the table, its model bound to the bodies of the table."""
@@ -265,7 +265,7 @@ class CondensedPair:
         return bodies, operating_points(scene, request.choices, bodies.fine)
 
     def _at(self, change: float) -> CondensedContacts:
-        """Return the contacts at a change of the center distance in m; those requested last are kept."""
+        """Return the contacts at a change of the center distance in m; the latest ones stay in memory."""
         if change == 0.0:
             return self.contacts
         if change not in self._by_distance:

@@ -79,7 +79,7 @@ class _Line:
 
 
 def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unreported) -> list[SolvedBlock]:
-    """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
+    """Solve lines; their contacts keep the assembled compliances. `report` is called after each line."""
     solved: list[SolvedBlock] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
         joined = _joined(line, blocks)
@@ -165,7 +165,7 @@ def _joined_touch(parts: list[Touch]) -> Touch:
 
 
 def _joined_arrays(parts: list[Arrays], pitches: int, same: tuple[str, ...] = ()) -> Arrays:
-    """Put dataclasses of arrays over the rows together; those that are the `same` in all stay."""
+    """Join dataclasses of arrays over their rows; arrays named in `same` are equal in all of them."""
     joined: Arrays = replace(
         parts[0],
         **{
@@ -328,7 +328,7 @@ def _sent_lines(
     pitches: IntArray | None,
     known: Sequence[Candidates] | None = None,
 ) -> Lines:
-    """Gather the places that share a compliance into lines, each with the numbers of its places.
+    """Return lines of operating points that share a compliance, each with the numbers of its points.
 
     Empty where there is nobody else to solve them, or less than one task of work.
     """

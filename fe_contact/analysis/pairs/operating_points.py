@@ -17,7 +17,7 @@ from model_studies.workers import InProcess, Workers
 
 
 class Derived(Protocol):
-    """Who gives the base pitches of a long period by derivatives about some of them."""
+    """Rule that gives the base pitches of a long period by derivatives about some of them."""
 
     def on(self, point: OperatingPoint, position: FloatArray, load: FloatArray) -> FloatArray:
         """Return transmission error and load arm (T P, L, 2) in m at positions (P,) and loads (L,).
@@ -78,7 +78,7 @@ class OperatingPoints:
 
     @property
     def assessed_indices(self) -> tuple[int, ...]:
-        """Indices of those among all operating points."""
+        """Indices of the assessed operating points among all."""
         last = len(self.places) - 1
         return tuple(sorted({0, last // 2, last}))
 

@@ -76,7 +76,7 @@ class PairContact:
 
     @classmethod
     def of_bodies(cls, pair: ParallelAxes, plan: Plan, bodies: Bodies) -> PairContact:
-        """Return a pair of these compliances, which are of the kind of its plan."""
+        """Return a pair with these compliances, which are in the plane or over the face as its plan is."""
         over_face = isinstance(plan.discretization, FaceDiscretization)
         return cls(pair, plan, **{"face" if over_face else "plane": bodies})  # type: ignore[arg-type]
 
@@ -107,7 +107,7 @@ class PairContact:
     def problem(
         self, model: ContactModel, position: FloatArray, pitch: IntArray | None = None
     ) -> ContactProblem:
-        """Assemble what `solve` solves."""
+        """Assemble the contact problem that `solve` solves."""
         problem = self._problem(model, position)
         problem = with_flanks(self.pair, problem, model, self.touches.get(position.tobytes()))
         if pitch is None and not model.tooth_gaps:
@@ -183,7 +183,7 @@ class PairContact:
         return (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
 
     def _keep(self, model: ContactModel, candidates: Candidates) -> None:
-        """Assemble the compliance of candidates, in the place of what was kept first."""
+        """Assemble the compliance of candidates; it replaces the oldest one in memory."""
         self._make_room()
         bodies = self._assembled(candidates, model.couple_teeth)
         self._store(model, with_compliances(self.pair, bodies, model))
@@ -193,7 +193,7 @@ class PairContact:
         self._problems[self.key(model, problem.candidates.position)] = problem
 
     def _make_room(self) -> None:
-        """Let go of what was kept first, before the memory of another is needed."""
+        """Drop the oldest compliance, before the memory of another is needed."""
         while len(self._problems) >= CACHED_PROBLEMS:
             self._problems.pop(next(iter(self._problems)))
 

@@ -97,7 +97,7 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
-        """Check the request whose effects are toggled, once; what is checked stays as it is."""
+        """Check the request whose effects are toggled, once; a checked request passes unchanged."""
         nominal = None if axes is None else replace(axes, center_distance_changes=(0.0,))
         return as_checked(pair, nominal, replace(options, receipt="minimal", on_violation="report"))
 

@@ -50,7 +50,7 @@ class _ClosedFormFidelity:
 
     @property
     def family(self) -> str:
-        """A family of its own."""
+        """Family of the fidelity, which has no other member."""
         return self.name
 
     def refusal(self, checked: Checked) -> str | None:

@@ -117,7 +117,7 @@ class FullContactRecord:
 
 @dataclass(frozen=True)
 class FullContactComparison:
-    """A record at some of its positions, and what a study of accuracy differs by from it.
+    """A record at some of its positions, and its differences from the fidelities of an accuracy study.
 
     Errors are relative, the worst of all curves; NaN where there is nothing to compare.
     """

@@ -61,7 +61,7 @@ class EstimatedCurve:
 
 @dataclass(frozen=True)
 class Springs:
-    """Slice models of one pair; what states of it have in common is assembled once."""
+    """Slice models of one pair; data that its states share are assembled once."""
 
     pair: ParallelAxes
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)

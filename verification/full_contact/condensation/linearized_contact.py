@@ -45,7 +45,7 @@ class LinearizedContact:
 
 
 class Solution(NamedTuple):
-    """A contact, its pressures, and the torque on gear 1 over the thickness that they were to balance."""
+    """A contact, its pressures, and the required torque on gear 1 per thickness."""
 
     contact: LinearizedContact
     pressure: FloatArray

@@ -41,7 +41,7 @@ class WeakGap:
 
 
 class _Facing(NamedTuple):
-    """Quadrature points of the slave (q,) and what they face; normals (q, 2), hats (q, h), lengths (q,)."""
+    """Quadrature points of the slave (q,) and opposite points; normals (q, 2), hats (q, h), lengths (q,)."""
 
     slave: CurvePoints
     master: CurvePoints

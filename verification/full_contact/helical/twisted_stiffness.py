@@ -68,7 +68,7 @@ def _plane_matrices(section: Section, names: set[tuple[str, str]]) -> dict[tuple
 
 @dataclass(frozen=True)
 class Section:
-    """Plane mesh of one gear about its axis, with what turns it."""
+    """Plane mesh of one gear about its axis, with its twist along the face."""
 
     points: FloatArray
     """Nodes in the gear's own frame, m. Shape (n, 2)."""

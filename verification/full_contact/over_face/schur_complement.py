@@ -19,7 +19,7 @@ MERGED, MAX_NODES = 1.6, 48
 
 @dataclass(frozen=True)
 class _Front:
-    """Nodes that are eliminated together, and those that they then tie together, both rising."""
+    """Nodes that are eliminated together, and nodes that the elimination couples, both rising."""
 
     nodes: IntArray
     beyond: IntArray
