@@ -28,7 +28,7 @@ def files_in(folder: Path) -> list[UsedFile]:
 
 
 def evict(folder: Path, most_bytes: int, in_use_s: float = IN_USE_S) -> list[UsedFile]:
-    """Remove what was not used for longest until the rest fits, and return it; what is in use stays."""
+    """Remove the longest unused files until the rest fits, and return them; files in use stay."""
     files = files_in(folder)
     excess = sum(file.size for file in files) - most_bytes
     removed = []

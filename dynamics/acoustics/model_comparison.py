@@ -1,4 +1,8 @@
-"""The radiation models side by side for one vibration: level, error, cost predicted and measured."""
+"""The radiation models side by side for one vibration: level, error, cost predicted and measured.
+
+Models differ in what they neglect. `ka` is the wavenumber times the radius of the sphere with the hull's
+volume.
+"""
 
 from __future__ import annotations
 

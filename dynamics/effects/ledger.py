@@ -1,4 +1,8 @@
-"""The ledger of the effects of a scene, and the mechanism with what they may add."""
+"""The ledger of the effects of a scene, and the mechanism with what they may add.
+
+A verdict says whether a part of the scene calls for an effect. The decision also takes the choice of the
+scene: "auto", "on" or "off".
+"""
 
 from __future__ import annotations
 

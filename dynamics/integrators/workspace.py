@@ -1,4 +1,8 @@
-"""Arrays that a run carries from step to step, allocated once."""
+"""Arrays that a run carries from step to step, allocated once.
+
+A stage is an instant within a step at which a Runge-Kutta method evaluates forces. A level is one of the
+geometric step sizes.
+"""
 
 from __future__ import annotations
 

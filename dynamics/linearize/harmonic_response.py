@@ -1,4 +1,9 @@
-"""Harmonic response to the transmission errors, with mean stiffnesses and with those that vary."""
+"""Harmonic response to the transmission errors, with mean stiffnesses and with those that vary.
+
+Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
+again. An order is a multiple of the frequency of the first mesh that turns. The floor is the sum of the lines
+of a long period that are not solved.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The documents of a result beside its series: ledger, resolved case, modes, bearings at rest, receipt."""
+"""The documents of a result beside its series: ledger, resolved case, modes, bearings at rest, receipt.
+
+Each document is plain JSON and an attribute of the result file.
+"""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ def _show(summary: dict[str, Any]) -> None:
 
 
 def _over_face(load: dict[str, Any]) -> str:
-    """Mean and peak-to-peak of the gears of finite width: those of the plane, corrected."""
+    """Return mean and peak-to-peak of the gears of finite width: those of the plane model, corrected."""
     errors = "mean_over_face_error_um" in load
     mean, ripple = (
         f"{load[f'{name}_over_face_um']:.4g}"
@@ -119,7 +119,7 @@ def _over_face(load: dict[str, Any]) -> str:
 
 
 def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
-    """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
+    """Print the decision about every effect of relevant size, and the change without the effect."""
     columns, rows = ledger_table(ledger)
     title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
@@ -143,7 +143,7 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
 
 
 def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
-    """Return time by stage and memory in one line, and what there is to say of the table in others."""
+    """Return one line with time by stage and memory, and lines on the table's tolerance."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
     memory = receipt["peak_memory_bytes"] / 2**20

@@ -62,7 +62,7 @@ class CachedTables:
 
 
 def _analyzed(case: CheckedCase, report: Report, workers: Workers) -> SteDatabase:
-    """Compute a table, which needs what reading one does not."""
+    """Compute a table; the extra `analysis` is needed for this alone."""
     from lineofaction.cli.analyze import analyzed  # noqa: PLC0415 (start-up time)
 
     return analyzed(case, report, workers)

@@ -32,7 +32,7 @@ _MAX_POSITIONS = 256
 def run_export(
     file: InputFile, output: Path, point: Point, rexs: Path | None, *, as_json: bool, **further: Any
 ) -> None:
-    """Write what the output's name promises; `further` holds the options of each kind by their names."""
+    """Write the export that the output's ending names; `further` has the options of each kind by name."""
     if rexs is not None:
         export_rexs(file.as_it_is, rexs, output, point, as_json=as_json)
     elif output.suffix in (*UNIVERSAL, TABLE):

@@ -44,7 +44,7 @@ def run_housing(
     *,
     as_json: bool,
 ) -> None:
-    """Show what a STEP file is as the housing of a scene, and write the scene with it.
+    """Show the housing that a STEP file makes of a scene, and write the scene with it.
 
     The scene of a folder is written in place unless another file is named.
 

@@ -57,7 +57,7 @@ def _position(text: str) -> tuple[float, ...]:
 def housing_sounds(
     runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView, *, announced: bool
 ) -> tuple[list[RunSound], str]:
-    """Return runs through the housings of a scene, and what to say of all."""
+    """Return runs through the housings of a scene, and a remark on all of them."""
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)

@@ -31,7 +31,7 @@ def run_measured(
     *,
     as_json: bool,
 ) -> None:
-    """Write the case with what was measured, or without a sheet the sheet of the case.
+    """Write the case with the measured deviations, or without a sheet the sheet of the case.
 
     `mounted` are the fields of `Inspected`.
     """

@@ -17,7 +17,7 @@ from lineofaction.gearbox.schemas.plan import left_out_warnings
 
 
 def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
-    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is.
+    """Open a REXS file: write cases, scene, load cases and account, and print deviations from the file.
 
     What is left out of the scene comes first and last.
     """

@@ -38,7 +38,7 @@ figures of hearing."""
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
-    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
+    """Return the case in a file, at one load and alignment if requested; warn of implausible values.
 
     Raises `BadInput`: the file holds no case, or no such pair exists.
     """
@@ -52,7 +52,7 @@ def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCa
 
 
 def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
-    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
+    """Return the scene in a file and the folder of its files; warn of omissions of its import.
 
     Raises `BadInput`: the file holds no scene.
     """
@@ -126,7 +126,7 @@ def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
 
 
 def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
-    """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
+    """Print the predicted cost of a verb on standard error, if it is known and more than a moment."""
     total = sum(filter(None, costs), StudyCost(()))
     if None not in costs and total.seconds > ANNOUNCED:
         sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")

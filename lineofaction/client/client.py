@@ -126,7 +126,7 @@ class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls)
     def with_terms(
         self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0, max_cost_s: float | None = None
     ) -> Self:
-        """Return this client with terms for what it submits; both share connections and cache.
+        """Return this client with terms for its submissions; both share connections and cache.
 
         Parameters
         ----------

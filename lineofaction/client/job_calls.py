@@ -85,7 +85,7 @@ def pace_of_known(session: Session, timeout: float | None = None, interval: floa
 
 
 def end_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[JobState]:
-    """Wait until a job has ended, in whatever way; raises `StillRunning`, `Unreachable`."""
+    """Wait until a job has ended with any status; raises `StillRunning`, `Unreachable`."""
     watch = progress or surface.session.progress
 
     def look() -> Steps[JobState]:
@@ -110,7 +110,7 @@ class JobCalls(Surface):
     def submit(
         self, process: str, inputs: dict[str, Any], *, idempotency_key: str | None = None
     ) -> Steps[JobState]:
-        """Enter a job; equal work is done once, whoever asks for it.
+        """Enter a job; equal work of several callers is done once.
 
         However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``. Raises
         `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`, `ServiceError`.

@@ -12,7 +12,7 @@ from model_studies.workers import InProcess, Workers, WorkersLost, dask_workers,
 
 @contextmanager
 def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[Workers]:
-    """Provide the workers of a study, and send those of this machine home at the end.
+    """Provide the workers of a study, and end the workers of this machine at the end.
 
     Parameters
     ----------

@@ -224,7 +224,7 @@ def _made(study: Study, scene: SceneInput, folder: Path, means: Means) -> Tabled
 
 
 def _scene(subject: Any) -> tuple[SceneInput, Path]:
-    """Return a scene and what its files are relative to; that of a unit has its cases written out."""
+    """Return a scene and the folder of its files; a unit's scene has its cases written out."""
     if not isinstance(subject, OpenedUnit):
         return scene_of(_source(subject))
     if subject.scene is None:
@@ -253,7 +253,7 @@ def _source(subject: Any) -> Any:
 
 
 def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
-    """Warn of what is implausible, each once, where the caller's own code stands."""
+    """Warn of each finding once, at the line of the caller's code."""
     frame, level = currentframe(), 0
     while frame and str(frame.f_globals.get("__name__")).startswith("lineofaction."):
         frame, level = frame.f_back, level + 1

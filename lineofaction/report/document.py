@@ -78,7 +78,7 @@ def read_stored(study: Study, file: Path) -> Any:
 
 
 def page_with_database(study: Study, result: object, database: SteDatabase | None) -> Page:
-    """Return the page of a study's result; beside a database, if there is one."""
+    """Return the page of a study's result, together with its database if there is one."""
     presentation = presentation_of(study)
     if database is None or presentation.with_database is None:
         return presentation.page(result)
@@ -111,7 +111,7 @@ class Inputs:
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:
-    """Read every file as what it says it is.
+    """Read every file by its kind.
 
     Raises `BadInput`: a file is neither, is damaged, there are two of a kind, or there is none at all.
     """
@@ -198,7 +198,7 @@ def _read(file: Path, kind: str) -> Any:
 
 
 def page_of(read: Inputs) -> Page:
-    """Put the page together: what is implausible, then all sections in the order of their parts.
+    """Return the page: warnings, then all sections in the order of their parts.
 
     A study alone has its own page.
     """
@@ -209,7 +209,7 @@ def page_of(read: Inputs) -> Page:
 
 
 def _page_of(read: Inputs) -> Page:
-    """Put the page together, without what the files warn of."""
+    """Return the page without the warnings of the files."""
     if read.only_page is not None:
         return read.only_page
     database, run = read.database, read.run
@@ -372,7 +372,7 @@ def write_page(
     *,
     still_only: bool = False,
 ) -> list[Path]:
-    """Write a page from its caller, under what is implausible; parameters as for `write_report`.
+    """Write a page of the caller under its warnings; parameters as for `write_report`.
 
     `still_only`: its plots are pictures alone.
     """
@@ -400,7 +400,7 @@ def _in_one_column(figure: Figure) -> bool:
 
 
 def _printed(page: Page, text: str, output: Path) -> bytes:
-    """Print a page; what its results were made from and with is a file in it."""
+    """Print a page; the inputs and versions of its results are attached as a file."""
     content = pdf(text, output)
     if not page.records:
         return content

@@ -118,7 +118,7 @@ class Turns:
         self._make_obsolete(question)
 
     def next(self, fits: Callable[[Question], bool] = lambda _: True) -> Question | None:
-        """Return the question whose turn it is, of those that fit; it is answered from now on."""
+        """Return the question whose turn it is among those that fit; it is in progress from now on."""
         busy = self._busy()
         for line in sorted(self._lines, key=lambda line: not line.submits):
             name, question = next(iter(self._lines[line].items()))

@@ -134,7 +134,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
     def version_string(self) -> str:
-        """Return the name of the server, without that of the interpreter."""
+        """Return the name of the server, without the name of the interpreter."""
         return "lineofaction"
 
     def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 (the name of http.server)

@@ -101,7 +101,7 @@ class Deployment:
             return known
 
     def confirm_files(self) -> None:
-        """See to it that the files are those of the database; mark a new place, or one of older versions.
+        """Confirm that the files belong to the database; mark a new place, or one of older versions.
 
         Raises `BadInput`: the files are another deployment's; or there are files and the index is empty, or
         names none of them; or the index names files and the place is empty.
@@ -123,7 +123,7 @@ class Deployment:
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
-        """Write to the database, ahead of those who enter jobs: to see that this is possible.
+        """Write to the database, ahead of submissions, as a trial.
 
         Raises `DatabaseUnavailable`: it does not answer, has to be mended, or one who writes holds it for
         longer than a moment. `NoSpace`: its disk has no room for a submission.
@@ -152,7 +152,7 @@ class Deployment:
         self._put(_WRITTEN, now(), replace=True)
 
     def take_over(self) -> None:
-        """Make the files ours, whoever had them: who did removes none of them any more.
+        """Make the files ours; a former owner removes none of them any more.
 
         Raises `BadInput`: they are another's, and the index names other files.
         """
@@ -206,11 +206,11 @@ class _Comparison:
 
     @property
     def may_be_ours(self) -> bool:
-        """Whether nothing speaks against the files being those of the index."""
+        """Whether the files may be the files of the index: no evidence is against it."""
         return self.named == 0 or self.known
 
     def refuse_strangers(self, refusal: Callable[[str, str], BadInput]) -> None:
-        """Raise if files that nobody has marked cannot be those of the index."""
+        """Raise if unmarked files cannot be the files of the index."""
         if self.known or (self.named == 0 and self.file is None):
             return
         if self.file is None:

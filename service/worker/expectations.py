@@ -57,7 +57,7 @@ def _of_scene(scene: SceneInput) -> list[Json]:
 
 
 def predicted_seconds(inputs: Json) -> float | None:
-    """Return the CPU seconds of the table of a case, its studies in proportion; None of what has no case.
+    """Return the CPU seconds of the table of a case, its studies in proportion; None: no case.
 
     The progress of a batch is weighted by them.
     """

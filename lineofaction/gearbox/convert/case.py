@@ -169,7 +169,7 @@ def analysis_options(case: Case) -> AnalysisOptions:
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:
-    """Return the options of a case for a study, which measures its errors and repeats what it must."""
+    """Return the options of a case for a study, which measures its errors and repeats passes."""
     return replace(options, receipt="full", on_violation="repeat")
 
 
@@ -210,11 +210,11 @@ def operating_point(case: Case) -> OperatingPoint:
 
 
 def case_json(case: Case) -> Json:
-    """Return the case with all defaults, as JSON: what is hashed and echoed."""
+    """Return the case with all defaults as JSON, which is hashed and echoed."""
     return case.model_dump(mode="json")
 
 
 def case_as_filed(case: Case) -> Json:
-    """Return the case with its title block, on which no result depends: what a file has."""
+    """Return the case with its title block, as in a file; no result depends on the title block."""
     block = {} if case.report is None else {"report": case.report.model_dump(mode="json")}
     return case_json(case) | block

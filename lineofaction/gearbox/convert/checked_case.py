@@ -64,7 +64,7 @@ class CheckedCase:
 
     @cached_property
     def feasible(self) -> Checked:
-        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        """The request with all its effects; refusals on submission come from here. Raises `BadInput`."""
         return self._checked(neglect=False)
 
     @cached_property
@@ -141,7 +141,7 @@ def check_case(case: Case) -> ParallelAxes:
 
 
 def check_plain_case(case: Case) -> ParallelAxes:
-    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+    """Return the pair of a case of loads alone, as `check_case` does, without modules that compute.
 
     A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
     a disc that is too thin; whether one may be is decided here.

@@ -252,7 +252,7 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
 
 
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
-    """Return the curves, and of each what else the question is about, with its cost."""
+    """Return the curves, each with the further answers that the question requests, and the cost."""
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
     table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)

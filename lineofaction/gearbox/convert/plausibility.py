@@ -84,7 +84,7 @@ def _in_file(inputs: SceneInput, field: str) -> bool:
 
 
 def within(warning: Json, owner: str) -> Json:
-    """Return a warning of a case as one of what the case is part of."""
+    """Return a warning of a case as a warning of its owner, a scene or a request."""
     field = f"{owner}.case.{warning['field']}"
     return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
 

@@ -110,7 +110,7 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
 
 
 def _sense_of_speed(shaft: Part) -> float | None:
-    """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
+    """Return the sign of a shaft's stated speed, else of its speed in a load case; None: no speed."""
     cases = shaft.unit.load_cases()
     for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
         speed = part.number("rotational_speed", "sense in which the gears turn")

@@ -146,7 +146,7 @@ class OpenedUnit:
 
 
 def _flows(layout: Layout) -> list[PowerFlow]:
-    """Return the flows of power of the load cases, that of the largest share first."""
+    """Return the flows of power of the load cases, the flow of the largest share first."""
     train = Train.of(layout)
     flows = []
     points = OperatingPoint.all_of(layout.unit)
@@ -184,7 +184,7 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
-    """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
+    """Return the validated scene with its omissions; None: it lacks parts, named in the account."""
     left_out = refusal_texts(layout.unit.account.lines())
     try:
         return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))

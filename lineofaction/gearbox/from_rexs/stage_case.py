@@ -49,7 +49,7 @@ class StageCase:
     """Ids of further stages with the same case, the stages of the other planets."""
 
     def driving(self, stage: GearStage) -> tuple[Part, Part]:
-        """Return driver and driven gear of a stage, which may be that of an equal planet."""
+        """Return driver and driven gear of a stage, which may be the stage of an equal planet."""
         first, second = stage.gears
         if self.driver == second.id or (self.driven == first.id and self.driver != first.id):
             return second, first
@@ -122,7 +122,7 @@ def _center_distance(stage: Part, across: FloatArray) -> float:
 
 
 def _enter(cases: list[StageCase], pair: ToothedPair, case: Case) -> None:
-    """Enter a case, or the stage beside an equal case of the same planetary stage."""
+    """Enter a case, or add the stage to an equal case of the same planetary stage."""
     meshing, stage = pair.meshing, pair.stage
     for index, present in enumerate(cases):
         shared = {present.driver, present.driven} & {meshing.driver.id, meshing.driven.id}

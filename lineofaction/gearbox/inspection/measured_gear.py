@@ -165,7 +165,7 @@ def _surface(points: list[Point]) -> dict[str, Any]:
 def _flank(
     tooth: int, splits: Mapping[tuple[int, str], Split], surfaces: Mapping[int, dict[str, Any]], chart: Chart
 ) -> dict[str, Any]:
-    """Return the entry of a tooth: slopes over the whole flank, and what is left of its traces as a grid."""
+    """Return the entry of a tooth: slopes over the whole flank, and the rest of its traces as a grid."""
     entry: dict[str, Any] = {"tooth": chart.meshing(tooth)}
     if tooth in surfaces:
         return entry | {"flank_grid": surfaces[tooth]}

@@ -25,7 +25,7 @@ def owners(name: str) -> dict[str, str]:
 
 
 def terms(name: Literal["descriptive_components", "bearing_types"]) -> frozenset[str]:
-    """Return words that say what a component is."""
+    """Return the words for a type of component."""
     return frozenset(table("vocabulary")[name])
 
 

@@ -200,7 +200,7 @@ class Case(BoundaryModel):
 
         @model_validator(mode="after")
         def _one_wish(self) -> Self:
-            """Refuse a tolerance or a time budget beside a level, which is a mesh."""
+            """Refuse a tolerance or a time budget together with a level, which fixes the mesh."""
             wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
             if wishes and self.level is not None:
                 remedy = "A level is a mesh, regardless of cost."
@@ -236,7 +236,7 @@ class Case(BoundaryModel):
 
     @model_validator(mode="after")
     def _complaint_of_pair(self) -> Self:
-        """Refuse a complaint about other shafts, or about what a pair has not."""
+        """Refuse a complaint about other shafts, or about parts that a pair lacks."""
         for name in ("shaft", "final_shaft", "bearing", "microphone_mm"):
             value = None if self.complaint is None else getattr(self.complaint, name)
             if value is not None and name.endswith("shaft") and value not in ("pinion", "wheel"):

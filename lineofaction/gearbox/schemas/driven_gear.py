@@ -28,7 +28,7 @@ _GEAR_HAS = both(required("bore_diameter_mm"), left_out(*(figure.field for figur
 
 
 def _of_either_kind(schema: dict[str, Any]) -> None:
-    """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
+    """Add to a schema the fields of each kind of gear, and the defaults of a ring gear."""
     schema |= all_of({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     for name, value in _DEFAULTS.items():
         schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
@@ -56,7 +56,7 @@ class WheelInput(ToothingInput):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        """Refuse what is missing from one kind, and what belongs to the other."""
+        """Refuse missing fields of one kind, and fields that belong to the other."""
         if self.internal:
             self._check_ring()
             return self

@@ -214,7 +214,7 @@ class HousingInput(_MatrixHousing):
 
     @property
     def has_surface(self) -> bool:
-        """Whether its file may have a surface: matrices alone do not say what the air touches."""
+        """Whether the housing's file may have a surface; matrices alone have none."""
         return self.is_solid or self.modes_file is not None
 
     @property
@@ -244,7 +244,7 @@ class HousingInput(_MatrixHousing):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        """Refuse what is missing from one kind of housing, and what belongs to another."""
+        """Refuse missing fields of one kind of housing, and fields that belong to another."""
         every = ("stiffness_matrix", *SOURCES, RESPONSES)
         sources = [name for name in every if getattr(self, name) is not None]
         if len(sources) != 1:

@@ -65,7 +65,7 @@ def _with_few_faults(schema: CoreSchema) -> CoreSchema:
 
 
 def _nodes(node: dict[str, Any], *, of_field: bool = False) -> Iterator[dict[str, Any]]:
-    """Yield a schema and those inside it, but for models of its fields, which are bounded by themselves.
+    """Yield a schema and its inner schemas, except models of fields, which have their own bounds.
 
     A schema comes back as it was left for every model that has it in a field: what is bounded is not again.
     """

@@ -73,7 +73,7 @@ class StudyCost:
 
     @property
     def _by_name(self) -> Iterator[Work]:
-        """The parts, those of one name as one with their mean."""
+        """The parts, with parts of one name joined to one with their mean."""
         for name in dict.fromkeys(part.name for part in self.parts):
             same = [part for part in self.parts if part.name == name]
             count = sum(part.pieces for part in same)

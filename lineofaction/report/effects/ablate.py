@@ -34,7 +34,7 @@ _CASE_HEAD = (
     "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
     "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
 )  # fmt: skip
-_SMALLEST = 1e-3  # um; smaller changes are nothing
+_SMALLEST = 1e-3  # least change that counts, um
 
 
 @dataclass(frozen=True)

@@ -252,7 +252,7 @@ def _frontier_page(study: Study) -> Page:
 def _panel(
     study: Study, look: _Look, peers: Sequence[_Peer], across: Axis, figure: str, title: str, label: str
 ) -> Panel:
-    """One panel: points by family, what stands beside them, and the marks."""
+    """Return one panel: points by family, peers, and the marks."""
     drawn = [(result, 100.0 * getattr(result, figure)) for result in study.results]
     drawn = [(result, error) for result, error in drawn if error > 0.0]
     lines = []

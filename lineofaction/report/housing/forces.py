@@ -28,7 +28,7 @@ LABEL = "sound power level, dB(A)"
 
 
 def of_run(metadata: Json) -> Json | None:
-    """Return the metadata `forces` of a result if they are those of a run; None for the linear response."""
+    """Return the metadata `forces` of a result by a run; None: they are of the linear response."""
     forces: Json = metadata.get("forces", LINEAR)
     return forces if forces["source"] == "run" else None
 

@@ -42,7 +42,7 @@ _QUANTITIES = (
 
 
 def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
-    """List what excites, of every mesh its first harmonics; None where it is not known, as of a run."""
+    """List the excitations, of every mesh its first harmonics; None: not known, as for a run."""
     rows = _low_harmonics(metadata)
     if not rows:
         return None
@@ -72,7 +72,7 @@ def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
 
 
 def excitation_figures(metadata: Mapping[str, Any]) -> tuple[Figure, ...]:
-    """Draw what excites: a panel for each quantity that does, a color for each mesh."""
+    """Draw the excitations: a panel for each exciting quantity, a color for each mesh."""
     rows, table = _low_harmonics(metadata), excitation_table(metadata)
     if table is None:
         return ()

@@ -253,7 +253,7 @@ def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> F
 
 
 def _parting(response: ForcedResponse | None) -> float:
-    """Return by what share of the mean mesh force flanks would pull in a linear response; 0: none part."""
+    """Return the share of the mean mesh force by which flanks would pull in a linear response; 0: none."""
     if response is None:
         return 0.0
     pull = -response.least_mesh_force[:, 0] / np.maximum(np.abs(response.mean_force), 1e-300)

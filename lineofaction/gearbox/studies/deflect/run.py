@@ -45,7 +45,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     writers = MappingProxyType({".toml": write_spectrum})
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
+        """Refuse load cases that are impossible or need missing parts, before tables are computed."""
         check_cases(scene, inputs.load_cases)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost:
@@ -157,7 +157,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
 
 
 def _usual_seconds(tabled: TabledScene) -> float:
-    """Return the CPU seconds of a table at one misalignment: about those of the contact of a mesh's own."""
+    """Return the CPU seconds of a table at one misalignment, about those of the contact of one mesh."""
     stages = [table.metadata.receipt.get("stages", {}) for table in tabled.databases.values()]
     return max((stage["contact"]["cpu_seconds"] for stage in stages if "contact" in stage), default=0.0)
 

@@ -146,7 +146,7 @@ def _over_speed(modes: ModalAnalysis, mode: int) -> Json:
 
 
 def _crossing(modes: ModalAnalysis, index: int) -> Json:
-    """Return a critical speed; what the mode is, at the nearest of the speeds."""
+    """Return a critical speed, with the mode's description at the nearest of the speeds."""
     mode, speed = int(modes.critical_mode[index]), float(modes.critical_speed[index])
     known = np.isfinite(modes.frequency[:, mode])
     row = int(np.argmin(np.where(known, np.abs(modes.speed - speed), np.inf)))

@@ -25,7 +25,7 @@ RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_le
 
 
 def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
-    """Return the facts of a sound: what it takes over from its response and its scene, regions, models."""
+    """Return the facts of a sound: copies from its response and its scene, regions, models."""
     return {
         **sound.power.metadata,
         "regions": [[_region(region) for region in regions] for regions in sound.regions],

@@ -107,7 +107,7 @@ def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: 
 
 
 def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
-    """Return the ranges of factors, each about 1, by the name of what is guessed."""
+    """Return the ranges of factors, each about 1, by the name of the guessed figure."""
     factors = {name: span for name in RANGES if (span := getattr(ranges, name)) is not None}
     return {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
 

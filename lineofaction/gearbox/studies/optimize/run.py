@@ -64,7 +64,7 @@ OF_CASE = ("torque_n_m", "misalignment_um", "objective")
 def _write_case(
     result: Optimization | HeardOptimization, checked: CheckedCase | SceneInput, target: Path
 ) -> None:
-    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
+    """Write the case with the best design as a case file: the stated case, and the best flanks."""
     content: Json = (
         checked.case.model_dump(mode="json", exclude_unset=True)
         if isinstance(checked, CheckedCase)
@@ -91,7 +91,7 @@ class _OptimizeStudy(
     writers = MappingProxyType({".toml": _write_case})
 
     def check(self, subject: CheckedCase | SceneInput, study: Inputs) -> None:
-        """Refuse what the subject does not have, and a search that cannot be."""
+        """Refuse variables that the subject lacks, and an impossible search."""
         if isinstance(subject, CheckedCase):
             if study.heard is not None:
                 raise BadInput.of("heard", "given", "left out with a case", "A scene is heard: name one.")

@@ -136,7 +136,7 @@ def tolerance_request(checked: CheckedCase, inputs: ToleranceInputs) -> Toleranc
 
 
 def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: bool) -> Tolerances:
-    """Return the tolerances of a class, and those of a drawing in their place."""
+    """Return the tolerances of a class, overridden by those of a drawing."""
     of_class = iso1328_tolerances(
         pair,
         inputs.tolerance_class,

@@ -147,7 +147,7 @@ class _TableByTable:
 
 
 def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
-    """Return the changes of the center distance in per cent: those named, or usual ones that mesh."""
+    """Return the changes of the center distance in per cent: the named ones, or usual ones that mesh."""
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):

@@ -143,7 +143,7 @@ def _flank_tables(
 
 
 def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
-    """Return the unit of a response at the boundary, and what one of it is in SI."""
+    """Return the unit of a response at the boundary, and its SI value."""
     unit = result.unit[response]
     return ("um", UM) if unit == "m" else (unit, 1.0)
 

@@ -204,7 +204,7 @@ class VariedScene:
 
     @cached_property
     def _last(self) -> dict[Location, tuple[Any, Any]]:
-        """The parts, the tables and the housings made last, with what decides them."""
+        """The parts, the tables and the housings made last, with the inputs that determine them."""
         return {}
 
     def _reused(self, name: Location, key: object, make: Callable[[], Any]) -> Any:

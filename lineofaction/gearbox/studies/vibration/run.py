@@ -186,7 +186,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
 
 
 def _vibrates(housing: HousingInput) -> bool:
-    """Whether something of a housing may be looked at: matrices alone do not say what moves."""
+    """Whether a housing has points or a surface to look at; matrices alone have none."""
     return housing.has_surface or housing.is_measured
 
 
