@@ -114,8 +114,8 @@ def _limit(limits: Limits, addresses: int) -> None:
     if limits.memory_mb is not None:
         limit_memory(limits.memory_mb * _MB)
     if limits.memory_mb is not None and addresses:
-        most_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
-        maximum[resource.RLIMIT_AS] = (most_addresses, most_addresses)
+        max_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
+        maximum[resource.RLIMIT_AS] = (max_addresses, max_addresses)
     for kind, values in maximum.items():
         _, hard = resource.getrlimit(kind)
         soft, last = values if hard == resource.RLIM_INFINITY else (min(value, hard) for value in values)

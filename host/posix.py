@@ -61,7 +61,7 @@ def keep_freed_memory() -> None:
         setting(_TRIM_THRESHOLD, 64 * _MIB)
 
 
-def most_open_files() -> float:
+def max_open_files() -> float:
     """Return how many files, sockets among them, this process may have open at once; infinite: no limit."""
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return math.inf if soft == resource.RLIM_INFINITY else soft

@@ -79,7 +79,7 @@ its own: 64 to 248 positions for pairs of class 6. Run-out and waves leave the h
 """
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions that the search solves for each node that it adds, and for each node that it begins with."""
-_JUDGED = 3
+_ASSESSED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
@@ -144,7 +144,7 @@ def contact_seconds(
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
     points, distances, loads = alignments[0] * alignments[1], alignments[1], plan.load.size
-    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _JUDGED)
+    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _ASSESSED)
     tried, window = expected_tries(pair, plan, model.period, points), plan.nodes.searched(model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
@@ -177,14 +177,14 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
         for w in rougher
     )
     if plan.positions is not None or period > 1:
-        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _JUDGED)
+        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _ASSESSED)
         seconds += work.of(middles * alignments[1], 0) + work.in_pitches(
             middles * assessed, (sampled_loads,), solved
         )
-    held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
-    held_out = rows * (held_out_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
+    validation_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
+    validation = rows * (validation_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
     further_rows = rows * (alignments[1] - 1)
-    seconds += work.of(further_rows, held_out + further_rows * sampled_loads)
+    seconds += work.of(further_rows, validation + further_rows * sampled_loads)
     seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
     return seconds + _TABLE_POINT * nodes * period * alignments[0] * alignments[1] * loads
 
@@ -247,7 +247,7 @@ def expected_positions(pair: ParallelAxes, plan: Plan, period: int = 1, alignmen
     added = (at_one_load * plan.load.size**power - start) * math.exp(-pair.overlap_ratio / _HANDED_OVER)
     expected = start * (_finer(pair, plan) if over_face and period == 1 else 1.0) + added
     times = _UNLIKE if period > 1 and any(map(_unlike_teeth, (pair.pinion, pair.wheel))) else 1.0
-    return min(round(float(times * expected)), most_positions(plan, period * alignments))
+    return min(round(float(times * expected)), max_positions(plan, period * alignments))
 
 
 def _unlike_teeth(gear: Toothing) -> bool:
@@ -263,7 +263,7 @@ def _finer(pair: ParallelAxes, plan: Plan) -> float:
     return min(max(_ALLOWED / allowed, 1.0), halved) if allowed else halved
 
 
-def most_positions(plan: Plan, times: int) -> int:
+def max_positions(plan: Plan, times: int) -> int:
     """Return how many positions a search may end with, in so many base pitches and alignments."""
     return max(min(plan.nodes.maximum, MAX_ROWS // times), plan.nodes.start)
 
