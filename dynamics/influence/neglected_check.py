@@ -1,4 +1,9 @@
-"""Check that effects neglected for a tolerance were too small to be seen in the run without them."""
+"""Check that effects neglected for a tolerance were too small to be seen in the run without them.
+
+An influence is the change of a run's figures by leaving one effect out in all parts of the scene, estimated
+by linear theory. A tolerance of the scene decides which effects may be left out; the run then compares the
+estimates with its own series.
+"""
 
 from __future__ import annotations
 

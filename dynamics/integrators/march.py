@@ -1,4 +1,8 @@
-"""A run on its way: its workspace, and the loop that moves it on block by block into a sink."""
+"""A run on its way: its workspace, and the loop that moves it on block by block into a sink.
+
+A march is a run on its way: it can stop after each block and go on, also in another process. A sink takes the
+output samples.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Static equilibrium under the load at one time."""
+"""Static equilibrium under the load at one time.
+
+A train without a drive has no position of rest: forces that accelerate it as a whole are left out of the
+balance.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl."""
+"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl.
+
+Whirl is the motion of a shaft's axis around its position of rest. A branch is one mode over all speeds. The
+leading law is the first drive or free rotation that turns.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode."""
+"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode.
+
+The leading law is the first drive or free rotation that turns; speeds are its speed. A branch is one whirl
+mode over all speeds.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic."""
+"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic.
+
+Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
+again. Axes of arrays: S speeds, H harmonics, n freedoms, R' rows (local coordinates) of the driving flanks, m
+meshes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Vibration with a mesh stiffness that varies with position: harmonic balance of Hill's equation."""
+"""Vibration with a mesh stiffness that varies with position: harmonic balance of Hill's equation.
+
+The tangent of a flank is the derivative of its forces in its coordinates. Its mean over the positions belongs
+to the linear system; the rest multiplies the vibration and couples its harmonics.
+"""
 
 from __future__ import annotations
 

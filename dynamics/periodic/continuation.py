@@ -1,4 +1,8 @@
-"""The branch of periodic motions over speed, around its folds, by pseudo-arclength continuation."""
+"""The branch of periodic motions over speed, around its folds, by pseudo-arclength continuation.
+
+A fold is a speed at which the branch turns back; a sweep over the speed jumps there. The unknowns of a point
+are state and speed together. The arclength counts the state over its size and the speed over the highest one.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The error of a run by source: the errors of transmission errors and bearing forces in its receipt."""
+"""The error of a run by source: the errors of transmission errors and bearing forces in its receipt.
+
+A window is a stretch of the run that is integrated again, with finer steps or with fewer positions of the
+tables. Its difference from the run is the error by that source.
+"""
 
 from __future__ import annotations
 
