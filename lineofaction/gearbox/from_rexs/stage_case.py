@@ -67,8 +67,9 @@ class StageCase:
         Parameters
         ----------
         torques : mapping of int to tuple of float
-            Torques of the shaft on the driving gear about that gear's u axis, by id of the stage, N m; all have
-            the sign of the gear's rotation. A stage without torques gets three load levels and an account of it.
+            Torques of the shaft on the driving gear about that gear's u axis, by id of the stage, N m. All
+            have the sign of the gear's rotation. A stage without torques gets three load levels, and the
+            account says so.
         drivers : mapping of int to int, optional
             The driving gear by stage; else as the file marks it, else gear 1 of the stage.
         """
