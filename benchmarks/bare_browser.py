@@ -19,7 +19,9 @@ from typing import Any
 _END = b"\0"
 _CHUNK, _PATIENCE_S = 1 << 20, 120.0
 _OWN = re.compile(r"^Pss_(?:Anon|Shmem):\s+(\d+)", re.MULTILINE)
-"""Without files: of those the share falls as another browser of the machine maps them too."""
+"""Pattern of the lines of anonymous and shared memory. Mapped files are left out: their share falls as
+another browser of the machine maps them too.
+"""
 
 
 class BareBrowser:

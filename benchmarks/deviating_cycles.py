@@ -38,7 +38,9 @@ CLASSES = (4, 5, 6, 7, 8)
 OPTIONS = AnalysisOptions(level="draft")
 HUNTING = "23/67, 22 deg"
 ASSESSED = [MEAN, PEAK_TO_PEAK, OFF_MESH, *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
-"""Mean, peak-to-peak, the order beside the mesh that differs most, five mesh harmonics."""
+"""Assessed quantities: mean, peak-to-peak, the order of the largest error that is no mesh order, five mesh
+harmonics.
+"""
 T = TypeVar("T")
 
 

@@ -168,7 +168,7 @@ class ModelComparison:
     """Results by the model's name, from coarse to fine, and why others have none."""
 
     results: Mapping[str, _ModelResult]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     predicted: Mapping[str, Cost]
     """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
@@ -225,7 +225,7 @@ def compare_models(
         )
         return _ModelResult(power, power / plane, cost)
 
-    results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
+    results, omitted = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     ka = wavenumber * hull.equivalent_radius
     bands = {name: model.error_band(ka) for name, model in listed.items()}
-    return ModelComparison(results, left_out, predicted, bands)
+    return ModelComparison(results, omitted, predicted, bands)

@@ -48,7 +48,7 @@ class Count(IntEnum):
     ACCEPTED = 2
     REJECTED = 3
     NEWTON_TOTAL = 4
-    NEWTON_MOST = 5  # most Newton iterations in one stage
+    MAX_NEWTON = 5  # most Newton iterations in one stage
     NEWTON_FAILED = 6  # steps repeated because Newton failed
     SMALLEST_LEVEL = 7  # smallest level of an accepted step: the largest step
     LARGEST_LEVEL = 8

@@ -24,7 +24,7 @@ from dynamics.influence import (
     Decision,
     Influence,
     estimate_influences,
-    left_out_effects,
+    neglected_effects,
     sized_ledger,
     with_assumed_phases,
 )
@@ -354,8 +354,8 @@ def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
     """
     receipt = about["receipt"]
-    left_out = left_out_effects(run.system.ledger, run.influences)
-    error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
+    neglected = neglected_effects(run.system.ledger, run.influences)
+    error = receipt["error"] | ({"left_out_effects": neglected} if neglected else {})
     return about | {
         "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | _orders_above(run),
         "effect_ledger": effect_ledger(run),
@@ -455,7 +455,7 @@ def _statistics(system: System, end: Ending) -> StepStatistics:
         count[Count.REJECTED],
         count[Count.NEWTON_FAILED],
         count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
-        count[Count.NEWTON_MOST],
+        count[Count.MAX_NEWTON],
         float(end.step_range[0]),
         float(end.step_range[1]),
     )

@@ -160,8 +160,8 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\n{_of_cycle(cycle)}"
     for line in _inserted(receipt.get("held_out", {}), newton_metre):
         text += f"\n{line}"
-    if held_out_text := _held_out_errors(receipt.get("held_out", {})):
-        text += f"\nlargest error at held-out points between the nodes: {held_out_text} (in the errors there)"
+    if errors_text := _validation_errors(receipt.get("held_out", {})):
+        text += f"\nlargest error at held-out points between the nodes: {errors_text} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
     for line in tolerance_lines(receipt, newton_metre):
@@ -182,7 +182,7 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
             yield f"{name} inserted for interpolation: {values} {word}"
 
 
-def _held_out_errors(axes: dict[str, Any]) -> str:
+def _validation_errors(axes: dict[str, Any]) -> str:
     texts = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]

@@ -22,7 +22,7 @@ from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.fault_lines import located
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
@@ -57,7 +57,7 @@ def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
     Raises `BadInput`: the file holds no scene.
     """
     scene, folder = scene_of(file)
-    warn(left_out_warnings(scene.left_out))
+    warn(omission_warnings(scene.left_out))
     return scene, folder
 
 

@@ -33,7 +33,7 @@ from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
@@ -76,7 +76,7 @@ def open_unit(
     if overrides and unit.scene is not None:
         table = _over(overrides, Path(file)).applied(unit.scene.model_dump(mode="json", exclude_unset=True))
         unit = replace(unit, scene=validated(SceneInput, written_out(table, in_folder(Path()), READERS)))
-    _warn(left_out_warnings(unit.left_out))
+    _warn(omission_warnings(unit.omitted))
     return unit
 
 
@@ -164,7 +164,7 @@ def tabled(
 
 
 def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
-    _warn(left_out_warnings(scene.left_out))
+    _warn(omission_warnings(scene.left_out))
     cases = CheckedCases()
     computed = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
     tables = MeshTables(folder, computed)
@@ -219,7 +219,7 @@ def _made(study: Study, scene: SceneInput, folder: Path, means: Means) -> Tabled
     """Return a scene with its tables, or only with its housings, as the study takes it."""
     if study.run.tables:
         return _tabled(scene, folder, means.report, means.workers)
-    _warn(left_out_warnings(scene.left_out))
+    _warn(omission_warnings(scene.left_out))
     return HousedScene(scene, housings_in(scene, cache_home(), folder, means.report))
 
 

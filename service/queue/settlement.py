@@ -37,7 +37,7 @@ class Settlement:
 
     claims: Claims
     store: ResultStore
-    most_attempts: int
+    max_attempts: int
     alone: bool = True
 
     def settle(self, ended: Ended) -> None:
@@ -87,7 +87,7 @@ class Settlement:
 
     def retry_or_fail(self, claim: Claim, reason: str) -> bool:
         """Give work that died another attempt, as long as there are any; return whether there is one."""
-        maximum = self.most_attempts
+        maximum = self.max_attempts
         if claim.attempts < maximum:
             text = f"{reason} Waits for attempt {claim.attempts + 1} of {maximum}."
             self.claims.put_back(claim, text, counted=True)

@@ -44,7 +44,7 @@ _REINDEX = (
     "is not, name that database (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or another place for the results of "
     "this one (LOA_RESULTS_URL): two deployments on one place would remove each other's files."
 )
-_ELSEWHERE = (
+_OTHER_STORE = (
     "Name the database of these files (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or the place of the results "
     "that this one names (LOA_RESULTS_URL)."
 )
@@ -119,7 +119,7 @@ class Deployment:
         owner = self._owner()
         if owner is None or owner.deployment != self._named():
             whose = f"to {owner}" if owner is not None else f"to nobody: its {NOTE} is gone"
-            tip = _REINDEX if self._compared().may_be_ours else _ELSEWHERE
+            tip = _REINDEX if self._compared().may_be_ours else _OTHER_STORE
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
@@ -218,4 +218,4 @@ class _Comparison:
             raise refusal(f", whose index names {self.named} files: none of them is there", tip)
         index = "names other files" if self.named else "is empty"
         bound = f": there are files (such as {self.file}) and the index {index}"
-        raise refusal(bound, _ELSEWHERE if self.named else _REINDEX)
+        raise refusal(bound, _OTHER_STORE if self.named else _REINDEX)

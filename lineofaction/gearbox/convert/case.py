@@ -11,7 +11,7 @@ from bounds import inside
 from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import (
     FlankModification,
     Gear,
@@ -120,7 +120,7 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
 
 def _modification(gear: ToothingInput, plain: Callable[[], Toothing]) -> FlankModification:
     """Return the modification of a gear; `plain` makes the gear without it."""
-    fields, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
+    fields, starts = in_si(FlankModification, gear), DrawingStarts(**in_si(DrawingStarts, gear))
     return FlankModification(**fields | starts.lengths(fields, plain))
 
 

@@ -16,7 +16,7 @@ from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import complaint_of_case
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import factor, unit_name
 
@@ -53,7 +53,7 @@ def scene_warnings(
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
     of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
-    warnings = left_out_warnings(inputs.left_out) + measured_warnings(inputs)
+    warnings = omission_warnings(inputs.left_out) + measured_warnings(inputs)
     warnings += _in_boundary_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]

@@ -66,7 +66,7 @@ class OpenedUnit:
     """The components that the parts of the scene are; none without a scene."""
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def omitted(self) -> tuple[str, ...]:
         """The parts of the file that the scene lacks, one sentence for each reason."""
         return refusal_texts(self.lines)
 
@@ -185,9 +185,9 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
     """Return the validated scene with its omissions; None: it lacks parts, named in the account."""
-    left_out = refusal_texts(layout.unit.account.lines())
+    omitted = refusal_texts(layout.unit.account.lines())
     try:
-        return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
+        return validated(SceneInput, table.table | ({"left_out": list(omitted)} if omitted else {}))
     except BadInput as error:
         layout.unit.say("scene", "refused", str(error))
         return None

@@ -75,7 +75,7 @@ class LoadInput(BoundaryModel):
         return self
 
 
-def _left_out(value: object) -> bool:
+def _is_absent(value: object) -> bool:
     """Whether a field that came after results had been stored is not there."""
     return value is None
 
@@ -95,7 +95,7 @@ class ErrorsInput(BoundaryModel):
         description="Accuracy class in place of misalignment_um: five misalignments, to both sides, over "
         "the range that gears and axes of this class allow (ISO 1328-1:2013, ISO/TR 10064-3)",
         examples=[7],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     bearing_clearance_um: Listed[Clearance] | None = Field(
         default=None,
@@ -104,7 +104,7 @@ class ErrorsInput(BoundaryModel):
         description="Radial internal clearance in µm of the bearings of both shafts, by which the shafts "
         "tilt; needs misalignment_class",
         examples=[[20.0, 25.0]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     center_distance_change_mm: CenterDistanceChanges = Field(
         default=(0.0,), description="Changes of the center distance in mm", examples=[[0.0]]
@@ -223,7 +223,7 @@ class Case(BoundaryModel):
         description="Complaint about a sound: plots of the table mark its order, loa complaint lists its "
         "causes",
         examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     effects: dict[EffectName, Switch] = Field(
         default={},

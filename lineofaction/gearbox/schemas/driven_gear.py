@@ -13,7 +13,7 @@ from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
 from lineofaction.gearbox.schemas.gear import ToothingInput
 from lineofaction.gearbox.schemas.model import refuse
-from lineofaction.gearbox.schemas.rules import all_of, both, left_out, required
+from lineofaction.gearbox.schemas.rules import absent, all_of, both, required
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
 """Fields that only a ring gear has, or that differ from the fields of an external gear."""
@@ -23,8 +23,8 @@ _DEFAULTS = {
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
-_RING_HAS = both(required("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
-_GEAR_HAS = both(required("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
+_RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat"))
+_GEAR_HAS = both(required("bore_diameter_mm"), absent(*(figure.field for figure in _RING_ONLY)))
 
 
 def _of_either_kind(schema: dict[str, Any]) -> None:

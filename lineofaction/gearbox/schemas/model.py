@@ -46,8 +46,8 @@ HousingRows = Annotated[Listed[HousingRow], Field(min_length=3, max_length=6000)
 CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
 CouplingRows = Annotated[Listed[CouplingRow], Field(min_length=6, max_length=6)]
 Json = dict[str, Any]
-_LEFT_OUT: Json = {"type": "null"}
-_NOT_NULL: Json = {"not": _LEFT_OUT}
+_ABSENT: Json = {"type": "null"}
+_NOT_NULL: Json = {"not": _ABSENT}
 _NAMED = "x-named"
 
 

@@ -51,7 +51,7 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     return written
 
 
-def left_out(unit: OpenedUnit, result: GearboxDeflection) -> list[str]:
+def omissions(unit: OpenedUnit, result: GearboxDeflection) -> list[str]:
     """Return the names of shafts, bearings and meshes of the result that are no component of the document."""
     parts = unit.parts
     meshes = (mesh.name for case in result.deflection.cases[:1] for mesh in case.meshes)

@@ -121,10 +121,10 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
         for effects in scene_effects(ledger)
     )
     small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
-    left_out = settings_table("Not in the model", ledger.get("left_out", {}))
+    neglected = settings_table("Not in the model", ledger.get("left_out", {}))
     phases = tuple((row["part"], row["words"]) for row in ledger.get("assumed", ()))
     assumed = Table("Assumed of phases", ("part", "assumed"), phases)
-    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), left_out)
+    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), neglected)
     return effects_section("", rows, folded)
 
 

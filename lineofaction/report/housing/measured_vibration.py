@@ -26,7 +26,7 @@ _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "rms, mm/s", "level, dB re 1 nm/s",
     "measured along",
 )  # fmt: skip
-_LEFT_OUT = "What the measured responses replace and leave out"
+_OMITTED = "What the measured responses replace and leave out"
 
 
 def measured_figure(result: MeasuredHousingVibration) -> Figure:
@@ -123,7 +123,7 @@ def measured_page(result: MeasuredHousingVibration) -> Page:
     drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.metadata))
     page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.metadata)
     rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.metadata))
-    absent = Table(_LEFT_OUT, (result.file,), tuple((sentence,) for sentence in result.left_out))
+    absent = Table(_OMITTED, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 

@@ -233,10 +233,10 @@ def _accuracy(run: RunResult) -> Table:
     for name, (title, unit) in _ERRORS.items():
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
     rows += _tolerance(run.receipt.get("error", {}).get("time_step", {}))
-    left_out = run.receipt.get("error", {}).get("left_out_effects", {})
-    if "decibels" in left_out:
-        size = number(left_out["decibels"], 2)
-        rows.append((f"neglected effects, {left_out['unit']} ({left_out['source']})", size))
+    neglected = run.receipt.get("error", {}).get("left_out_effects", {})
+    if "decibels" in neglected:
+        size = number(neglected["decibels"], 2)
+        rows.append((f"neglected effects, {neglected['unit']} ({neglected['source']})", size))
     if run.energy is not None:
         rows.append(
             ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))

@@ -130,8 +130,8 @@ class HeardLoad:
             for amplitude in (np.maximum(size - off, CANCELED * size), size, size + off)
         )
         varied = self.transfer.varied_inputs(scene.at, flanks)[0]
-        left_out = self.levels(self.form.weighted(varied), worst_speed) - level
-        return np.stack([level - low - np.minimum(left_out, 0.0), high - level + np.maximum(left_out, 0.0)])
+        omitted = self.levels(self.form.weighted(varied), worst_speed) - level
+        return np.stack([level - low - np.minimum(omitted, 0.0), high - level + np.maximum(omitted, 0.0)])
 
 
 @dataclass(frozen=True)

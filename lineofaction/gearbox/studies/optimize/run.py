@@ -153,7 +153,7 @@ class _OptimizeStudy(
         return _sound_figures(result) if isinstance(result, HeardOptimization) else self._of_case(result)
 
     def _of_case(self, result: Optimization) -> Json:
-        limits = dict(result.asked["limits"])
+        limits = dict(result.request["limits"])
         units = {
             "max_pressure_mpa": ("max_pressure_pa", MPA),
             "peak_to_peak_um": ("peak_to_peak_m", UM),
@@ -184,7 +184,7 @@ class _OptimizeStudy(
                 }
                 for step in result.sensitivity
             ],
-            "asked": in_um(result.asked) | requested,
+            "asked": in_um(result.request) | requested,
         }
 
     def warnings(self, result: Optimization | HeardOptimization) -> list[Json]:
@@ -346,7 +346,7 @@ def _search(search: SearchInput, *, of_sound: bool) -> Search:
 
 def _scattering(result: Optimization) -> Json:
     """Return the scattering variables by the fields of a case file."""
-    scatter = result.asked["scatter"]
+    scatter = result.request["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
     spread = {
         "misalignment_um": scatter["misalignment_m"] / UM,

@@ -107,7 +107,7 @@ def sound_optimum(
         announce(means.report, "search", expected)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
-    designs = start, problem.values(runs[best].place)
+    designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         before, after = (_confirmed(replace(setup, problem=problem), values, run.cache) for values in designs)
     with clock.stage("pairs"):

@@ -93,7 +93,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             return sampled(case.request(scatter_request, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:
-        widths = study.asked["tolerances"]
+        widths = study.request["tolerances"]
         tolerances = {
             "misalignment_um": widths["misalignment_m"] / UM,
             **{boundary_name(name): width / UM for name, width in widths["modification_m"].items()},
@@ -101,7 +101,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
         return {
             "names": [boundary_name(name) for name in study.names],
-            "asked": in_um(study.asked) | {"tolerances": tolerances},
+            "asked": in_um(study.request) | {"tolerances": tolerances},
         }
 
 
