@@ -45,7 +45,7 @@ T = TypeVar("T")
 
 
 class AssessedCycle(NamedTuple):
-    """One cycle by derivatives: what is stated of it, what is true, and CPU seconds."""
+    """One cycle by derivatives: stated and true errors, and CPU seconds."""
 
     name: str
     ripple: float
@@ -62,7 +62,7 @@ class AssessedCycle(NamedTuple):
 
 
 def figures() -> list[Figure]:
-    """Return what is covered, and what it costs."""
+    """Return the coverage and the cost."""
     cycles = [assessed(name, pair, torque) for name, pair, torque in drawn_gears()]
     beyond = np.mean([each.true > each.stated for each in cycles])
     parts = [each.seconds / each.exact_seconds for each in cycles]

@@ -131,7 +131,7 @@ def _corner(pair: ParallelAxes, roll: float) -> CornerContact:
 
 
 def _corner_gap(pair: ParallelAxes, roll: float) -> float:
-    """Return its gap, infinite where the edge meets no involute, less what a flank has too much of."""
+    """Return the gap of a tip edge, infinite where it meets no involute, less excess material."""
     gap = float(_corner(pair, roll).gap)
     if not math.isfinite(gap):
         return math.inf

@@ -52,7 +52,7 @@ def _solved(
     position: float,
     resolution: Resolution,
 ) -> SolvedPosition:
-    """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
+    """Mesh and solve; repeat with more pairs or longer strips where these do not contain the contact."""
     phase = position - round(position)
     minimum, maximum = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
     loads = minimum / pair.face_width, model.largest_line_load(pair, maximum)
