@@ -65,7 +65,7 @@ class ElementalRadiators:
 
     @property
     def solid_angle(self) -> float:
-        """Return that into which each panel radiates, sr."""
+        """Return the solid angle into which each panel radiates, sr."""
         return 2.0 * np.pi if self.baffled else 4.0 * np.pi
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:

@@ -253,7 +253,7 @@ class Ending:
 
 
 def sample_count(system: System) -> int:
-    """Return how many output samples a run has that comes to its end."""
+    """Return the number of output samples of a complete run."""
     return int(np.floor(system.scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
 
 

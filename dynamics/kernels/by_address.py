@@ -157,7 +157,7 @@ def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:
 
 
 def _size(kind: Any) -> int:
-    """Return how many words a field takes."""
+    """Return the number of words of a field."""
     if isinstance(kind, tuple):
         return 1 + int(kind[1])
     return kind.size if isinstance(kind, _AddressType) else 1

@@ -109,7 +109,7 @@ def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
 
 
 def _repeated(frequency: FloatArray) -> FloatArray:
-    """Return which modes are the same but for their shapes, (a, a): 1 or 0."""
+    """Return the pairs of modes that differ in their shapes alone, (a, a): 1 or 0."""
     return np.asarray(np.abs(frequency[:, None] - frequency) <= SAME * frequency, dtype=float)
 
 

@@ -106,7 +106,7 @@ class _Between:
 
 
 def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Between:
-    """Look at a mode at two of the speeds."""
+    """Return a mode at two neighboring speeds."""
     both = slice(row, row + 2)
     speed, frequency = branches.speed[both], branches.frequency[both, mode]
     ratio, shape = branches.damping_ratio[both, mode], branches.shape[both, mode]

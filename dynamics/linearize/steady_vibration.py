@@ -78,7 +78,7 @@ class Steady:
 
 
 def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = SAMPLES) -> Excited:
-    """Look at `system` under the loads at `time`; flanks at up to `samples` positions per base pitch.
+    """Linearize `system` under the loads at `time`, with flanks at up to `samples` positions per base pitch.
 
     Raises
     ------
@@ -130,7 +130,7 @@ def with_blocked(
 
 
 def _is_excited(force: ComplexArray) -> BoolArray:
-    """Return which of H harmonics excite: of forces (..., H)."""
+    """Return whether each of H harmonics is excited, by forces (..., H)."""
     largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
     return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # NaN counts as excited
 

@@ -36,7 +36,7 @@ class Lines(NamedTuple):
     """
 
     def to_json(self, in_totals: bool) -> Json:
-        """Return what facts say of those left out, and whether totals have them; nothing without any."""
+        """Return the facts on lines left out, and whether totals have them; empty without such lines."""
         if not self.omitted.size:
             return {}
         return {"lines_left_out": {"count": self.omitted.size, "force": self.share, "in_totals": in_totals}}

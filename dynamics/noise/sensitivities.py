@@ -88,7 +88,7 @@ class Sensitivity:
 
     @property
     def linear(self) -> bool:
-        """Whether that change is within the linear range."""
+        """Whether the change by one step is within the linear range."""
         return abs(self.for_one_db_less) <= self.linear_range
 
 

@@ -236,7 +236,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
 def _passed(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
 ) -> list[_Bifurcation]:
-    """Return what lies between two neighboring points."""
+    """Return the bifurcations between two neighboring points."""
     between = []
     if before.tangent[-1] * behind.tangent[-1] < 0.0:
         between.append(_Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))

@@ -101,7 +101,7 @@ class RunContext:
         return cls(system, decision.scene, audit, checks_of_run, automatic, influences)
 
     def with_errors(self, error: Json) -> RunContext:
-        """Return them with the check of the errors of the steps, where they are measured."""
+        """Return the context with the check of the errors of the steps, where they are measured."""
         check = tolerance_check(error, self.system.scene.integration)
         return self if check is None else replace(self, checks=[*self.checks, check])
 

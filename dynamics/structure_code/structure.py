@@ -29,7 +29,7 @@ class _Layout(NamedTuple):
     bytes: IntArray
     """Bytes of an item. Shape (A,)."""
     known: BoolArray
-    """Whether it holds integers that are part of a structure. Shape (A,)."""
+    """Whether each array holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
     """Words with integers and flags. Shape (I,)."""
 
