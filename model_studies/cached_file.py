@@ -1,4 +1,4 @@
-"""Results kept in files that are named by the content of what they come from."""
+"""Results cached in files that are named by the content of their inputs."""
 
 from __future__ import annotations
 

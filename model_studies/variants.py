@@ -42,7 +42,7 @@ def run_variants(
     left_out : dict of str to str
         Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
     """
-    results, left_out = {}, {}
+    results, omitted = {}, {}
     outcomes = divided(workers, _attempted, (compute, failures), list(variants.values()), seconds)
     for count, name in enumerate(variants):
         progress(stage, count / len(variants))
@@ -50,9 +50,9 @@ def run_variants(
         if reason is None:
             results[name] = result
         else:
-            left_out[name] = reason
+            omitted[name] = reason
     progress(stage, 1.0)
-    return results, left_out
+    return results, omitted
 
 
 @contextmanager

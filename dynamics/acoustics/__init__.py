@@ -1,4 +1,4 @@
-"""From the velocity of any surface to sound: radiation models, levels, sound power by order, recordings."""
+"""Sound from the velocity of any surface: radiation models, levels, sound power by order, recordings."""
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import (

@@ -31,7 +31,7 @@ CASES = 64
 JOINTLY = "jointly"
 """Contribution of parameters that act on each other, and of extremes inside a range."""
 SEED = 22
-"""Of the joint cases: bands are the same each time."""
+"""Seed of the joint cases, by which equal inputs have equal bands."""
 
 
 def sound_power_level(power: ArrayLike) -> FloatArray:
@@ -126,7 +126,7 @@ class LevelBand:
 
     @property
     def width(self) -> float:
-        """Return how far the ends lie apart, dB."""
+        """Return the distance of the ends, dB."""
         return self.high - self.low
 
     @property
@@ -195,7 +195,7 @@ def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]
 
 
 def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return deviations, at least 0, that add up in squares to what is reached, the rest as `JOINTLY`."""
+    """Return deviations, at least 0, whose squares add up to `reached` squared; the rest is `JOINTLY`."""
     square = np.maximum(reached, 0.0) ** 2
     squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
     sum_of_squares = np.sum([0.0 * square, *squares.values()], axis=0)

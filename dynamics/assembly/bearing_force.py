@@ -27,11 +27,12 @@ class BearingForce(NamedTuple):
     frame of the support. Shape (S + 1,).
     """
     column: IntArray
-    """What an entry reads: local force, R + freedom, or R + n + freedom. Shape (E,)."""
+    """Column that an entry multiplies: index of a local force, R + freedom, or R + n + freedom. Shape (E,).
+    """
     weight: FloatArray
-    """N or N m per unit. Shape (E,)."""
+    """Weight of each entry, N or N m per unit of its column. Shape (E,)."""
     constant: FloatArray
-    """N or N m. Shape (S,)."""
+    """Constant part of each signal, N or N m. Shape (S,)."""
     freedoms: int
     """The number n of freedoms."""
 

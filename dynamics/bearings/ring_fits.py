@@ -28,7 +28,7 @@ _WALL = Declared(Kind.LENGTH, "m", between(1e-4, 100.0), "Outer diameter of the 
 @described
 @dataclass(frozen=True)
 class RingFits:
-    """How the rings sit on shaft and housing as drawn, at the reference temperature."""
+    """Fits of the rings on shaft and in housing as drawn, at the reference temperature."""
 
     bore: float = required(BORE)
     outside_diameter: float = required(OUTSIDE)

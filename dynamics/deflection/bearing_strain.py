@@ -1,4 +1,4 @@
-"""Displacements at bearings by cause: what yields, what is clearance, and what the seat moves."""
+"""Displacements at bearings by cause: elasticity and clearance of the bearing, and motion of the seat."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.types import FloatArray
 
-HALVINGS = 50
+HALVINGS = 50  # bisections that find the clearance
 FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
@@ -53,19 +53,19 @@ def _evaluate(system: SystemArrays, local: LocalState, element: int) -> None:
 class BearingStrain:
     """Displacements x, y, z (m), tilt_x, tilt_y (rad) at b bearings, each (b, 5); their sum is the shaft's.
 
-    Of a planet bearing: of the planet against its pin.
+    Displacements at a planet bearing are those of the planet relative to its pin.
     """
 
     elastic: FloatArray
-    """What the bearing yields under its load. Shape (b, 5)."""
+    """Elastic displacement in the bearing under its load. Shape (b, 5)."""
     clearance: FloatArray
-    """What it moves before anything presses back. Shape (b, 5)."""
+    """Displacement through the clearance, before the bearing carries load. Shape (b, 5)."""
     seat: FloatArray
-    """Of its seat in an elastic housing. Shape (b, 5)."""
+    """Displacement of the seat in an elastic housing. Shape (b, 5)."""
 
     @property
     def shaft(self) -> FloatArray:
-        """Of the shaft's section in the bearing, (b, 5)."""
+        """Displacement of the shaft's section in the bearing, (b, 5)."""
         return self.elastic + self.clearance + self.seat
 
 
@@ -101,7 +101,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
-    """Return the motions (b, 5) of the seats in housings that are no freedoms by the shafts' there (b, 5)."""
+    """Return the motions (b, 5) of seats in massless housings by those of the shafts in them (b, 5)."""
     places, names = supports_by_name(system.rotors), list(system.supports.name)
     displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):

@@ -1,4 +1,4 @@
-"""Cases and scenes of files, assessed, and what work on them is predicted to cost."""
+"""Cases and scenes of files with their warnings, and the predicted cost of work on them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from lineofaction.gearbox.schemas import Case, read_model, validated
 from lineofaction.gearbox.schemas.fault_lines import located
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.studies.cost import StudyCost, Work, panels_work
@@ -33,12 +33,12 @@ from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from model_studies.progress import ANNOUNCED
 
 _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
-"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
-counts."""
+"""CPU seconds of reading a run, of a second of sound, and of a second of sound at a microphone, with the
+figures of hearing."""
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
-    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
+    """Return the case in a file, at one load and alignment if requested; warn of implausible values.
 
     Raises `BadInput`: the file holds no case, or no such pair exists.
     """
@@ -52,12 +52,12 @@ def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCa
 
 
 def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
-    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
+    """Return the scene in a file and the folder of its files; warn of omissions of its import.
 
     Raises `BadInput`: the file holds no scene.
     """
     scene, folder = scene_of(file)
-    warn(left_out_warnings(scene.left_out))
+    warn(omission_warnings(scene.left_out))
     return scene, folder
 
 
@@ -83,7 +83,7 @@ def inputs_of_study(
 
 
 def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
-    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    """Return the number of speeds that inputs need if neither speeds nor a run are named; 0: none."""
     if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
         return 0
     return inputs.usual_speeds
@@ -126,7 +126,7 @@ def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
 
 
 def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
-    """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
+    """Print the predicted cost of a verb on standard error, if it is known and more than a moment."""
     total = sum(filter(None, costs), StudyCost(()))
     if None not in costs and total.seconds > ANNOUNCED:
         sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")

@@ -12,9 +12,13 @@ R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
 START_SECONDS = 10.0
-"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
+"""Least predicted CPU seconds of tasks for which two new processes are started, which load program and
+compiled code. Less work stays in this process.
+"""
 AWAKE = 0.1
-"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
+"""Part of `START_SECONDS` from which workers that have done tasks get further ones: they may have to load the
+inputs of other tasks.
+"""
 
 
 def divided(

@@ -21,11 +21,11 @@ R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
 LARGE = 100_000
-"""Bytes; what tasks share beyond that goes by a file and not with each of them."""
+"""Size above which the shared input of tasks goes by a file, not with each task, bytes."""
 
 
 class _PassedFiles:
-    """A folder for what goes to other processes of this machine; it ends with the last reference to it."""
+    """A folder for inputs that other processes of the machine read; it ends with the last reference to it."""
 
     @cached_property
     def path(self) -> Path:
@@ -48,7 +48,7 @@ class ByExecutor:
     _packed: dict[int, tuple[object, Packed]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit everything, yield in order; what is not yielded any more is cancelled."""
+        """Submit all tasks and yield their results in order; unread results are cancelled."""
         packed = self._pack(shared)
         try:
             futures = [self.executor.submit(do_task, function, item, packed) for item in items]

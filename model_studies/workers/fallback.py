@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class OrHere:
-    """Workers that may be lost; what they leave is done in this process.
+    """Workers that may be lost; tasks that they leave are done in this process.
 
     `on_loss` is called once, with the reason, when they are lost; nobody looks for them again.
     """
@@ -30,7 +30,7 @@ class OrHere:
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield the results of the others, and from where they are lost those of this process."""
+        """Yield the results of the workers, and of this process once they are lost."""
         done = 0
         if not self.cost.lost:
             try:

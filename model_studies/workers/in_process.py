@@ -23,7 +23,7 @@ class Workers(Protocol):
 
     @property
     def cost(self) -> RunCost:
-        """Cost of remote tasks, beside the CPU time of this process."""
+        """Cost of remote tasks, without the CPU time of this process."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield ``function(shared, item)`` of every item, in their order; `WorkersLost`: nobody is left.

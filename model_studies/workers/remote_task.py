@@ -17,7 +17,9 @@ from model_studies.workers.run_cost import TaskResult
 
 R = TypeVar("R")
 MAX_SHARED = 2
-"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
+"""Number of shared inputs that a thread of a worker keeps. An input that it prepared once serves all its
+tasks.
+"""
 _local = threading.local()
 
 
@@ -36,13 +38,13 @@ class Packed:
         return cls(content, hashlib.sha256(content).hexdigest())
 
     def in_file(self, folder: Path) -> Packed:
-        """Put it into a file of the folder."""
+        """Write the shared input into a file of the folder."""
         file = folder / self.digest
         file.write_bytes(self.content)
         return Packed(b"", self.digest, file)
 
     def unpacked(self) -> Any:
-        """Return it; the same object for all tasks of a thread, so that what it keeps is kept."""
+        """Return the shared input, one object for all tasks of a thread, so that its caches last."""
         known: dict[str, Any] = _local.__dict__.setdefault("known", {})
         if self.digest not in known:
             while len(known) >= MAX_SHARED:

@@ -23,7 +23,7 @@ class RunCost:
     lost: str = ""
 
     def since(self, before: RunCost) -> RunCost:
-        """Return what was spent after another reading of the same; the peak is that of all."""
+        """Return the cost since an earlier reading of the same cost; the peak is that of the whole time."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
         return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
@@ -37,7 +37,7 @@ class RunCost:
 
 @dataclass(frozen=True)
 class TaskResult(Generic[R]):
-    """The result of one task, and what it cost its worker."""
+    """The result of one task, and its cost for the worker."""
 
     result: R
     cpu_seconds: float

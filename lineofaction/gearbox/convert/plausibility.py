@@ -16,13 +16,13 @@ from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import complaint_of_case
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas import Case
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.units import factor, unit_name
 
 
 def case_warnings(checked: CheckedCase) -> list[Json]:
-    """Return what is implausible about a case, before anything is computed.
+    """Return warnings about implausible values of a case, before anything is computed.
 
     Raises `BadInput`: no such pair, or nothing passes where it complains.
     """
@@ -37,7 +37,7 @@ def case_warnings(checked: CheckedCase) -> list[Json]:
 def scene_warnings(
     inputs: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
 ) -> list[Json]:
-    """Return what is implausible about a scene, and about the tables of its meshes.
+    """Return warnings about implausible values of a scene and of the tables of its meshes.
 
     Raises `BadInput`: the parts of the scene do not fit each other.
 
@@ -53,7 +53,7 @@ def scene_warnings(
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
     of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
-    warnings = left_out_warnings(inputs.left_out) + measured_warnings(inputs)
+    warnings = omission_warnings(inputs.left_out) + measured_warnings(inputs)
     warnings += _in_boundary_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
@@ -84,7 +84,7 @@ def _in_file(inputs: SceneInput, field: str) -> bool:
 
 
 def within(warning: Json, owner: str) -> Json:
-    """Return a warning of a case as one of what the case is part of."""
+    """Return a warning of a case as a warning of its owner, a scene or a request."""
     field = f"{owner}.case.{warning['field']}"
     return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
 
@@ -115,7 +115,7 @@ def _phrased(content: Json, name: Callable[[str], str]) -> Json:
 
 
 def _field_in(case: Case) -> Callable[[str], str]:
-    """Return what names fields as this case has them: a material may be that of both gears."""
+    """Return a function to the field as the case has it: a material may be that of both gears."""
 
     def field(name: str) -> str:
         boundary = case_field(name)
