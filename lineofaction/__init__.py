@@ -1,4 +1,4 @@
-"""Contact analysis of gears, their dynamics and their noise: what a Python user imports.
+"""Contact analysis of gears, their dynamics and their noise: the public names of the package.
 
     import lineofaction as loa
 

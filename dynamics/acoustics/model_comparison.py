@@ -1,4 +1,8 @@
-"""The radiation models side by side for one vibration: level, error, cost predicted and measured."""
+"""The radiation models side by side for one vibration: level, error, cost predicted and measured.
+
+Models differ in what they neglect. `ka` is the wavenumber times the radius of the sphere with the hull's
+volume.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +38,9 @@ PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
 OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
-"""ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
+"""Values of ka, and least and largest error of monopoles at each, dB, on spheres, a box and modes of five
+gear cases.
+"""
 WAVES_IN_MEMORY = 4
 """Arrays of phases."""
 
@@ -59,7 +65,7 @@ class ElementalRadiators:
 
     @property
     def solid_angle(self) -> float:
-        """Return that into which each panel radiates, sr."""
+        """Return the solid angle into which each panel radiates, sr."""
         return 2.0 * np.pi if self.baffled else 4.0 * np.pi
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
@@ -162,7 +168,7 @@ class ModelComparison:
     """Results by the model's name, from coarse to fine, and why others have none."""
 
     results: Mapping[str, _ModelResult]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     predicted: Mapping[str, Cost]
     """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
@@ -195,7 +201,7 @@ def compare_models(
     progress : callable
         Called as progress(stage, fraction); before a costly model with its predicted cost behind the stage.
     offered : sequence of RadiationModel, optional
-        Of which cost and error are stated, too; they are not computed.
+        Further models whose cost and error are stated; they are not computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     """
@@ -219,7 +225,7 @@ def compare_models(
         )
         return _ModelResult(power, power / plane, cost)
 
-    results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
+    results, omitted = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     ka = wavenumber * hull.equivalent_radius
     bands = {name: model.error_band(ka) for name, model in listed.items()}
-    return ModelComparison(results, left_out, predicted, bands)
+    return ModelComparison(results, omitted, predicted, bands)

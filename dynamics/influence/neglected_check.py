@@ -1,4 +1,9 @@
-"""Check that effects neglected for a tolerance were too small to be seen in the run without them."""
+"""Check that effects neglected for a tolerance were too small to be seen in the run without them.
+
+An influence is the change of a run's figures by leaving one effect out in all parts of the scene, estimated
+by linear theory. A tolerance of the scene decides which effects may be left out; the run then compares the
+estimates with its own series.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +51,7 @@ _KNOWN: dict[_Key, dict[str, Influence]] = {}
 """Influences by content of the scene, for the last `KNOWN` scenes: a scene is often run again with other
 steps or outputs.
 """
-KNOWN = 64
+KNOWN = 64  # most scenes whose influences stay in memory
 _SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
 """CPU seconds of one line at one speed over the square of the freedoms, of varying stiffness at one speed,
 and of one effect apart from its lines.
@@ -86,8 +91,8 @@ class Influence:
     (m,) each.
     """
     bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
-    """Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N. Shape
-    (b,).
+    """Change of the mesh orders 1 to 5 of each bearing's force and of the part that loads excite, together,
+    N. Shape (b,).
     """
     relative_mean: float
     relative_peak_to_peak: float
@@ -127,14 +132,14 @@ class Influence:
 
     @property
     def largest(self) -> float:
-        """The largest relative change of what is decided by: amplitudes of a level, or all."""
+        """Largest relative change that counts for the decision: of amplitudes of a level, or of all."""
         if self.decides:
             return self.level.relative
         return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
 
     @property
     def decibels(self) -> float:
-        """The largest change, dB: of the level and, unless it alone decides, of what `largest` compares."""
+        """Largest change, dB: of the level and, unless it alone decides, of the figures of `largest`."""
         level = abs(self.level.decibels) if self.level.relative > ROUNDING else 0.0
         return level if self.decides else max(level, in_decibels(self.largest))
 
@@ -197,12 +202,12 @@ def estimate_influences(
 
 
 def _chosen(scene: Scene, effect: str) -> bool:
-    """Return whether a scene chooses an effect, which then is not decided."""
+    """Return whether a scene chooses an effect by name, so that no tolerance decides on it."""
     return scene.effects.get(effect, "auto") != "auto"
 
 
 def forget_sizes() -> None:
-    """Forget all sizes, such as to measure what they take."""
+    """Forget all influences, for example to measure their cost."""
     _KNOWN.clear()
 
 
@@ -232,7 +237,7 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
 
 
 class ResponseCost(NamedTuple):
-    """CPU seconds of a linear response at a speed, and of a system with or without an effect; of how many."""
+    """CPU seconds of a linear response per speed, and per system with or without an effect; systems."""
 
     speed: float
     system: float
@@ -240,7 +245,7 @@ class ResponseCost(NamedTuple):
 
 
 def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCost:
-    """Return what a forced response at speeds (S,), rad/s, and its `response_influences` take.
+    """Return the cost of a forced response at speeds (S,), rad/s, and of its `response_influences`.
 
     Raises `InputError`, `SolveError` as the response.
     """
@@ -300,7 +305,7 @@ def _switchable(system: System) -> dict[str, bool]:
 def _influence_of(
     system: System, name: str, on: bool, current: LinearFigures, other: LinearFigures
 ) -> Influence:
-    """Return what a system loses without an effect: `current` are its figures, `other` those with it toggled.
+    """Return the influence of an effect: `current` are the figures, `other` the figures with it toggled.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
     flank.
@@ -337,7 +342,7 @@ def _influence_of(
 
 
 def _beyond(system: System, linear: bool, parts: bool) -> str:
-    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not.
+    """Return the part of a change that linear theory leaves out, in words; `linear`: of a linear effect.
 
     `parts`: whether flanks part.
     """
@@ -372,7 +377,7 @@ class _Allowance:
     text: str
     """Tolerance as text, with its unit."""
     alone: float
-    """Largest change by one effect at which the effect may stay off."""
+    """Change by one effect, above which the effect is turned on though the scene does not call for it."""
     together: float
     """Largest sum of the changes by all neglected effects."""
     size: Callable[[Influence], float]
@@ -395,12 +400,12 @@ class _Allowance:
 
 @dataclass(frozen=True)
 class Decision:
-    """A scene with what its tolerance decided."""
+    """A scene with the decisions by its tolerance."""
 
     scene: Scene
     """Scene whose `effects` hold the decisions."""
     automatic: Mapping[str, str] = field(default_factory=dict)
-    """Effects that the tolerance decided against what the scene calls for, and why."""
+    """Effects on which the tolerance decided otherwise than the scene calls for, each with the reason."""
     influences: Mapping[str, Influence] = field(default_factory=dict)
     """Estimates; empty where there was no tolerance to decide by."""
     taken: TimeTaken = field(default_factory=TimeTaken)
@@ -467,7 +472,7 @@ def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str
 
 
 class NeglectedChecks:
-    """Gathers, block by block, what the estimates of neglected effects are compared with."""
+    """Quantities of a run, gathered by block, to compare with estimates of neglected effects."""
 
     def __init__(self, decision: Decision) -> None:
         self._decision = decision
@@ -485,7 +490,7 @@ class NeglectedChecks:
         self._parted = self._parted or bool(np.any(series["mesh_force"] <= 0.0))
 
     def checks(self) -> list[Check]:
-        """Return one per neglected effect.
+        """Return one check per neglected effect.
 
         ``change`` is its estimate over the computed mean and peak-to-peak transmission error, and of bearing
         forces as estimated. Where flanks parted the linear theory of the estimate says nothing: it does not

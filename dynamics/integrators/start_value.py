@@ -1,4 +1,8 @@
-"""The start value of a march: the state of another one with fewer force elements."""
+"""The start value of a march: the state of another one with fewer force elements.
+
+A run that violates an assumption is repeated with the missing effect on. The repetition starts from the last
+state before the violation; the force elements of the effect exert no force until then.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +66,7 @@ def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
 
 
 class Trail:
-    """The saved states of a march of `system` after its blocks; `taken`: where it goes on for another run."""
+    """The saved states of a march of `system` after its blocks; `taken`: the start of another run."""
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -95,7 +99,7 @@ class StartValue:
     """Gives the other march's output samples from one to before another."""
 
     def into(self, march: March, sink: StateSink) -> None:
-        """Start `march` there; `sink` gets the samples before it."""
+        """Start `march` from the saved state; `sink` gets the samples before it."""
         self.start(march)
         for first, stop in blocks(self.at.samples):
             room = sink.room(first, stop - first)
@@ -104,7 +108,7 @@ class StartValue:
             sink.keep(first, stop - first)
 
     def widened(self, states: States, march: March) -> States:
-        """Return samples of the other march as those of `march`; elements beside its own carried no force."""
+        """Return samples of the other march as those of `march`, whose further elements exert no force."""
         rows = march.ring.local.force.size
         to, width = self._channels(march), states.filtered.shape[1]
         filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
@@ -114,7 +118,7 @@ class StartValue:
         return states._replace(filtered=filtered, minimum=minimum, largest=largest)
 
     def start(self, march: March) -> None:
-        """Start `march` from there; elements that it has beside those of the other one carry no force."""
+        """Start `march` from the saved state; its further elements exert no force."""
         work, at = march.work, self.at
         for name, values in at.state.items():
             getattr(work, name)[...] = values
@@ -135,7 +139,7 @@ class StartValue:
             target[..., to] = known
 
     def _channels(self, march: March) -> IntArray:
-        """Return the channels of `march` that those of the other one are."""
+        """Return the channels of `march` that hold the channels of the other march."""
         rows, channels = march.ring.local.force.size, march.ring.point.shape[1]
         return np.concatenate([self.rows_of, np.arange(rows, channels)])
 

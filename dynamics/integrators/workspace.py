@@ -1,4 +1,8 @@
-"""Arrays that a run carries from step to step, allocated once."""
+"""Arrays that a run carries from step to step, allocated once.
+
+A stage is an instant within a step at which a Runge-Kutta method evaluates forces. A level is one of the
+geometric step sizes.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-STAGES = 7  # of the method with the most stages
-LEVELS_PER_OCTAVE = 4
+STAGES = 7  # stages of the method with the most of them
+LEVELS_PER_OCTAVE = 4  # step sizes to a factor of 2
 _PER_FREEDOM = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "unloaded")
 _PER_ROW = ("force", "free", "free_rate", "free_acceleration", "update", "correction")
 
@@ -33,20 +37,20 @@ class Power(IntEnum):
 
 
 LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
-"""Columns that only grow: what is dissipated does not come back."""
+"""Columns that only grow: dissipated energy does not come back."""
 
 
 class Count(IntEnum):
     """Entries of the step statistics."""
 
-    LEVEL = 0  # of the current step size
+    LEVEL = 0  # level of the current step size
     OUTPUT = 1  # next output sample
     ACCEPTED = 2
     REJECTED = 3
     NEWTON_TOTAL = 4
-    NEWTON_MOST = 5  # in one stage
+    MAX_NEWTON = 5  # most Newton iterations in one stage
     NEWTON_FAILED = 6  # steps repeated because Newton failed
-    SMALLEST_LEVEL = 7  # of an accepted step: the largest step
+    SMALLEST_LEVEL = 7  # smallest level of an accepted step: the largest step
     LARGEST_LEVEL = 8
     FIRST_ROW = 9  # output sample that the first row of the output arrays is for
     POINT = 10  # next point of the inner grid
@@ -62,15 +66,15 @@ class Workspace(NamedTuple):
     time: FloatArray
     time_rest: FloatArray
     error: FloatArray
-    """`time`, `time_rest`, `error`: Current time, s, and what its rounding leaves; error of the last accepted
-    step over the tolerance. Shape (1,) each.
+    """`time`, `time_rest`, `error`: Current time and its rounding, s; error of the last accepted step over
+    the tolerance. Shape (1,) each.
     """
     q: FloatArray
     v: FloatArray
     v_rest: FloatArray
     a: FloatArray
-    """`q`, `v`, `v_rest`, `a`: State at `time`: deviations from the kinematic motion, their rates, what
-    rounding leaves of these, and accelerations. Shape (n,) each.
+    """`q`, `v`, `v_rest`, `a`: State at `time`: deviations from the kinematic motion, their rates, the
+    rounding of these, and accelerations. Shape (n,) each.
     """
     q_new: FloatArray
     v_new: FloatArray

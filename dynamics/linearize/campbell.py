@@ -1,4 +1,8 @@
-"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl."""
+"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl.
+
+Whirl is the motion of a shaft's axis around its position of rest. A branch is one mode over all speeds. The
+leading law is the first drive or free rotation that turns.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +20,12 @@ from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.whirl_modes import SAME, WhirlModes, terms_at, whirl_modes_with, whirl_sense
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
+TIE = 0.05  # weight of frequencies against shapes: it decides between modes of equal shape
 INTERVALS, FINEST = 8, 32
-"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
+"""Number of equal parts of a range of speeds over which modes are followed, and most parts of each of them.
+"""
 ALIKE = 0.9
-"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
+"""Likeness of a mode and its continuation, from which on no speed between them is needed."""
 
 
 @dataclass(frozen=True)
@@ -104,7 +109,7 @@ def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
 
 
 def _repeated(frequency: FloatArray) -> FloatArray:
-    """Return which modes are the same but for their shapes, (a, a): 1 or 0."""
+    """Return the pairs of modes that differ in their shapes alone, (a, a): 1 or 0."""
     return np.asarray(np.abs(frequency[:, None] - frequency) <= SAME * frequency, dtype=float)
 
 

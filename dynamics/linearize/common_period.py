@@ -14,7 +14,7 @@ from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.mechanism.phases import repeating_phases
 from dynamics.types import FloatArray
 
-AGREEMENT = 1e-12
+AGREEMENT = 1e-12  # relative error of a proportion of integers that counts as exact
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def common_period(system: System) -> CommonPeriod:
     ]
     turns += [phase.turns / abs(rate) for rate, phase in turning if rate]
     if not any(rates):
-        turns.append(Fraction(1))  # of the leading shaft, by which orders then count
+        turns.append(Fraction(1))  # one turn of the leading shaft, by which orders then count
     revolutions = Fraction(
         math.lcm(*(turn.numerator for turn in turns)), math.gcd(*(turn.denominator for turn in turns))
     )

@@ -32,6 +32,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
 KINDS = (*SPRING_KINDS, "load", "frame")
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
@@ -83,12 +84,12 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
     """`bearing_floor`, `bearing_floor_error`: Mean square bearing force of the orders left out, and its
     error, N^2. Empty where no orders are left out. Shape (b, S) each.
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`."""
 
     @property
     def bearing_mean_square(self) -> FloatArray:
-        """Mean square of the force on each bearing, all orders together, those left out too, (b, S), N^2."""
+        """Mean square of the force on each bearing, all orders together, with those left out, (b, S), N^2."""
         listed = 0.5 * np.sum(np.abs(self.bearing_force[:, :3]) ** 2, axis=(1, 3))
         return np.asarray(listed + self.bearing_floor if self.bearing_floor.size else listed)
 
@@ -117,7 +118,7 @@ def forced_response(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+        Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -159,7 +160,7 @@ def forced_response(
         **power.fields,
         bearing_floor=floor,
         bearing_floor_error=floor_error,
-        facts=_metadata(at, time, seconds)
+        metadata=_metadata(at, time, seconds)
         | lines.to_json(response.floor is not None)
         | {"effect_ledger": ledger}
         | system.corrections,
@@ -167,7 +168,7 @@ def forced_response(
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
-    """Refuse what cannot be held: by speed and harmonic motions, forces, and the power of each part."""
+    """Refuse a response too large for memory: by speed and harmonic motions, forces, and powers of parts."""
     system = at.system
     freedoms, bearings, meshes = system.arrays.mass.shape[0], len(system.supports.name), len(at.cycles)
     loaded = 3 * freedoms if load_cycles(system, at.period) else 0
@@ -186,7 +187,7 @@ def _metadata(at: Excited, time: float, seconds: Json) -> Json:
 
 
 def _difference(static: FloatArray, blocked: FloatArray) -> FloatArray:
-    """Return how unlike the largest transmission errors (m, H) by static errors and blocked forces are."""
+    """Return the relative difference of largest transmission errors (m, H) by the two excitations."""
     return np.asarray(np.abs(blocked - static) / np.max(static, initial=1e-300))
 
 

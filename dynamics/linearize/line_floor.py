@@ -28,7 +28,7 @@ LINE_ERROR = 1.0 / 7.0
 """Largest error of a straight line between two frequencies, over second derivative times square of the step:
 1/8 for a parabola, more for other curves.
 """
-MIN_RATIO = 1e-4
+MIN_RATIO = 1e-4  # damping ratio that stands for a smaller one
 COUNTED = 1e-10
 """Least share of a direction of the rows in the power of all lines, from which the direction is an input."""
 BINS = 8
@@ -39,11 +39,11 @@ class FloorPower(NamedTuple):
     """Power or mean square of lines left out at S speeds in K bins of frequency."""
 
     frequency: FloatArray
-    """Mean of those lines in a bin that have power, Hz. Shape (S, K)."""
+    """Mean frequency of the lines with power in a bin, Hz. Shape (S, K)."""
     power: FloatArray
     missed: FloatArray
-    """`power`, `missed`: And by how much it may be off, of its unit: what straight lines between the
-    frequencies miss at most, and what a stiffness that varies may change. Shape (S, K) each.
+    """`power`, `missed`: Power or mean square, and its largest error in the same unit: by straight lines
+    between the frequencies, and by a varying stiffness. Shape (S, K) each.
     """
 
     @classmethod
@@ -77,7 +77,7 @@ class LineFloor:
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
 
-        What a stiffness that varies may change of it is `changed` (S,), that of the worst bearing if None.
+        `changed` (S,) is its relative change by a varying stiffness; None: the change of the worst bearing.
         """
         changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)
@@ -116,7 +116,7 @@ class LineFloor:
         return np.floor((10.0 * np.log10(hertz) + 0.5) * BINS).astype(np.int64)
 
     def _bent(self, matrix: ComplexArray) -> ComplexArray:
-        """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
+        """Return the error of a straight line midway between two frequencies, for forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
         curvature_error = np.square(np.maximum(step[1:], step[:-1])) * bend * LINE_ERROR
@@ -124,7 +124,7 @@ class LineFloor:
 
 
 def _of_three(size: FloatArray) -> FloatArray:
-    """Return the largest of sizes (G,) and those beside them: where a form bends back, its bend is 0."""
+    """Return the largest of each size (G,) and its neighbors: the curvature of an inflection is 0."""
     wide = np.pad(size, 1, mode="edge")
     return np.maximum(np.maximum(wide[:-2], wide[2:]), size)
 
@@ -144,7 +144,7 @@ def _products(inputs: ComplexArray) -> list[FloatArray]:
 
 
 class FloorInputs(NamedTuple):
-    """Directions in which lines excite the rows of the flanks, and by how much."""
+    """Directions in which lines excite the rows of the flanks, with their amplitudes."""
 
     row: FloatArray
     """Generalized forces per input. Shape (e, n)."""
@@ -152,9 +152,9 @@ class FloorInputs(NamedTuple):
     """Complex peak amplitudes. Shape (e, L)."""
 
 
-def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
-    """Return what excites in lines (L,): in as few directions as hold their power."""
-    force = flank_forces(at, left_out)[1]
+def floor_inputs(at: Excited, omitted: IntArray) -> FloorInputs:
+    """Return the excitation in lines (L,), in as few directions as hold its power."""
+    force = flank_forces(at, omitted)[1]
     size = np.max(np.abs(force), axis=1, keepdims=True)
     rows = np.flatnonzero(size)
     scaled = force[rows] / size[rows]

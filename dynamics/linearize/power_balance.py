@@ -1,4 +1,7 @@
-"""Power balance of a harmonic vibration: power put in by excitations and lost in parts, by harmonic."""
+"""Power balance of a harmonic vibration: power put in by excitations and lost in parts, by harmonic.
+
+Sources are the meshes, by their transmission errors, and the loads. Sinks are all parts with damping.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +56,7 @@ class PowerBalance:
         return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
 
     def by_kind(self) -> dict[str, FloatArray]:
-        """Return what parts of a kind lose together, all harmonics, (S,)."""
+        """Return the power that the parts of a kind lose together, all harmonics, (S,)."""
         total = np.sum(self.loss, axis=2)
         return {
             kind: np.sum(total[[part_kind == kind for part_kind in self.kind]], axis=0)

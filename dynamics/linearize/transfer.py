@@ -49,7 +49,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 from model_studies.cached_file import cached_in
 
 BLOCK = 4_000_000  # complex displacements held at once
-SAME = 1e-9  # of the gradients of rows that are the same
+SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
 """Raised with every change of the numbers of a transfer function, or of what is kept with them."""
 
@@ -150,7 +150,7 @@ class FlankTransfer(ArrayFile):
     residual: float = 0.0
 
     def excitation(self, system: System) -> FlankExcitation:
-        """Return what the flanks of a design excite: the assembled scene with other tables of its meshes.
+        """Return the excitation by the flanks of a design: the scene with other tables of its meshes.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class FlankTransfer(ArrayFile):
     def excitation_errors(
         self, system: System, flanks: FlankExcitation, mesh: int, errors: tuple[FloatArray, ...]
     ) -> list[FlankExcitation]:
-        """Return by how much flanks excite differently for three errors of what a mesh excites.
+        """Return the change of the excitation by three errors of the excitation of one mesh.
 
         `errors` (H,) of amplitudes are those of the transmission error, m, of the arm of the load, m, and of
         the friction along the sliding over the largest. Flanks without such a row err by nothing there.
@@ -279,13 +279,14 @@ def flank_transfer(
 ) -> FlankTransfer:
     """Return the transfer functions of a scene about its loaded equilibrium.
 
-    Of tables of long periods in the `strongest_lines` of its own flanks, the mesh orders always among them.
+    With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
+    always among them.
 
     Parameters
     ----------
     system : System
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing, > 0.
+        Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -321,7 +322,7 @@ def flank_transfer(
 
 
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
-    """Return what `flank_transfer` of the same takes, CPU s: within a factor of 2 where it takes 0.05.
+    """Return the cost of `flank_transfer` with these arguments, CPU s: within a factor of 2 from 0.05 s on.
 
     Raises `InputError`, `SolveError` as it.
     """
@@ -330,7 +331,7 @@ def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
 
 
 def possible_lines(at: Excited, orders: int, speed: FloatArray) -> IntArray:
-    """Return the `strongest_lines` of those that tables or loads may excite, in multiples of the period's."""
+    """Return the `strongest_lines` that tables or loads may excite, as multiples of the period's."""
     return strongest_lines(at, _harmonics(at, orders, float(speed[-1])), speed).harmonics
 
 
@@ -345,7 +346,7 @@ def _harmonics(at: Excited, orders: int, speed: float) -> IntArray:
 
 
 def _require_memory(at: Excited, speeds: int, lines: int) -> None:
-    """Refuse what cannot be held: motions of rows and forces of bearings per input, while they are joined."""
+    """Refuse a transfer too large for memory: motions of rows and forces of bearings per input."""
     rows, bearings = _rows(at).size, len(at.system.supports.name)
     freedoms = at.system.arrays.mass.shape[0]
     require_memory(speeds, lines, 2 * (1 + rows) * (rows + 6 * bearings), freedoms)
@@ -363,7 +364,7 @@ def _rows(at: Excited) -> IntArray:
 
 
 def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
-    """Return what the flanks of a system about its equilibrium excite in `harmonics` (H,)."""
+    """Return the excitation by the flanks of a system about its equilibrium in `harmonics` (H,)."""
     arrays, start = at.system.arrays, at.linear.equilibrium
     static, excited_rows = flank_forces(at, harmonics)
     rows = _rows(at)

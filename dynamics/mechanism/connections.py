@@ -1,4 +1,8 @@
-"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing."""
+"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing.
+
+A strain is a relative displacement or rotation of two parts. A seat (`Seats`) is a bearing that is more than
+three springs: it has tilt stiffness or a matrix, or sits in a housing without mass.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +61,7 @@ class Seats:
 def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to what holds them.
 
-    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    Bearings in a housing without mass, or with neglected mass, have the housing's matrix in series.
     """
     housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
     full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}

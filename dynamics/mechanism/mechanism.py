@@ -1,4 +1,4 @@
-"""The mechanism of a scene: its bodies, how they move if all gears were conjugate, what loads them."""
+"""The mechanism of a scene: its bodies, their motion if all gears were conjugate, their loads."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Mechanism:
     passing: frozenset[str] = frozenset()
     """Rolling bearings whose elements pass one by one."""
     phases: TrainPhases = NO_PHASES
-    """Positions of the meshes, and what they rest on beyond the geometry."""
+    """Positions of the meshes, and the assumptions on them beyond the geometry."""
 
     @property
     def rotational_inertia(self) -> FloatArray:

@@ -1,4 +1,8 @@
-"""A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic."""
+"""A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic.
+
+A planet is a rotor whose pin a carrier takes along. A frame is the rotating frame of a carrier, in which its
+planets and all shafts on it are described.
+"""
 
 from __future__ import annotations
 
@@ -107,7 +111,7 @@ class Rotor:
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
-    """Gather what belongs to `shaft`."""
+    """Gather the parts on `shaft` into a rotor."""
     parts = [*shaft.bodies, *((body.inertia, body.position) for body in scene.mounted(shaft.name))]
     mass = sum(part.mass for part, _ in parts)
     along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
@@ -132,7 +136,7 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
 
 
 def _damped(support: Support, share: float, tilting: float) -> Support:
-    """Fill in the damping that follows from the damping ratio; that of a matrix in proportion to it.
+    """Fill in the damping by the damping ratio; the damping of a matrix is proportional to the matrix.
 
     `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
     where the matrix holds tilt alone.

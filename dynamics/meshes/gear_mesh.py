@@ -8,7 +8,7 @@ from bounds import Declared, Kind, between, declared, described, one_of, up_to
 from dynamics.checks import declared_fields, finite, not_negative
 from dynamics.meshes.mesh_table import MeshTable, check_table
 
-DEFAULT_DAMPING_RATIO = 0.05
+DEFAULT_DAMPING_RATIO = 0.05  # damping ratio of a mesh where a scene states none
 TECHNIQUES = ("constant_torque", "variable_torque")
 _TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
 _DAMPING = Declared(

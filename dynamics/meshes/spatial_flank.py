@@ -53,7 +53,7 @@ class SpatialFlankLaws(NamedTuple):
     (k, 2).
     """
     follows: IntArray
-    """1 where the force follows the row, 0 where it stays at the fixed value. Shape (k, 2)."""
+    """Whether the force follows the row (1), or stays at the fixed value (0). Shape (k, 2)."""
     per_face: FloatArray
     """1/(face width), 1/m; 0: the force acts at mid-face. Shape (k,)."""
     mid_face: FloatArray

@@ -47,7 +47,7 @@ class StandardTeeth:
         return -before, beyond
 
     def _beyond(self, teeth: int, sign: float) -> float:
-        """Return how far the tip circle of a gear meets the line of action from the pitch point, m."""
+        """Return the distance from the pitch point to a tip circle along the line of action, m."""
         base = self.base_radius * teeth / self.teeth[0]
         pitch_radius = base / math.cos(self.working_pressure_angle)
         tip = pitch_radius * (1.0 + sign * 2.0 * ADDENDUM / teeth)
@@ -55,7 +55,7 @@ class StandardTeeth:
 
 
 def sliding_positions(position: FloatArray) -> FloatArray:
-    """Return positions (P,) of a table with those added that its sliding needs."""
+    """Return positions (P,) of a table, and the further ones that its sliding needs."""
     return np.union1d(position, np.arange(POSITIONS) / POSITIONS)
 
 

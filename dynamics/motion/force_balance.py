@@ -1,4 +1,4 @@
-"""All forces in one state and their derivatives, and loads at their means: what statics starts from."""
+"""All forces in one state and their derivatives, and loads at their means, from which statics starts."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ class ForceBalance:
     stiffness: FloatArray
     damping: FloatArray
     """`stiffness`, `damping`: K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q
-    and v. How forces change with the meshes' positions is left out: of the order of a deflection over a base
-    pitch. Shape (n, n) each.
+    and v. The change of forces with the meshes' positions is left out: it is of the order of a deflection
+    over a base pitch. Shape (n, n) each.
     """
     local: LocalState
     """State of the force elements."""

@@ -1,4 +1,8 @@
-"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds."""
+"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds.
+
+A law is a drive, or the free rotation of a train without a drive; quanta are the parts of a revolution by
+which the rotation of a free train moved into the kinematic motion.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +54,7 @@ def observe(
     quanta: IntArray | None = None,
     carried: FloatArray | None = None,
 ) -> Observed:
-    """Return what the elements do at T states.
+    """Return coordinates and forces of the elements at T states.
 
     `time` (T,), `q` and `v` (T, n); `quanta` (T, k) counts those of free trains moved into the reference.
     Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).

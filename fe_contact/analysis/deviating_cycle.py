@@ -1,4 +1,4 @@
-"""Transmission error over a revolution or a hunting cycle, by derivatives held against exact pitches."""
+"""Transmission error over a revolution or a hunting cycle, by derivatives, with errors by solved pitches."""
 
 from __future__ import annotations
 

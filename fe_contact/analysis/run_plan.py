@@ -30,7 +30,7 @@ _DESIGN = 0.75
 
 @dataclass(frozen=True)
 class PlannedLevel:
-    """One mesh level with its slices: what it is predicted to cost, and its expected error."""
+    """A mesh level with its slices: its predicted cost, and its expected error."""
 
     model: str
     level: str
@@ -137,7 +137,7 @@ class PredictedDesigns(NamedTuple):
     positions: int
     """Number of positions of one design."""
     across_face: bool
-    """Whether the gears are those of three dimensions."""
+    """Whether the gears are condensed in three dimensions."""
     bytes: float
     """Largest resident memory of the process, bytes."""
     table: float
@@ -147,7 +147,7 @@ class PredictedDesigns(NamedTuple):
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
-    """Predict what is solved on condensed gears; nothing is meshed.
+    """Predict the cost of solutions on condensed gears; nothing is meshed.
 
     Parameters
     ----------

@@ -161,7 +161,7 @@ class FlankCompliance3D:
     contact_modulus: float
     """E / (1 - nu^2), Pa."""
     base_helix_angle: float
-    """rad; > 0 is right hand: the same s is further counter-clockwise at larger z."""
+    """Base helix angle, rad; > 0 is right hand: the same s is further counter-clockwise at larger z."""
     teeth: int
     """Number of teeth of the gear."""
     checks: ComplianceChecks

@@ -50,7 +50,7 @@ class _KeyPoints(NamedTuple):
 
 
 def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -> _KeyUpdate:
-    """Return what the key of a right-hand gear adds.
+    """Return the update of the compliance by the key of a right-hand gear.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
 
 
 def _unit_motion(solved: CondensedGear, distances: IntArray) -> FloatArray:
-    """Return what unit forces on the bore of sector 0 move: flank and bore of the sectors `distances`.
+    """Return the displacements of flank and bore of the sectors `distances` under unit forces on bore 0.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """

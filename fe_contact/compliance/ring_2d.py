@@ -82,7 +82,7 @@ def _turned_matrix(matrix: FloatArray, angle: float) -> FloatArray:
 
 
 def flank_matrices(ring: Ring, teeth: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return what loads on flanks move across and along them.
+    """Return the displacements of flanks by loads on flanks, across and along them.
 
     Only rows that the loaded sectors touch are solved for.
 

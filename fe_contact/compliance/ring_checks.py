@@ -19,7 +19,7 @@ class Field:
     """Displacement of the whole mesh under a flank load on one tooth, per unit face width."""
 
     displacement: FloatArray
-    """m per N/m of load. Shape (N, 2)."""
+    """Displacement of the nodes, m per N/m of load. Shape (N, 2)."""
     load: FloatArray
     internal: FloatArray
     """`load`, `internal`: Applied nodal forces and K u, N/m. Shape (N, 2) each."""

@@ -50,7 +50,7 @@ class Condensation:
 def condense(
     tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffness, report: Report = unreported
 ) -> tuple[FloatArray, Condensation]:
-    """Eliminate all freedoms but those `tree` keeps.
+    """Eliminate all freedoms except those that `tree` keeps.
 
     Raises `SolveError`: the stiffness is not positive definite.
 

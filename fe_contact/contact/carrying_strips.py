@@ -45,7 +45,7 @@ class CarryingStrips:
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
-        """Gather them from a solution of a problem."""
+        """Return the carrying strips of a solution of a problem."""
         weights = adjoint(pair, problem, solution)
         at = np.nonzero(weights.weight)
         turned = TurnedForces.of(pair, problem, solution.force)
@@ -115,11 +115,11 @@ class CarryingStrips:
         return np.asarray(opened)
 
     def change(self, opened: FloatArray) -> FloatArray:
-        """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
+        """Return the change of the transmission error by normal approach taken away (k,), (P, L); m."""
         return self._by_row(self.weight * opened)
 
     def arm_change(self, opened: FloatArray) -> FloatArray:
-        """Return the same of the load arm, (P, L) in m; places and shares of the contacts stay."""
+        """Return the change of the load arm, (P, L) in m; places and shares of the contacts stay."""
         return self._by_row(self.arm_weight * opened)
 
     def _by_row(self, values: FloatArray) -> FloatArray:
@@ -129,7 +129,7 @@ class CarryingStrips:
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
     ) -> FloatArray:
-        """Return what material removed at each node of a grid on a flank does, bilinear between nodes.
+        """Return derivatives by material removed at each node of a grid on a flank, bilinear between nodes.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-r"""Strips near a tip edge: where their load presses, and what the corner under them yields.
+r"""Strips near a tip edge: the center of their load, and the yield of the corner under them.
 
 The load patch of finite elements at an edge has one length. The strip is shorter under less load, so that its
 middle is nearer to the edge, where the bodies yield more; and it moves as flanks tilt, less if the edge holds
@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 from host.loops import inner, njit
 
 SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
-"""Columns of a table (..., n, 8), those of `EdgeStrips`."""
+"""Columns of a table of edge strips (..., n, 8), in the order of the fields of `EdgeStrips`."""
 EDGE_REACH = 2.0
 """Distance from an edge over half a patch within which strips may reach it, of twice the largest load too."""
 _SHORTEST = 1e-12
@@ -72,7 +72,7 @@ def no_edges(slices: int) -> FloatArray:
 
 
 class EdgeMotion(NamedTuple):
-    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner."""
+    """Derivatives of the energy E by force and tilt, and the corner's yield that the local law lacks."""
 
     by_force: float
     by_tilt: float
@@ -112,7 +112,7 @@ def edge_position(
 
 @inner(error_model="numpy")
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
-    """Return what a force in N on slice i and a tilt of its flanks do; `edge` (n, 8) is a table."""
+    """Return the motion by a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
     position = edge_position(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
     centroid, middle, turned, twice, growth = position

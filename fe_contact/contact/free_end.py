@@ -40,8 +40,8 @@ class FreeEnds(NamedTuple):
 
     low: float
     high: float
-    """`low`, `high`: Face positions of its ends, m from the pinion's mid-face; infinite where the body goes
-    on.
+    """`low`, `high`: Face positions of the ends of the body, m from the pinion's mid-face; infinite where the
+    body goes on.
     """
     softness: float
     """(psi - 1)/2."""

@@ -136,7 +136,7 @@ def _lowest_valleys(
 def _refinements(
     ways: FloatArray, values: FloatArray, on: IntArray, halving: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where to look next between points (3, n) of contacts `on` (m,), and what a parabola gains."""
+    """Return the next points between points (3, n) of contacts `on` (m,), and the gain by a parabola."""
     places, gains = np.empty(on.size), np.empty(on.size)
     for m in range(on.size):
         i = on[m]
@@ -201,7 +201,7 @@ def samples(
     nodes: Nodes,
     alike: FloatArray,
 ) -> tuple[FloatArray, IntArray]:
-    """Return ways in m at which gaps are looked at, and their contacts, ordered by contact and way.
+    """Return ways in m at which gaps are sampled, and their contacts, ordered by contact and way.
 
     Within windows (n,): a place (n,) to begin at, `parts` (k,) of the window, and nodes. Of those that are no
     further from the one below than `alike` (n,) in m there is none.

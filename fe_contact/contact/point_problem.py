@@ -1,4 +1,8 @@
-"""One position of the contact: the forces of its contacts under given motions of the bodies, compiled."""
+"""One position of the contact: the forces of its contacts under given motions of the bodies, compiled.
+
+The terms contact, curve, strip and arm are those of `fe_contact.contact.newton`. Arrays run over P positions,
+Q rows of bodies that repeat in further base pitches, n slices and m candidates.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +82,7 @@ class PointProblem(NamedTuple):
     """One position: m contacts that can carry force, on n = J K curves of J pairs."""
 
     bodies: FloatArray
-    """Height of curve i per unit force on j, without what is in the local law, m/N. Shape (n, n)."""
+    """Height of curve i per unit force on j without the compliance of the local law, m/N. Shape (n, n)."""
     tilt: FloatArray
     """Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`. Ndarray, shape (n, n), or
     (0, 0) where no radius is above zero.
@@ -110,17 +114,16 @@ class RowBodies(NamedTuple):
     """Slices that any contact can press on. Shape (n,)."""
     compliance: FloatArray
     tilt: FloatArray
-    """`compliance`, `tilt`: See `bodies` and `tilt` of `PointProblem`."""
+    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `there`."""
     curve: FloatArray
     first: IntArray
-    """`curve`, `first`: See `PointProblem`, of the points of one pair. Ndarray, shapes (points, w),
-    (points,).
+    """`curve`, `first`: Arrays of `PointProblem` for the points of one pair. Shapes (points, w), (points,).
     """
 
 
 @inner(error_model="numpy")
 def row_bodies(every: PointProblems, row: int) -> RowBodies:
-    """Return what positions share that repeat row `row` in further base pitches."""
+    """Return the arrays that all positions of row `row` share, in any base pitch."""
     there = every.present[row]
     slices = np.flatnonzero(there)
     motion, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))

@@ -1,4 +1,9 @@
-"""The contact problem of all positions as plain arrays, independent of how they were obtained."""
+"""The contact problem of all positions as plain arrays, independent of their source.
+
+The common face is divided into slices. A candidate is a point at which a pair of teeth can touch; in three
+dimensions a slice has several. A load patch is the stretch of the profile over which a mesh takes the force
+of a candidate. A strip is the true contact width, which the local law resolves within the patch.
+"""
 
 from __future__ import annotations
 
@@ -66,11 +71,11 @@ class LoadedSlices:
     tip_inclinations: tuple[float, float]
     """Tangent of the pressure angle at the tip of either gear."""
     law_length: float
-    """Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
-    local law, what is further in the finite elements.
+    """Reference length that separates the contact from the bodies, m. Compliance nearer to the strip is in
+    the local law, compliance further away in the finite elements.
     """
     edge_load: float
-    """See `PatchRule`."""
+    """Load whose strips the patches at tip edges follow; see `PatchRule`."""
     lateral_shares: tuple[float, float]
     """`fe_contact.hertz.lateral_share` of both gears."""
     turned_normals: FloatArray
@@ -106,7 +111,7 @@ class LoadedSlices:
         return np.asarray(values.reshape(*self.present.shape, -1).mean(axis=2))
 
     def rows(self, keep: IntArray) -> LoadedSlices:
-        """Keep some positions."""
+        """Return the slices at the positions `keep`."""
         return replace(
             self,
             present=self.present[keep],
@@ -126,7 +131,7 @@ class Candidates:
     """
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
     """Pair index; +1 is ahead. Candidates of one pair stand together. Shape (m,)."""
     face_position: FloatArray
@@ -171,7 +176,7 @@ class Candidates:
         return self.gap_at(...)
 
     def gap_at(self, places: Any) -> Gap:
-        """Return the same of some of the candidates, by an index of arrays (P, m)."""
+        """Return the gap about some of the candidates, by an index of arrays (P, m)."""
         normal, touch = math.cos(self.base_helix_angle), self.touch
         return Gap(
             touch.slope[places] * normal,
@@ -245,7 +250,7 @@ class Candidates:
         return replace(self, touch=touch)
 
     def following(self, touch: Touch) -> Candidates:
-        """Return the same candidates with touching points that say how far the middles of strips moved."""
+        """Return the candidates with touching points whose `shift` is that of the middles of strips."""
         there = self.touching(touch)
         return self.touching(replace(touch, shift=touch.shift + there.strips.middle - self.strips.middle))
 
@@ -436,7 +441,7 @@ class ContactProblem:
 
 @njit(cache=True)
 def _displace(compliance: FloatArray, tilt: FloatArray, way: FloatArray) -> None:
-    """Add what patches that are displaced by `way` (Q, n) in m change of the compliance (Q, n, n)."""
+    """Add the change of the compliance (Q, n, n) by patches that are displaced by `way` (Q, n) in m."""
     for q in range(tilt.shape[0]):
         for i in range(tilt.shape[1]):
             for j in range(tilt.shape[1]):

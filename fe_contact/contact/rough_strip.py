@@ -1,4 +1,4 @@
-r"""Strips of rough flanks: the even gap of parabolas that gives way under load as they do.
+r"""Strips of rough flanks: even gaps of parabolas with the same approach under load.
 
 Flanks with waves as short as the strip touch at a crest, then at the crests beside it, then all over: no
 parabola describes that. Two half planes with the true gap are solved under some loads [1]_, and the breaks of
@@ -105,7 +105,7 @@ def rough_strip(gap_of: GapOf, position: FloatArray, curvature: FloatArray, spre
 def _excess(
     gap_of: GapOf, part: IntArray, position: FloatArray, curvature: FloatArray, spread: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how much more than plain ones flanks give way (n, K) under the loads, and centroids (n,).
+    """Return the approach (n, K) of flanks beyond that of plain ones under the loads, and centroids (n,).
 
     What cells miss is the same on plain flanks.
     """
@@ -146,7 +146,7 @@ def half_planes(gap: FloatArray, window: float) -> tuple[FloatArray, FloatArray]
 
 @inner(error_model="numpy")
 def _kernel(count: int, cell: float) -> FloatArray:
-    """Return what a unit force on a cell moves all (2 N - 1,), the mean of -ln|x|; in the middle its own."""
+    """Return the displacements of all cells by a unit force on the middle one, (2 N - 1,): mean -ln|x|."""
     kernel = np.empty(2 * count - 1)
     kernel[count - 1] = 1.0 - math.log(0.5 * cell)
     for d in range(1, count):

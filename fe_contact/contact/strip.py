@@ -62,7 +62,7 @@ class Gap(NamedTuple):
     """
     low: FloatArray
     high: FloatArray
-    """`low`, `high`: Where the bodies end, m; infinite = nowhere near. Shape (n,) each."""
+    """`low`, `high`: Ends of the bodies, m; infinite where there is no end. Shape (n,) each."""
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
@@ -71,7 +71,7 @@ class Gap(NamedTuple):
 
 
 def with_breaks(gap: Gap, count: int) -> Gap:
-    """Return gaps (...,) with at least so many breaks; those that come to them are at infinity."""
+    """Return gaps (...,) with at least `count` breaks; added ones are at infinity."""
     more = max(count - gap.offset.shape[-1], 0)
     width = [(0, 0)] * (gap.offset.ndim - 1) + [(0, more)]
     offset = np.pad(gap.offset, width, constant_values=np.inf)
@@ -251,7 +251,7 @@ class StripMiddles(NamedTuple):
 
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: From the touching point, and half the length, m."""
+    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m."""
     slope: FloatArray
     curvature: FloatArray
     """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an
@@ -343,7 +343,7 @@ def strip_at(
 def _strip_at_edge(
     gap: FloatArray, i: int, value: float, length: float, half: float, side: float
 ) -> tuple[float, float, float, float]:
-    """Return what `strip_at` does of a strip that begins at the lower edge (`side` 1) or ends at the upper.
+    """Return the values of `strip_at` for a strip from the lower edge on (`side` 1) or to the upper edge.
 
     The mean of g' then pushes it against the edge; the pressure there is singular.
     """
@@ -367,7 +367,7 @@ def _strip_at_edge(
 
 @inner(error_model="numpy")
 def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
-    """Return integrals over the angle of a strip of what lies past a break, d from it on.
+    """Return integrals over the angle of a strip of the distance d past a break, from the break on.
 
     Parameters
     ----------

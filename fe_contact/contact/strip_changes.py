@@ -1,4 +1,9 @@
-"""Small changes of the flanks under contact strips: depth, lag, the places of patches, the turn of forces."""
+"""Small changes of the flanks under contact strips: depth, lag, places of patches, turn of forces.
+
+A strip is the width over which a loaded contact touches, about its touching point. A depth is material
+removed from a flank. A lag is the turn of gear 2, along the line of action, that closes the rigid flanks.
+Load patches follow the slope of a gap, and forces turn with it.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +42,9 @@ class Strips:
     """Distance from the pinion's mid-face, m. Shape (k,)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Of the strip from the touching point on, m. Shape (k,) each."""
+    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m. Shape
+    (k,) each.
+    """
 
     def removed(self, gap: GapTerm) -> FloatArray:
         """Return the mean of a gap over the strips (k,), m."""
@@ -69,7 +76,7 @@ class Strips:
         return gap(self.pair, *rolls, self.face) - of_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the means over the strips of what a break removes, m, and of its slope."""
+        """Return the means over the strips of the material that a break removes, m, and of its slope."""
         beyond = start.side * (distance - self.middle)  # from the middle to the break
         jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
         return means_past_break(beyond, self.half, jump, bend)
@@ -131,7 +138,7 @@ class ClosingLag:
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return how far the touching points move (k,), m: those at breaks with these."""
+        """Return the ways of the touching points (k,), m; points at breaks move with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         shift = self.way * slope
@@ -213,7 +220,7 @@ class FollowingPatches:
         return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
     def opened(self, slopes: FloatArray) -> FloatArray:
-        """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
+        """Return the normal approach that small slopes (k,) take away from the candidates (P, L, m), m."""
         c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
         shift.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(shift)[:, None]
@@ -226,7 +233,7 @@ class FollowingPatches:
         return self._times(self.slice_force)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the gap's slope at each strip (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """
@@ -268,7 +275,7 @@ class TurnedForces:
         )
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return what normal approach a gap takes away so over another near it (P, L, m), m."""
+        """Return the normal approach that a gap takes away so over another near it (P, L, m), m."""
         c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
         for gear, slope in enumerate(slopes):
             slope.flat[self.index] = self.closing.slope(gear, gap, over)
@@ -277,7 +284,7 @@ class TurnedForces:
         return c.at_points(motion)
 
     def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a flank of a gear adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the slope of a gear's flank (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """

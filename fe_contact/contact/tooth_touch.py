@@ -26,7 +26,7 @@ _MOVING = ("s_1", "s_2", "gap", "approach_error", *_SLOPES, *Gap._fields)
 
 
 class _Part(NamedTuple):
-    """Some candidates of a touch: rows (k,) of those that the teeth have in common, and what meets there."""
+    """Candidates of a touch: rows (k,) of touching points that teeth share, and the teeth that meet there."""
 
     pair: ParallelAxes
     model: ContactModel
@@ -52,7 +52,7 @@ class _Part(NamedTuple):
 def tooth_touch(
     pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
 ) -> Touch:
-    """Add the gaps of teeth that meet: they slope along the flank, so the least gap is beside the point.
+    """Add the gaps of teeth that meet: they slope along the flank, so that the least gap is nearby.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
 
 
 def _touching(part: _Part) -> tuple[FloatArray, ...]:
-    """Return what `_MOVING` names.
+    """Return the arrays that `_MOVING` names.
 
     Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
     they are not, or where the true gap there is another, it is searched for together with the common gap.
@@ -107,7 +107,7 @@ def _touching(part: _Part) -> tuple[FloatArray, ...]:
 
 
 def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
-    """Step to the least of the common gap and a parabola of the teeth's, and say where that is poor."""
+    """Step to the least sum of the common gap and a parabola of the teeth's gap, and mark poor steps."""
     common, none = part.common, np.zeros(part.face.size)
     half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
     middle = np.clip(none, common.low + half, common.high - half)

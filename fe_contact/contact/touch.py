@@ -1,4 +1,9 @@
-"""Touching points of modified flanks, and the gaps there."""
+"""Touching points of modified flanks, and the gaps there.
+
+The touching point of a pair of teeth on a contact line is the point at which the gap of the rigid flanks is
+least. Breaks are points at which slope or curvature of the gap jump: a relief begins, or a tip is cut. A way
+is a distance along the flank from the touching point of plain involutes.
+"""
 
 from __future__ import annotations
 
@@ -102,7 +107,7 @@ def _shifted(
     gaps: tuple[GapTerm, ...],
     teeth: DeviatingTeeth | None,
 ) -> Touch:
-    """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
+    """Move the touching points to the least sum of conjugate gap, `gaps` and gaps of the teeth."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: values.reshape(touch.gap.size, *values.shape[2:]) for name, values in vars(touch).items()}
     near = Touch(**{name: values[possible] for name, values in plain.items()})
@@ -449,11 +454,11 @@ class _Flanks:
         return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x))
 
     def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
-        """Return what is removed at x, m, of some of the touching points."""
+        """Return the material removed at x from the flanks of some of the touching points, m."""
         return self._removed_at(rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x), of)
 
     def _removed_at(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
-        """Return the same at roll lengths of both gears."""
+        """Return the material removed at roll lengths of both gears, m."""
         return self._designed(rolls, of) + self._of_teeth(rolls, of)
 
     def _of_teeth(

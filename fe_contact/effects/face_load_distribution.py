@@ -34,5 +34,5 @@ class FaceLoadDistribution(Effect):
         return replace(model, across_face=True)
 
     def estimable(self, scene: ContactScene) -> bool:
-        """Return False where a plane would stand for what acts across the face."""
+        """Return False where the reference would be a plane without the parts that act across the face."""
         return not across_face(scene)

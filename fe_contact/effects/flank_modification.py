@@ -96,7 +96,7 @@ def _modification_extent(modification: FlankModification, gear: Tooth, tip_form:
 
 
 def _part_extent(part: FlankPart, gear: Tooth, tip_form: float) -> Extent:
-    """Bound a part by its values on a lattice, and by what it can do between the points."""
+    """Bound a part by its values on a lattice, and by its slopes between the points."""
     grid: FlankGrid | None = getattr(part, "flank_grid", None)
     if grid is not None:
         return grid.extent((gear.form_roll_length, gear.tip_roll_length))

@@ -97,5 +97,5 @@ class PitchError(Effect):
 
 
 def _period(scene: ContactScene) -> int:
-    """Return the pitches requested, or those after which the deviations of both gears repeat together."""
+    """Return the requested period, or the period after which the deviations of both gears repeat together."""
     return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in scene.gears.values()))

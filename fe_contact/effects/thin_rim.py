@@ -12,7 +12,7 @@ from fe_contact.errors import InputError
 
 @dataclass(frozen=True)
 class ThinRim(Effect):
-    """A rim on a web gives way where a solid body does not."""
+    """Compliance of a rim on a web, in place of a solid body."""
 
     name: ClassVar[str] = "thin_rim"
     needs: ClassVar[tuple[str, ...]] = ("gear blank",)

@@ -1,4 +1,4 @@
-"""Gap by what turns with a gear: run-out and wobble of its axis, waves and flanks of its single teeth."""
+"""Gap by deviations that turn with a gear: run-out and wobble, waves, flanks of single teeth."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) 
 
 @dataclass(frozen=True)
 class TurningGap:
-    """Gap along the line of action by what turns with one gear, m."""
+    """Gap along the line of action by the deviations that turn with one gear, m."""
 
     gear: int
     """0 is the pinion, 1 the wheel."""
@@ -48,7 +48,7 @@ class TurningGap:
 
     @classmethod
     def of(cls, index: int, gear: Toothing, period: int) -> TurningGap:
-        """Return that of a gear, 0 the pinion."""
+        """Return the gap of a gear, 0 the pinion, 1 the wheel."""
         flanks = gear.tooth_flanks
         waves = sum(wave.amplitude for wave in gear.waves)
         deviation = max((flank.largest for flank in flanks), default=0.0)
@@ -83,7 +83,7 @@ class TurningGap:
 
     @cached_property
     def extents(self) -> Extent:
-        """Bounds of what turns with the gear, and of the flanks of its teeth, arrays (T,)."""
+        """Bounds of the gaps that turn with the gear, and of the flanks of its teeth, arrays (T,)."""
         out, radius = self.run_out.eccentricity + 0.5 * self.run_out.wobble, self.base_radius
         waves = sum(wave.amplitude for wave in self.waves)
         amplitude, along, order = self._harmonics[:, :3].T

@@ -137,7 +137,7 @@ class MisalignmentRange:
 
     tolerance_class: int
     by_source: Mapping[str, float]
-    """m, to either side, in the plane of action."""
+    """Misalignment by source, m, to either side, in the plane of action."""
 
     @property
     def likely(self) -> float:

@@ -69,7 +69,7 @@ def backlash_rounding(pinion: Toothing, wheel: Toothing, center_distance: float)
 
 
 def _by_shift(pinion: Toothing, wheel: Toothing) -> float:
-    """Return what rounding of both profile shifts does, m; a shift of 0 is none."""
+    """Return the change of backlash by the rounding of both profile shifts, m; a shift of 0 is exact."""
     shifts = [gear.profile_shift_coefficient for gear in (pinion, wheel)]
     shifts = [shift for shift in shifts if shift]
     base_module = pinion.base_pitch / math.pi

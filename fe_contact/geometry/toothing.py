@@ -75,7 +75,7 @@ _OF_TEETH = "Deviations of the loaded flanks of single teeth; teeth without an e
 _TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, maximum=MAX_TEETH)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
-"""Fields in which mating gears agree, but for the hand of external ones."""
+"""Fields in which mating gears agree, except for the hand of the helix of external gears."""
 
 
 def cutter_infeed(thickness_allowance: float, normal_pressure_angle: float) -> float:

@@ -102,7 +102,7 @@ def _show(summary: dict[str, Any]) -> None:
 
 
 def _over_face(load: dict[str, Any]) -> str:
-    """Mean and peak-to-peak of the gears of finite width: those of the plane, corrected."""
+    """Return mean and peak-to-peak of the gears of finite width: those of the plane model, corrected."""
     errors = "mean_over_face_error_um" in load
     mean, ripple = (
         f"{load[f'{name}_over_face_um']:.4g}"
@@ -113,7 +113,7 @@ def _over_face(load: dict[str, Any]) -> str:
 
 
 def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
-    """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
+    """Print the decision about every effect of relevant size, and the change without the effect."""
     columns, rows = ledger_table(ledger)
     title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
@@ -124,7 +124,7 @@ def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
 
 
 def _of_cycle(cycle: dict[str, Any]) -> str:
-    """Return how many base pitches were solved, or why all were."""
+    """Return the number of solved base pitches, or the reason why all were solved, as text."""
     if reason := cycle.get("reason"):
         return f"all {cycle['pitches']} base pitches solved: {reason}"
     solved, pitches = max(cycle["solved"]), cycle["pitches"]
@@ -137,7 +137,7 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
 
 
 def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
-    """Return time by stage and memory in one line, and what there is to say of the table in others."""
+    """Return one line with time by stage and memory, and lines on the table's tolerance."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
     memory = receipt["peak_memory_bytes"] / 2**20
@@ -154,8 +154,8 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\n{_of_cycle(cycle)}"
     for line in _inserted(receipt.get("held_out", {}), newton_metre):
         text += f"\n{line}"
-    if held_out_text := _held_out_errors(receipt.get("held_out", {})):
-        text += f"\nlargest error at held-out points between the nodes: {held_out_text} (in the errors there)"
+    if errors_text := _validation_errors(receipt.get("held_out", {})):
+        text += f"\nlargest error at held-out points between the nodes: {errors_text} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
     for line in tolerance_lines(receipt, newton_metre):
@@ -176,7 +176,7 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
             yield f"{name} inserted for interpolation: {values} {word}"
 
 
-def _held_out_errors(axes: dict[str, Any]) -> str:
+def _validation_errors(axes: dict[str, Any]) -> str:
     texts = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]

@@ -13,7 +13,7 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
-    """Return the case in a file, at one load and alignment if requested; warn of what is implausible.
+    """Return the case in a file, at one load and alignment if requested; warn of implausible values.
 
     Raises `BadInput`: the file holds no case, or no such pair exists.
     """

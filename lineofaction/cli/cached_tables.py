@@ -19,13 +19,13 @@ from service.version import program_tag
 
 @dataclass(frozen=True)
 class CachedTables:
-    """The tables of cases: those of runs before, and those that are computed now."""
+    """Tables of cases, from the cache of earlier runs or computed now."""
 
     compute: Callable[[Case], SteDatabase]
 
     @staticmethod
     def file(case: Case) -> Path:
-        """Return where the table of a case is kept, if it is."""
+        """Return the path of the table of a case in the cache, present or not."""
         content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
         return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
 

@@ -1,4 +1,4 @@
-"""``loa compare``: pages of two results, designs or flanks beside each other."""
+"""``loa compare``: pages that compare two results, designs or flanks."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def run_compare(
     *,
     as_json: bool,
 ) -> None:
-    """Write the page; print what differs and what is not shown to; `of` are the torque and the recording."""
+    """Write the page; print differences above their errors; `of` are the torque and the recording."""
     check_writable(output)
     page = compare(files, view, *of)
     write_page(page, output)

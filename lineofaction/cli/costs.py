@@ -22,8 +22,8 @@ from lineofaction.gearbox.subjects import with_inline_cases
 from model_studies.progress import ANNOUNCED
 
 _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
-"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
-counts."""
+"""CPU seconds of reading a run, of a second of sound, and of a second of sound at a microphone, with the
+figures of hearing."""
 
 
 def study_cost(
@@ -63,7 +63,7 @@ def listening_cost(seconds: float, *, housings: int = 0) -> StudyCost:
 
 
 def announce_cost(verb: str, costs: Sequence[StudyCost | None]) -> None:
-    """Say on standard error what a verb will take, if that is more than a moment and can be predicted."""
+    """Print the predicted cost of a verb on standard error, if it is known and more than a moment."""
     total = sum(filter(None, costs), StudyCost(()))
     if None not in costs and total.seconds > ANNOUNCED:
         sys.stderr.write(in_lines(f"loa {verb}: {total.text}", sys.stderr) + "\n")

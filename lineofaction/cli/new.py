@@ -65,7 +65,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
 
 
 def text_of_kind(kind: str, wanted: PairWishes) -> str:
-    """Return the file of a kind; it is read once, so that what is written can be run.
+    """Return the file of a kind; the written file is read once as a check that it can be run.
 
     Raises `BadInput`: no such pair exists.
     """

@@ -112,7 +112,7 @@ def run_study(study: Study, options: Json) -> None:
 
 @contextmanager
 def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options: Json) -> Iterator[None]:
-    """Say on standard error what the study will take, if that is more than a moment and can be predicted."""
+    """Print the predicted cost of the study on standard error, if it is known and more than a moment."""
     if not options["json"]:
         costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
         if study.run.tables and options.get("service") is None:
@@ -186,7 +186,7 @@ def _made(
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
-    """Return names of results: what tells their files apart."""
+    """Return names of results, the shortest that distinguish their files."""
     names = [file.path.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
     return [str(file) for file in files] if len(set(names)) < len(names) else names
 
@@ -224,7 +224,7 @@ def _output_files(output: Path, study: Study) -> list[Path]:
 
 
 def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str, Writer]:
-    """Return what writes a result, by the ending of the file; `subject` is what was studied."""
+    """Return the writers of a result by the ending of the file; `subject` is the case or scene studied."""
     run, page = study.run, presentation_of(study)
 
     def write_result_page(result: Any, file: Path) -> None:
@@ -258,7 +258,7 @@ def _csv(study: Study, result: Any) -> str:
 
 
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
-    """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
+    """Print the main results, tables and lines, and the whole cost: tables, workers, other children."""
     presentation = presentation_of(study)
     parts = list(presentation.text(result))
     said = {part for part in parts[:_MAX_SAID] if isinstance(part, str)}

@@ -1,4 +1,4 @@
-"""``loa status``: the results of a folder, and what the verbs that make them are predicted to cost."""
+"""``loa status``: the results of a folder, and the predicted cost of the verbs that renew them."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def run_status(folder: Path, *, as_json: bool) -> None:
 
 
 def _reason(error: BadInput) -> str:
-    """Say in a line what a verb refuses, without what to try: the verb says it."""
+    """Return the refusal of a verb in a line, without its suggestion, which the verb prints."""
     return "; ".join(str(replace(fault, suggestion="")) for fault in error.faults)
 
 

@@ -13,7 +13,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import inputs_in, usual_speeds
 from lineofaction.gearbox.schemas import read_model, validated
 from lineofaction.gearbox.schemas.model import BoundaryModel
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.studied import OverSpeeds
 from lineofaction.gearbox.study import Study
@@ -21,12 +21,12 @@ from lineofaction.gearbox.subjects import scene_of
 
 
 def assessed_scene(file: Path | InputFile) -> tuple[SceneInput, Path]:
-    """Return the scene in a file and the folder its files are relative to; warn of what its import left out.
+    """Return the scene in a file and the folder of its files; warn of omissions of its import.
 
     Raises `BadInput`: the file holds no scene.
     """
     scene, folder = scene_of(file)
-    warn(left_out_warnings(scene.left_out))
+    warn(omission_warnings(scene.left_out))
     return scene, folder
 
 
@@ -52,7 +52,7 @@ def inputs_of_study(
 
 
 def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
-    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    """Return the number of speeds that inputs need if neither speeds nor a run are named; 0: none."""
     if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
         return 0
     return inputs.usual_speeds

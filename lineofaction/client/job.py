@@ -1,4 +1,4 @@
-"""A job of a service, and what it leaves."""
+"""A job of a service, and its results."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class PageAddress:
     names: Mapping[str, str]
     """The database by its hash and jobs by their identifiers, the newest last."""
     case: schemas.Case | None
-    """The design as typed, where it is not that of the result or of a job."""
+    """The design as typed; None: the design of the result or of a job."""
     views: Mapping[str, str]
     """Words that say how the page looks at the results."""
 
@@ -167,7 +167,7 @@ class PageCalls(Surface):
 
     @operation
     def result_at(self, address: str) -> Steps[str]:
-        """Return what names the result of an address: a content hash, for `fetch`, or a job's identifier.
+        """Return the name of an address's result: a content hash, for `fetch`, or a job's identifier.
 
         Raises `BadInput`: it is no address of this service's page, or names nothing computed; `Unreachable`,
         `ServiceError`.
@@ -201,7 +201,7 @@ class PageCalls(Surface):
         return self.session.exchange.read(lambda examples: dict(examples[0]), "GET", "/v1/examples")
 
     def _case_of(self, name: str, value: str) -> Steps[Any]:
-        """Return the case of a database or of a job, of a scene that of its first mesh; None: it has none."""
+        """Return the case of a database or a job, for a scene the case of its first mesh; None: none."""
         read = self.session.exchange.read
         if name == "database":
             return (yield from read(lambda figures: figures.get("case"), "GET", f"{RESULTS}/{value}"))

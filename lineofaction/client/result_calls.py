@@ -1,4 +1,4 @@
-"""Stored results: their files, their figures, and what the service answers from them."""
+"""Calls on stored results: files, figures, and answers that the service computes from them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Column = float | Collection[float]
 
 
 class LiveOptions(TypedDict, total=False):
-    """Options of `ste`, in the words of a case file; what is left out is as in the case."""
+    """Options of `ste` by the names of a case file; the case supplies the options that are left out."""
 
     misalignment_um: float
     center_distance_change_mm: float
@@ -82,7 +82,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Its content hash.
+            Content hash of the result.
         kind : str
             A name of `lineofaction.gearbox.registry.RESULT_KINDS`.
         """
@@ -128,7 +128,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Its content hash.
+            Content hash of the result.
         against : str, optional
             Another result of the same kind, table or run: the report then compares both.
         """
@@ -159,7 +159,7 @@ class ResultCalls(Surface):
         key : str
             Content hash of the run.
         quantity, bearing, mesh, direction : str
-            As the options of ``loa listen``; empty: chosen as there.
+            Choices as by the options of ``loa listen``; empty: the defaults of these options.
         against : str, optional
             Another run, whose sound is then on the same full scale.
         """
@@ -222,7 +222,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Of the database.
+            Content hash of the database.
         torque_n_m : sequence of float
             Increasing, at most twice the highest of the case.
         **options

@@ -20,9 +20,9 @@ from lineofaction.gearbox.problems import (
 
 T = TypeVar("T")
 AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
-"""Raised while a service is away or busy, which jobs outlast."""
+"""Errors while a service is away or busy, which jobs outlast."""
 STOPS = (KeyboardInterrupt, CancelledError)
-"""Raised where the caller stops an operation."""
+"""Exceptions by which the caller stops an operation."""
 AWAY_PAUSE_S = 0.5
 """Seconds before a service that was away is asked again."""
 _GROWTH = 1.1
@@ -39,11 +39,12 @@ class JobState:
     status: str
     message: str
     stage: str
-    """`id`, `process`, `status`, `message`, `stage`: As in the service's status document."""
+    """`id`, `process`, `status`, `message`, `stage`: Members of the service's status document of these names.
+    """
     progress: int
-    """Per cent of the whole job."""
+    """Progress of the whole job in per cent."""
     stage_progress: int
-    """Per cent of the stage."""
+    """Progress of the stage in per cent."""
     warnings: tuple[dict[str, Any], ...] = ()
     """Implausible inputs: check, field, value, unit, message; empty in lists of jobs."""
     created: str = ""
@@ -56,8 +57,8 @@ class JobState:
     subject: str = ""
     """Subject of the job in words."""
     differences: tuple[dict[str, Any], ...] = ()
-    """The first inputs that differ from those of the caller's job before it of the same process, or from the
-    defaults: field, before, value.
+    """The first inputs that differ from the inputs of the caller's job before it of the same process, or from
+    the defaults: field, before, value.
     """
     priority: int = 0
     remaining_s: float | None = None
@@ -98,7 +99,7 @@ class JobState:
 
     @classmethod
     def cached(cls, process: str) -> JobState:
-        """Return the state of what was taken from the client's cache; it is no job of the service."""
+        """Return the state of a result from the client's cache; it is no job of the service."""
         return cls("", process, "successful", "Taken from the cache.", "", 100, 100)
 
     @classmethod
@@ -201,7 +202,7 @@ def note_continuing(error: BaseException, job: str) -> None:
 
 
 def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
-    """Return what `once` returns, which is run again while the service is away, for `patience` seconds."""
+    """Return the value of `once`, which runs again while the service is away, for `patience` seconds."""
     begin = time.monotonic()
     while True:
         try:

@@ -32,7 +32,7 @@ class Session:
     patience: float
     """Seconds for which the service may be away while a job is waited for."""
     progress: Watch | None
-    """Called with every state seen of any job that is waited for."""
+    """Function that is called with every new state of any job that the client waits for; None: none."""
     terms: Mapping[str, Any] = field(default_factory=dict)
     """Terms of every submission beside its inputs, such as title and tags, as the body of the request has
     them."""
@@ -120,5 +120,6 @@ class Listing(_Method, Generic[P, T]):
 
 
 operation, listing = Operation, Listing
-"""The two classes as decorators: `operation` of generators of steps, `listing` of those of steps and items.
+"""The two classes as decorators of generators: `operation` of a generator of steps, `listing` of a generator
+of steps and items.
 """

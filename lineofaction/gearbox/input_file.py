@@ -90,7 +90,7 @@ class Override:
 
     @classmethod
     def of(cls, text: str) -> Override:
-        """Return what ``PATH=VALUE`` says: a value as TOML has it, or else a text; none leaves the field out.
+        """Return the override of ``PATH=VALUE``: a TOML value, or else a text; no value leaves the field out.
 
         Raises `BadInput`: it has another form.
         """
@@ -102,7 +102,7 @@ class Override:
 
 
 def _value(text: str) -> Any:
-    """Return what was typed, as TOML has it."""
+    """Return the value of a typed text in TOML's types."""
     if not text:
         return None
     try:

@@ -22,7 +22,7 @@ yields no request."""
 
 
 class _TableSource(Protocol):
-    """Who holds and computes STE databases."""
+    """A source of STE databases, which stores and computes them."""
 
     def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Return the database of a content hash."""
@@ -37,7 +37,7 @@ class MeshTables:
     Parameters
     ----------
     folder : Path
-        What the files that the scene names are relative to.
+        Folder to which the names of files in the scene are relative.
     source : object
         ``by_hash`` and ``by_case`` return databases.
     """

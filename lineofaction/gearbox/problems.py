@@ -67,7 +67,7 @@ def _value_text(value: object) -> str:
 
 
 def _pieces(value: object) -> Iterator[str]:
-    """Yield what `repr` would write, piece by piece, so that no more of a long list is written than shown."""
+    """Yield the text of `repr` piece by piece, so that of a long list only the shown part is written."""
     if type(value) is list:
         yield "["
         for index, item in enumerate(value):
@@ -182,7 +182,7 @@ class TryLater(_Failed):
 
     @classmethod
     def after(cls, seconds: int, message: str) -> Self:
-        """Return the error of what is possible again in so many seconds."""
+        """Return the error of a request that is possible again after a number of seconds."""
         error = cls(message)
         error.retry_after_s = seconds
         return error
@@ -197,7 +197,7 @@ class QueueFull(TryLater):
 
 
 class NotAnalyzed(_Failed):
-    """There is nothing to answer a live question from."""
+    """The service lacks what a live question is answered from."""
 
     status = 409
     type = f"{_OURS}not-analysed"

@@ -36,7 +36,7 @@ STUDIES = "lineofaction.gearbox.studies"
 
 
 class _Caller(Protocol[S_contra, C_co]):
-    """Whose attributes the studies are, each as what this makes of it."""
+    """Owner of the attributes that are studies: it makes a process of each study."""
 
     def process(self, study: S_contra, /) -> C_co: ...
 
@@ -52,7 +52,7 @@ class Takes(Generic[P, Q, T, F]):
     subject: str
     """Kind of input that is studied: a case, a scene, or either."""
     work: Callable[[], object]
-    """Loads the `Computation`."""
+    """Function that loads the `Computation`."""
     from_file: bool = False
     """Whether the inputs are a file of the verb and a mapping of the client, rather than options."""
     bare: bool = False
@@ -105,7 +105,8 @@ class Study:
     """Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     """
     further: tuple[str, ...] = ()
-    """Endings of files that the verb writes beside those of all studies. CSV can be printed too."""
+    """Endings of files that the verb writes in addition to the files of all studies. CSV can be printed too.
+    """
     several: bool = False
     """Whether the verb takes several files."""
     housed: bool = False
@@ -202,13 +203,13 @@ class StudyFunction(Generic[Q, T]):
         inputs, fields
             What is varied, in the units of the names; `help` of the function lists it.
         run : RunResult, optional
-            Whose bearing forces a study of housings takes.
+            Run whose bearing forces a study of housings takes.
         workers : Workers, optional
-            Who does the tasks; default: this process.
+            Executor of the tasks; default: this process.
         progress : callable, optional
             Called as progress(stage, fraction).
         folder : Path, optional
-            Where to put the runs that a study keeps.
+            Folder for the runs that a study stores.
 
         Returns
         -------

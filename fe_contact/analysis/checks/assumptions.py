@@ -26,7 +26,8 @@ from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 
 MIN_BACKLASH = 1e-9
-"""m; teeth without a thickness allowance have none but rounding."""
+"""Least backlash that counts, m. Teeth without a thickness allowance have only rounding errors as backlash.
+"""
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Assumption:
 
 
 def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
-    """Check everything that a table took for granted on what it computed."""
+    """Check all assumptions of a table on its results."""
     return (
         *_tip_edges(run, _ripples(run)),
         *_neglected(run),
@@ -73,12 +74,12 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
 
 
 def check_single_point(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
+    """Check the assumptions of flank results and root stress: depth of edges relative to the deflection."""
     return (*_tip_edges(run, np.abs(_means(run))), *check_cheaply(run))
 
 
 def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what needs nothing but the solution."""
+    """Check the assumptions that the solution alone can show."""
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), *_crests(run), _load_patches(run))
 
 
@@ -92,7 +93,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
     is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
-    if not run.edges_left_out:
+    if not run.edges_neglected:
         return
     effect = run.checked.request.named("corner_contact")
     pairs = zip(run.places.places, run.edge_depths, strict=True)
@@ -118,7 +119,7 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects neglected for the tolerance: estimate and bound of their influence beside what was computed."""
+    """Check the effects neglected for the tolerance: estimate and bound of their influence."""
     request = run.checked.request
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)

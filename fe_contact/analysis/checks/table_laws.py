@@ -204,7 +204,7 @@ class _AlignmentLaws:
             )
 
     def _softening(self, largest: FloatArray) -> FloatArray:
-        """Return the relative change (P,) that a compliance may have beside gaps that close.
+        """Return the relative change (P,) of a compliance that has other causes than gaps that close.
 
         By forces that move to tip edges: there the torque has another lever arm than the motion, so that load
         and deflection follow no energy. And by flanks that roll as they deflect by the `largest` amounts (P,)

@@ -1,8 +1,9 @@
-"""Pitches of a table by derivatives about those that are solved: its arrays, curves and their errors.
+"""Base pitches of a table by derivatives about solved pitches: arrays, curves and their errors.
 
-What a base pitch adds to that of other teeth is found to first order: transmission error, shares of the
-load, its centroid and its arm. All else is that of the state whose tangent counts at the position; the
-largest pressure of a pair of teeth is Hertz's, as the root of its share.
+A period has many base pitches where teeth differ; a state is one of them that was solved, or the contact of
+the nominal gears. The difference of a base pitch from a state is found to first order in transmission error,
+shares of the load, its centroid and its arm. All other arrays are those of the state whose tangent counts at
+the position. The largest pressure of a pair of teeth is Hertz's, as the root of its share.
 """
 
 from __future__ import annotations
@@ -59,7 +60,7 @@ def _table_rows(pair: ParallelAxes, c: Candidates) -> FloatArray:
 
 
 def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str, NDArray[Any]]:
-    """Return the arrays of a table of a state, and what others follow from."""
+    """Return the arrays of a state that a table stores, and the arrays that others follow from."""
     problem, solution = state.problem, state.solution
     pressure, edge = pressed = contact_pressure(problem, solution.force)
     depth = edge_depth(point, problem, solution) if edges else np.zeros(solution.load.size)
@@ -314,7 +315,7 @@ def _drawn_errors(envelope: Envelope) -> tuple[float, float]:
 
 
 def _with_pressed(envelope: Envelope) -> Envelope:
-    """Solve the pitches, too, in which the pressure is largest by what the others tell."""
+    """Solve also the pitches in which the pressure is largest by derivatives."""
     _, flank, edge = _shares_and_pressures(envelope, envelope.minimum)
     largest = np.maximum(flank, edge).max(axis=(1, 2, 3))
     pressed = np.argsort(-np.where(envelope.solved, 0.0, largest), kind="stable")[:BATCH]
@@ -327,7 +328,7 @@ def _support_arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[An
 
 
 def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
-    """Return what a receipt says of the contact in pitches that were not solved."""
+    """Return the receipt's fields of the contact in pitches that were not solved."""
     shape = envelope.minimum.ste.shape
     return {
         "status": np.full(shape, int(Status.CONVERGED)),
@@ -340,7 +341,7 @@ def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
 def _contact(
     first: SolvedContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
 ) -> SolvedContact:
-    """Return what a table keeps; problem and forces are those of the first pitch."""
+    """Return the contact as a table stores it; problem and forces are those of the first pitch."""
     solved = {
         name: _flat(envelope.exact_in(values, envelope.arrays[name][1:])) for name, values in arrays.items()
     }

@@ -1,4 +1,10 @@
-"""The least of tangents over all pitches of a cycle, about the nominal gears and pitches that were solved."""
+"""The envelope of a cycle: the least of tangents over all base pitches, about solved states.
+
+A cycle is the period of base pitches after which the teeth of both gears meet again. A state is the solved
+contact of one base pitch, or of the nominal gears. A tangent is the transmission error to first order in the
+gaps of teeth about a state. It lies above the solution (`tangents`), so that the least of several tangents is
+nearest to it.
+"""
 
 from __future__ import annotations
 
@@ -253,9 +259,9 @@ class Envelope:
 
     @property
     def next(self) -> IntArray:
-        """The `BATCH` pitches to solve next, none beside another.
+        """The `BATCH` pitches to solve next, no two of them neighbors.
 
-        First those that may hold an end of the range, then those furthest from what stands for them.
+        First come pitches that may hold an end of the range, then those furthest from their tangent's state.
         """
         ends = self._beyond.max(axis=(0, 2))
         ends = np.argsort(-ends, kind="stable")[: min(BATCH // 2, np.count_nonzero(ends > 0.0))]
@@ -287,11 +293,11 @@ class Envelope:
 
     @property
     def ste(self) -> FloatArray:
-        """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
+        """Transmission error (T, P, L), m: solved, or the least tangent less its mean error."""
         return self.exact_in(self.minimum.ste - self.drawn_errors.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
-        """Return one quantity that is followed in the same way, (T, P, L)."""
+        """Return the followed quantity q, corrected as the transmission error is, (T, P, L)."""
         values = self.minimum.sums[..., q] - self.drawn_sum_errors(q).correction
         return self.exact_in(values, self.exact_sums[..., q])
 
@@ -302,7 +308,7 @@ class Envelope:
         return values
 
     def nearest(self, name: str) -> NDArray[Any]:
-        """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
+        """Return the kept array of the state whose tangent is least, by its name, (T, P, L, ...)."""
         p, load = np.indices(self.minimum.state.shape[1:])
         return np.asarray(self.arrays[name][self.minimum.state, p, load])
 
@@ -314,7 +320,7 @@ class Envelope:
         return errors
 
     def sum_errors(self, q: int) -> FloatArray:
-        """Return the same of one quantity that is followed; both ends may be missed by the most."""
+        """Return the errors of curves of the followed quantity q; both ends may have the largest error."""
         drawn = self.drawn_sum_errors(q)
         errors = drawn.quantity_errors
         errors[PEAK_TO_PEAK] = 2.0 * drawn.error
@@ -348,7 +354,7 @@ def chosen(
 
 
 def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
-    """Whether derivatives give mean and peak-to-peak within a part of what is allowed, at all loads.
+    """Whether derivatives give mean and peak-to-peak within a part of the tolerance, at all loads.
 
     The mean is that of nominal gears: deviations turn the gears, and it may be zero.
     """

@@ -5,8 +5,8 @@ a tooth does at each position is found once for every tooth of either gear, not 
 meets in a hunting cycle.
 
 At a given load the transmission error is concave in the gaps: where teeth part, others take over. So a
-tangent lies above it, and of several tangents the least counts. Flanks that slope touch beside the point at
-which their gap is taken, some nanometers closer; what drawn pitches are missed by holds that too.
+tangent lies above it, and of several tangents the least counts. Flanks that slope touch near the point at
+which their gap is taken, some nanometers closer; the errors measured in drawn pitches contain that.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class ToothGaps:
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (J,)."""
     period: int
-    """Base pitches after which the gears are taken to show the same teeth again."""
+    """Number of base pitches after which the same teeth of both gears count as meeting again."""
     gears: tuple[FloatArray, FloatArray]
     """Gap by each of the R teeth of the pinion and of the wheel, m; zero where no candidate is. Tuple of
     ndarray, shape (J, P, R, M).
@@ -38,7 +38,7 @@ class ToothGaps:
 
     @classmethod
     def of(cls, pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> ToothGaps:
-        """Find those of the `tooth_gaps` of a model, where the flanks without them touch."""
+        """Return the `tooth_gaps` of a model where the flanks without them touch."""
         first, second = (_by_tooth(pair, candidates, gear, model) for gear in (0, 1))
         return cls(np.unique(candidates.pair), model.period, (first, second))
 
@@ -83,7 +83,7 @@ class LoadSums:
         return self.value[p, load] - self.at_state[p, load] + self._added(gaps, pitches, t, p, load)
 
     def about(self, gaps: ToothGaps, pitch: int) -> LoadSums:
-        """Return the same about the state of a base pitch."""
+        """Return the means about the state of a base pitch."""
         p, load = (index.ravel() for index in np.indices(self.value.shape[:2]))
         added = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
         return replace(self, at_state=added.reshape(self.value.shape))
@@ -116,7 +116,7 @@ class Tangent:
     """Means over the load about the same state."""
 
     def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
-        """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
+        """Return the motion by the teeth that meet in pitches (t,), over the state, (J, t, P, L) in m."""
         (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
         beyond = driving - self.at_state[:, None]
         motion = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
@@ -146,7 +146,7 @@ class SolvedState:
 
 
 def nominal_tangent(gaps: ToothGaps, state: SolvedState) -> Tangent:
-    """Return the tangent about the gears without what differs from tooth to tooth."""
+    """Return the tangent about the gears whose teeth are alike."""
     (tangent,) = _tangents(gaps, state, 1)
     return tangent
 
@@ -187,6 +187,6 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
 
 
 def _sums_by_tooth(added: FloatArray, loads: int) -> FloatArray:
-    """Return what teeth add (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
+    """Return the contributions of teeth (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
     by_tooth = np.swapaxes(added, 1, 2)
     return np.ascontiguousarray(by_tooth).reshape(*by_tooth.shape[:3], loads, -1)

@@ -1,4 +1,4 @@
-"""Errors of what excites at one load of a table: transmission error, arm of the load, sense of sliding."""
+"""Errors of the excitations at one load of a table: transmission error, load arm, sense of sliding."""
 
 from __future__ import annotations
 

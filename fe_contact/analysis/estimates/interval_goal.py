@@ -41,4 +41,6 @@ class IntervalGoal:
 
 
 GoalOf = Callable[[SteDatabase], IntervalGoal]
-"""Returns the goal of a table: inserted nodes have errors of their own."""
+"""Function that returns the goal of a table. Inserted nodes have errors too, so that the goal follows the
+table.
+"""

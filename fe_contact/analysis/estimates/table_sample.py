@@ -25,7 +25,7 @@ class TableSample:
     position: FloatArray
     """Positions of the table in the first base pitch. Shape (P,)."""
     period: int
-    """Base pitches T."""
+    """Number T of base pitches."""
     axes: Axes
     """Loads, misalignments, changes of the center distance."""
     rows: IntArray
@@ -103,7 +103,7 @@ class TableSample:
         return Start(problem.candidates, np.nan_to_num(force))
 
     def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
-        """Return those of the table's places, which do not depend on the bodies.
+        """Return the contact candidates of the table's points, which do not depend on the bodies.
 
         None in other slices and under other load patches, which have candidates of their own.
         """

@@ -57,7 +57,7 @@ class LoadDistribution:
     """One load on P positions, N tooth pairs and K stretches of the common face, several a slice."""
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (N,)."""
     face_position: FloatArray
@@ -66,8 +66,8 @@ class LoadDistribution:
     """Static transmission error, m. Shape (P,)."""
     roll_length_1: FloatArray
     roll_length_2: FloatArray
-    """`roll_length_1`, `roll_length_2`: Where the flanks touch or come closest, on either gear, m. Shape (P,
-    N, K) each.
+    """`roll_length_1`, `roll_length_2`: Roll lengths on either gear at which the flanks touch or come
+    closest, m. Shape (P, N, K) each.
     """
     on_path: BoolArray
     """Whether any part of the stretch lies between A and E, where plain involutes touch. Shape (P, N, K)."""
@@ -159,7 +159,7 @@ class LoadDistribution:
         return _estimate(largest, self.errors.largest_face_load_factor, "1")
 
     def at(self, positions: BoolArray) -> LoadDistribution:
-        """Return the same at some of the positions (P,), without errors."""
+        """Return the load distribution at some of the positions (P,), without errors."""
         per_position = {name: getattr(self, name)[positions] for name in _PER_POSITION}
         edge = np.broadcast_to(self.at_edge, self.force.shape)[positions]
         return replace(self, **per_position, at_edge=edge, errors=FlankErrors())
@@ -181,7 +181,7 @@ class LoadDistribution:
 
     @property
     def mean_face_load_factor(self) -> float:
-        """K_Hbeta of the face load averaged over all positions: what it is over a mesh cycle."""
+        """K_Hbeta of the face load averaged over all positions of a mesh cycle."""
         return float(_largest_over_mean(self.face_load.mean(axis=0)))
 
     @property
@@ -196,7 +196,7 @@ class LoadDistribution:
         return _over_mean_of(self.line_load, self._meshing)
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
+        """Return all fields with units, and derived ones: line load, factors, contact patterns."""
         from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
         return content(self).to_xarray()
@@ -294,7 +294,7 @@ def _estimate(value: float, relative: float | None, unit: str) -> Estimate:
 
 
 def _windows(values: Stretches, count: int) -> Stretches:
-    """Return so many stretches beside each other of values (..., K), (..., K + 1 - count, count)."""
+    """Return windows of `count` neighboring stretches of values (..., K), (..., K + 1 - count, count)."""
     return np.lib.stride_tricks.sliding_window_view(values, count, axis=-1)
 
 

@@ -58,9 +58,9 @@ class RootStressHistory:
     """Surface stress of the tooth roots of one gear."""
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
-    """Pair index of each tooth: those that touch, and one beyond at either end, which only neighbors load.
+    """Pair index of each tooth: the touching teeth, and one more at either end, which only neighbors load.
     Shape (N,).
     """
     flank_coordinate: FloatArray
@@ -94,7 +94,7 @@ class RootStressHistory:
     """
 
     def at(self, positions: BoolArray) -> RootStressHistory:
-        """Return the same at some of the positions (P,)."""
+        """Return the stress at some of the positions (P,)."""
         rows = {name: getattr(self, name)[positions] for name in ("position", "stress", "near_load")}
         return replace(self, **rows)
 
@@ -129,7 +129,7 @@ class RootStressHistory:
         return crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
 
     def passage(self) -> RootPassage:
-        """Return what one tooth meets, all its pairs' positions in a row.
+        """Return the stress of one tooth over its passage through mesh, the positions of all pairs in a row.
 
         Positions in several base pitches are of several teeth, which then stand beside each other.
         """

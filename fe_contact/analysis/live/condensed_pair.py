@@ -60,7 +60,7 @@ class _Latest:
 
 @dataclass(frozen=True)
 class CondensedPair:
-    """Gears with their compliance, as a table had them."""
+    """Gears with the compliance of a table, for other flanks, loads and alignments."""
 
     checked: Checked
     """Request of the table, its model bound to the bodies of the table."""
@@ -200,7 +200,7 @@ class CondensedPair:
     def posed(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
     ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
-        """Return what the contact is solved with: request, bodies with the flanks, positions and plan.
+        """Return the data of a contact solution: request, bodies with the flanks, positions and plan.
 
         Parameters and errors are those of `table`.
         """
@@ -265,7 +265,7 @@ class CondensedPair:
         return bodies, operating_points(scene, request.choices, bodies.fine)
 
     def _at(self, change: float) -> CondensedContacts:
-        """Return the contacts at a change of the center distance in m; those requested last are kept."""
+        """Return the contacts at a change of the center distance in m; the latest ones stay in memory."""
         if change == 0.0:
             return self.contacts
         if change not in self._by_distance:
@@ -306,7 +306,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 
 
 def _plain(pair: Any) -> list[object]:
-    """Return what a pair is but for the modification of its flanks."""
+    """Return the pair without the modification of its flanks."""
     gears = pair.pinion, pair.wheel
     sizes = [getattr(pair, part.name) for part in fields(pair) if part.name not in ("pinion", "wheel")]
     for gear in gears:

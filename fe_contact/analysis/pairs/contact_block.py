@@ -50,7 +50,7 @@ class ContactBlock:
     """
 
     def start(self, model: int) -> Start | None:
-        """Return what the solution of a model is started from."""
+        """Return the forces that the solution of a model starts from."""
         return None if self.starts is None else Start(self.candidates, self.starts[model])
 
 

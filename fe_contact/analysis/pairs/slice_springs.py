@@ -1,4 +1,4 @@
-"""Contact of uncoupled slices: every slice of every tooth pair is a spring of its own.
+"""Contact of uncoupled slices: every slice of every tooth pair is an independent spring.
 
 The error d of springs with stiffness k_i, gap g_i and lever arms a_i (motion) and t_i (torque) obeys
 

@@ -1,4 +1,4 @@
-"""Contact of an operating point over many base pitches: solved in parts, and what a table keeps of it.
+"""Contact of an operating point over many base pitches, solved in parts and reduced to stored arrays.
 
 The touching points of a whole hunting cycle take gigabytes. Parts of its base pitches are laid out, solved
 and reduced one after the other: memory holds those of one part beside the arrays of the table.

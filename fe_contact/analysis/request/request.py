@@ -76,7 +76,7 @@ class Request:
 
     @property
     def scene(self) -> ContactScene:
-        """The scene that the effects assess by: what is neglected is not in it."""
+        """Scene by which effects decide, without neglected parts."""
         scene = self.complete_scene
         for name in self.neglected:
             scene = scene.effect(name).without(scene) or scene
@@ -88,7 +88,7 @@ class Request:
 
     @property
     def model_effects(self) -> tuple[str, str]:
-        """Names of the effects that tell the models apart: the face, and the finite width of a plane."""
+        """Names of the effects that decide about the model: the face, and the finite width of a plane."""
         return self.named("across_face"), self.named("finite_width")
 
     @property
@@ -104,7 +104,7 @@ class Request:
 
     @property
     def model_chosen(self) -> bool:
-        """Whether the caller chose the model, or one of the effects that tell the models apart."""
+        """Whether the caller chose the model, or one of the effects that decide about it."""
         return any(self.requested_choices.get(name, "auto") != "auto" for name in self.model_effects)
 
     @property
@@ -114,7 +114,7 @@ class Request:
         return self.requested_choices | overrides
 
     def to_json(self) -> Json:
-        """Return plain JSON in SI units: what decides the result."""
+        """Return the inputs that decide the result as plain JSON in SI units."""
         return self.options.to_json() | {
             "pair": written(self.pair),
             "normal_force": self.load.tolist(),

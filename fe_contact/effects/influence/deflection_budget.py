@@ -35,8 +35,8 @@ class DeflectionBudget:
     """
     teeth: Both
     bodies: Both
-    """`teeth`, `bodies`: Bending, shear and compression of the teeth with what they are clamped in; body, web
-    and seat. Shape (ndarray, ndarray) each.
+    """`teeth`, `bodies`: Bending, shear and compression of the teeth with their foundations; deflection of
+    body, web and seat. Shape (ndarray, ndarray) each.
     """
     shafts: FloatArray
     """Bending of shafts and bearings."""

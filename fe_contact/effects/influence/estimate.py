@@ -47,7 +47,7 @@ def estimate_influence(
     name: str,
     minimum: float = 0.0,
 ) -> EstimatedInfluence | None:
-    """Estimate what leaving the effect `name` out of the model changes.
+    """Estimate the change of results without the effect `name` of the model.
 
     Parameters
     ----------

@@ -9,7 +9,9 @@ from fe_contact.types import Json
 from model_studies.ablation import TRIFLE
 
 RIPPLE_FLOOR = 20e-9
-"""m; per cent of a peak-to-peak below this are not given: it is what meshes and springs leave uncertain."""
+"""Least peak-to-peak STE whose relative change is stated, m. Meshes and springs leave smaller ripples
+uncertain.
+"""
 
 
 _UM = 1e6

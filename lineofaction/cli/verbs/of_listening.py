@@ -63,7 +63,7 @@ class _HousingOptions:
         str,
         typer.Option(
             metavar="X,Y,Z",
-            help="Where the sound pressure is heard, in mm in the frame of the scene: free field.",
+            help="Microphone of the sound pressure in a free field, in mm in the frame of the scene.",
             show_default="none",
         ),
     ] = ""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 from bounds import inside
 from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import (
     FlankModification,
     Gear,
@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 Toothed = TypeVar("Toothed", bound=Toothing)
 THICK = 10.0
-"""Face widths from bore to root up to which `check_request` refuses no disc: rounding leaves less than a
-tenth of what it allows."""
+"""Distance from bore to root in face widths up to which `check_request` accepts every disc: rounding takes
+less than a tenth of its tolerance."""
 PLANE = ("plane_strain", "plane_stress")
 """Models that a case may state, and that have no misalignment."""
 
@@ -65,7 +65,7 @@ def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[st
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-        That of the case.
+        Gear pair of the case.
     changes : mapping
         Figures of flanks of "pinion" and "wheel" by their fields, within the bounds of these.
     """
@@ -104,7 +104,7 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
 
 def _modification(gear: ToothingInput, plain: Callable[[], Toothing]) -> FlankModification:
     """Return the modification of a gear; `plain` makes the gear without it."""
-    fields, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
+    fields, starts = in_si(FlankModification, gear), DrawingStarts(**in_si(DrawingStarts, gear))
     return FlankModification(**fields | starts.lengths(fields, plain))
 
 
@@ -116,7 +116,7 @@ def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:
 
 
 def table_axes(case: Case) -> TableAxes:
-    """Return what the table of a case is computed over, in SI."""
+    """Return the axes of the table of a case, in SI."""
     load, errors, allowed = case.load, case.errors, allowed_misalignment(case)
     with boundary_errors():
         return TableAxes(
@@ -153,7 +153,7 @@ def analysis_options(case: Case) -> AnalysisOptions:
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:
-    """Return the options of a case for a study, which measures its errors and repeats what it must."""
+    """Return the options of a case for a study, which measures its errors and repeats passes."""
     return replace(options, receipt="full", on_violation="repeat")
 
 
@@ -194,11 +194,11 @@ def operating_point(case: Case) -> OperatingPoint:
 
 
 def case_json(case: Case) -> Json:
-    """Return the case with all defaults, as JSON: what is hashed and echoed."""
+    """Return the case with all defaults as JSON, which is hashed and echoed."""
     return case.model_dump(mode="json")
 
 
 def case_as_filed(case: Case) -> Json:
-    """Return the case with its title block, on which no result depends: what a file has."""
+    """Return the case with its title block, as in a file; no result depends on the title block."""
     block = {} if case.report is None else {"report": case.report.model_dump(mode="json")}
     return case_json(case) | block

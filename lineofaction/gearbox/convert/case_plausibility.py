@@ -17,7 +17,7 @@ from lineofaction.gearbox.units import factor, unit_name
 
 
 def case_warnings(checked: CheckedCase) -> list[Json]:
-    """Return what is implausible about a case, before anything is computed.
+    """Return warnings about implausible values of a case, before anything is computed.
 
     Raises `BadInput`: no such pair, or nothing passes where it complains.
     """
@@ -55,7 +55,7 @@ def _phrased(content: Json, name: Callable[[str], str]) -> Json:
 
 
 def _field_in(case: Case) -> Callable[[str], str]:
-    """Return what names fields as this case has them: a material may be that of both gears."""
+    """Return a function to the field as the case has it: a material may be that of both gears."""
     case_field = on_demand("lineofaction.gearbox.convert.boundary_names:case_field")
 
     def field(name: str) -> str:

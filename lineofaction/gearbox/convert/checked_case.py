@@ -1,4 +1,4 @@
-"""Cases that can be computed: what a schema cannot check and a request can afford."""
+"""Cases with the checks that a schema cannot do: feasibility and predicted cost."""
 
 from __future__ import annotations
 
@@ -53,12 +53,12 @@ class CheckedCase:
 
     @property
     def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
-        """All three, as the library takes them."""
+        """Pair, axes and options, as the library takes them."""
         return self.pair, self.axes, self.options
 
     @cached_property
     def feasible(self) -> Checked:
-        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        """The request with all its effects; refusals on submission come from here. Raises `BadInput`."""
         return self._checked(neglect=False)
 
     @cached_property
@@ -84,7 +84,7 @@ class CheckedCase:
             return check_request(*converted, check_size=check_size, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
-        """Return what a study requests of the library: made once, for its check and for its work.
+        """Return the request of a study to the library, made once for its check and for its work.
 
         Raises `BadInput`.
         """
@@ -135,7 +135,7 @@ def check_case(case: Case) -> ParallelAxes:
 
 
 def check_plain_case(case: Case) -> ParallelAxes:
-    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+    """Return the pair of a case of loads alone, as `check_case` does, without modules that compute.
 
     A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
     a disc that is too thin; whether one may be is decided here.

@@ -37,7 +37,7 @@ from model_studies import in_unit
 KM_H = 1.0 / 3.6
 HARMONICS, TOLERANCE = 10, 0.05
 NEAREST, NAMED = 6, 3
-"""Harmonics that are listed beside a complaint, and that are named where none passes."""
+"""Number of harmonics listed around the order of a complaint, and number named if none passes."""
 EXCITATION, HARMONIC = "excitation", "harmonic number"
 """Grounds on which harmonics near a complaint are ranked: by the force that excites, or, where no force is
 known, as if the force fell with the number of the harmonic.
@@ -114,7 +114,7 @@ class Complaint:
 
     @property
     def marks(self) -> Json:
-        """Return what plots mark: values by the labels of axes, and the order by which results count.
+        """The marks of plots: values by the labels of axes, and the order by which results count.
 
         `meshes` have it by which runs and tables count: by the pitches of a mesh, over speed and torque of
         its driving gear.
@@ -218,7 +218,7 @@ def _harmonics(fields: ComplaintInput) -> int:
 def _complaint(
     fields: ComplaintInput, excitations: Sequence[Excitation], shaft: str, speed: float | None, **known: Any
 ) -> Complaint:
-    """Return the complaint at a speed of a shaft, rad/s, about what passes per revolution of it.
+    """Return the complaint at a speed of a shaft, rad/s, with excitations per revolution of the shaft.
 
     `known` are attributes of it that follow from what the complaint is about.
     """
@@ -240,7 +240,7 @@ def _drivers(every: Iterable[Excitation], scene: SceneInput) -> dict[str, tuple[
 
 
 def leading_shaft(moving: Scene) -> str:
-    """Return the first driven shaft, which speeds of studies are those of."""
+    """Return the first driven shaft, to which speeds of studies refer."""
     return next((part.shaft for part in moving.references if part.speed.extreme), moving.references[0].shaft)
 
 
@@ -306,7 +306,7 @@ def _as_written(every: Iterable[Excitation], scene: SceneInput) -> list[Excitati
 
 
 def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
-    """Return the answer to a complaint that nothing passes: what is nearest, and how far it is."""
+    """Return the answer to a complaint without a cause: the nearest harmonics and their distances."""
     name = "frequency_hz" if fields.order is None else "order"
     meshes = [line for line in complaint.passing if line.excitation.kind == MESH] or complaint.passing
     nearest = "; ".join(
@@ -319,7 +319,7 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
 
 
 def sentence(complaint: Complaint) -> str:
-    """Say what is heard and what it is."""
+    """Return a sentence on the sound and its likely cause."""
     first = grouped(complaint.within)[0]
     subject = f"order {engineering(complaint.order, 4)} of {complaint.shaft}"
     if complaint.speed is not None and complaint.frequency is not None:
@@ -329,7 +329,7 @@ def sentence(complaint: Complaint) -> str:
 
 
 def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
-    """Return what passes, that of parts of a kind that pass alike at every speed together."""
+    """Return the excitations, grouped by parts of a kind that excite alike at every speed."""
     groups: dict[tuple[str, str, int, str], list[Passing]] = {}
     for line in every:
         of = line.excitation
@@ -352,7 +352,7 @@ def harmonic_label(alike: Sequence[Passing]) -> str:
 
 
 def offset_text(complaint: Complaint, line: Passing) -> str:
-    """Say where a harmonic passes, and how far from the complaint."""
+    """Return the order of a harmonic and its distance from the complaint, as text."""
     hertz = complaint.hertz(line.order)
     if hertz is None or complaint.frequency is None:
         at, offset = f"order {engineering(line.order, 4)} of {complaint.shaft}", ""

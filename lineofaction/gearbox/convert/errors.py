@@ -46,7 +46,7 @@ class _CaseReader(Reader):
         return of_name if unit else Unit("", of_name.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
-        """Return the field's unit for what is measured like it; of lengths mm, um for small ones."""
+        """Return the field's unit for a value of its kind; for lengths mm, for small ones um."""
         of_name = unit_of(self.name)
         if of_name and of_name.si == unit != "m":
             return of_name
@@ -58,7 +58,7 @@ class _CaseReader(Reader):
         )
 
     def field_value(self, value: Any) -> Any:
-        """Return a value in the unit of its field, rounded to what was typed; lists and tables one by one."""
+        """Return a value in the unit of its field, rounded to the typed number; lists entry by entry."""
         unit = factor(self.name)
         if isinstance(value, dict):
             return {boundary_name(key): self.at(key).field_value(item) for key, item in value.items()}

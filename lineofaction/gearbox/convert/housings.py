@@ -43,7 +43,7 @@ _NUMBERED = re.compile(r"^housings\[(\d+)\]")
 
 
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
-    """Return the field that holds the file of a solid, how its name ends, and what is in it.
+    """Return the field of the file of a solid, the ending of its name, and its content.
 
     Raises `BadInput`: another kind of file, damaged content, or a mesh that names further files, which are
     not here.
@@ -64,7 +64,7 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
 
 
 def response_content(housing: HousingInput) -> tuple[str, bytes]:
-    """Return how the name of the file of a measured housing ends, and what is in it.
+    """Return the ending of a measured housing's file name, and the content of the file.
 
     Raises `BadInput`: another kind of file, or damaged content.
     """
@@ -151,7 +151,7 @@ def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
 
 @identity_cached
 def housings_of(pairs: tuple[tuple[HousingInput, ReducedHousing | None], ...]) -> tuple[Housing, ...]:
-    """Return housings, reduced those that are given by their solids; scenes that have the same share them.
+    """Return housings, those with solids reduced; scenes with the same solids share them.
 
     Measured ones are left out.
     """

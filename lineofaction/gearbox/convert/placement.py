@@ -29,7 +29,7 @@ class Placement:
         return cls(np.stack([x, np.cross(z, x), z], axis=1), MM * np.array(origin_mm))
 
     def points(self, of_file: Sequence[float] | FloatArray) -> FloatArray:
-        """Return where points (..., 3) of the file are in the scene."""
+        """Return the positions in the scene of points (..., 3) of the file."""
         return np.asarray(np.asarray(of_file) @ self.axes.T + self.origin)
 
     @property

@@ -12,14 +12,14 @@ from dynamics.scene import Scene
 from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.boundary_names import scene_field
 from lineofaction.gearbox.convert.case_plausibility import in_boundary_terms, unique
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 
 
 def scene_warnings(
     inputs: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
 ) -> list[Json]:
-    """Return what is implausible about a scene, and about the tables of its meshes.
+    """Return warnings about implausible values of a scene and of the tables of its meshes.
 
     Raises `BadInput`: the parts of the scene do not fit each other.
 
@@ -35,7 +35,7 @@ def scene_warnings(
     with named(""):
         findings = [finding.to_json() for finding in scene_findings(scene)]
     of_file = [finding for finding in findings if _in_file(inputs, finding["field"])]
-    warnings = left_out_warnings(inputs.left_out) + measured_warnings(inputs)
+    warnings = omission_warnings(inputs.left_out) + measured_warnings(inputs)
     warnings += in_boundary_terms(of_file, scene_field)
     for index, mesh in enumerate(inputs.meshes):
         warnings += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
@@ -66,6 +66,6 @@ def _in_file(inputs: SceneInput, field: str) -> bool:
 
 
 def within(warning: Json, owner: str) -> Json:
-    """Return a warning of a case as one of what the case is part of."""
+    """Return a warning of a case as a warning of its owner, a scene or a request."""
     field = f"{owner}.case.{warning['field']}"
     return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}

@@ -16,12 +16,12 @@ EQUAL = 1e-9
 """Relative tolerance of ratios: they are ratios of whole numbers, solved in floating point."""
 
 _MAX_ROTORS = 300
-"""Number of rotors from which a train is not solved; so many take 0.1 s."""
+"""Number of rotors from which a train is not solved: 300 rotors take 0.1 s."""
 
 
 @dataclass(frozen=True)
 class Train:
-    """The rotors of a train and what their ratios are."""
+    """The rotors of a train, and the equations between their speeds."""
 
     rotors: tuple[int, ...]
     """Ids of the rotors, in the sequence of the columns of `rows`."""

@@ -36,11 +36,11 @@ class OperatingPoint:
     share: float
     """Share of the time, 0 to 1."""
     speeds: Mapping[int, float]
-    """rad/s about u, by shaft."""
+    """Speeds about u, rad/s, by shaft."""
     torques: Mapping[int, float | None]
-    """N m about u from outside, by external load; None where it follows from the others."""
+    """Torques about u from outside, N m, by external load; None: the torque follows from the others."""
     powers: Mapping[int, float]
-    """W into the unit, by external load whose torque is not stated."""
+    """Powers into the unit, W, by external load whose torque is not stated."""
     forces: Mapping[int, tuple[float, ...]]
     """Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
     moment about u is 0.
@@ -48,7 +48,7 @@ class OperatingPoint:
 
     @staticmethod
     def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
-        """Return the load cases of the first spectrum, or what components themselves state as one case."""
+        """Return the load cases of the first spectrum, or the components' own values as one case."""
         unit_parts = unit.of_type("shaft", "external_load", "gear_unit")
         cases = unit.load_cases()
         for number, spectrum in enumerate(unit.model.spectra[1:], 2):
@@ -80,7 +80,7 @@ def _share(case: tuple[Part, ...]) -> float | None:
 def _point(
     name: str, number_and_share: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
 ) -> OperatingPoint:
-    """Return an operating point: what a case sets counts before what the component itself states."""
+    """Return an operating point; values of a load case replace values of the component itself."""
     parts = [*unit_parts, *case]
     loads = [part for part in parts if part.type == "external_load"]
     speeds = {

@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes
 
 SAME_POSITION = 1e-6
-"""m; file and sum of lengths agree to rounding."""
+"""Length in m up to which the length in the file and the sum of the sections are equal."""
 
 _LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
 

@@ -91,7 +91,7 @@ def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
 def _say_without_mesh(
     layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
-    """State which stages have a case but no mesh in the scene, but for those of equal planets."""
+    """State the stages with a case but without a mesh in the scene, except stages of equal planets."""
     meshed = {stage.stage.id for stage in shafts.stages}
     meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
@@ -132,7 +132,7 @@ def _gravity(layout: Layout) -> list[float]:
 
 
 def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
-    """Return how often the first planet of each set is there, and at which angles."""
+    """Return the number of planets of each set, which copy the first, and their angles."""
     tables = []
     for planets in layout.rotors.sets:
         first = planets.planets[0]

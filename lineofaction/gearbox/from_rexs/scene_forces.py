@@ -39,7 +39,7 @@ class SceneForce:
     the shaft's end."""
 
     def entry(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return what an entry of a load case's forces says at an operating point.
+        """Return the entry of a load case's forces at an operating point.
 
         The moment about the axis is not in it: torques drive and load the train.
         """
@@ -50,7 +50,7 @@ class SceneForce:
         return {"name": self.name, "force_n": _digits(force), "moment_n_m": _digits(moment)}
 
     def table(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return its table in a scene that runs at an operating point."""
+        """Return the table of the force in a scene that runs at an operating point."""
         return {**self.entry(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 
@@ -105,7 +105,7 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
 
 
 def _refuse(layout: Layout, load: Part, reason: str) -> None:
-    """State of a load's forces and moments, its own and those of load cases, that they are left out."""
+    """State that a load's forces and moments are left out, also those of load cases."""
     cases = (part for case in layout.unit.load_cases() for part in case if part.id == load.id)
     for part in (load, *cases):
         for item in FORCES:

@@ -41,12 +41,12 @@ class Inspected:
     cutoff_mm: float | None
 
     def chart(self, case: Case) -> Chart:
-        """Return how the teeth of its sheet follow each other."""
+        """Return the chart from the sheet's teeth to their sequence in mesh."""
         return Chart(_gear(case, self.gear), self.loaded, self.gear == "pinion")
 
 
 def measured_case(case: Case, text: str, name: str, of: Inspected) -> tuple[Case, MeasuredGear]:
-    """Return a case with what the text of a sheet says of one gear, and the account of its lines.
+    """Return a case with the measured deviations of one gear by a sheet, and the account of its lines.
 
     Raises `BadInput`: a line that is none, a trace that cannot be evaluated, or a gear that cannot be.
     """
@@ -73,7 +73,7 @@ def _gear(case: Case, name: str) -> Toothing:
 
 
 def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
-    """Return the case with the fields of gears in place of those they had; it is one that can be computed."""
+    """Return the case with other fields of its gears; the case is checked to be computable."""
     content = case_json(case)
     for name, replacement in fields.items():
         replaced = {*replacement, *(_PITCHES if {*replacement} & {*_PITCHES} else ())}

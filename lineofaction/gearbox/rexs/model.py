@@ -1,4 +1,4 @@
-"""A REXS model as its file says it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
+"""A REXS model as its file has it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Attribute:
 
 @dataclass(frozen=True)
 class Component:
-    """A part of the gear unit, or what a load case sets of it.
+    """A part of the gear unit, or the values of a part under a load case.
 
     `line` is that of its element in an XML file, from 1; None in other forms. Components that differ in it
     alone are equal.
@@ -121,7 +121,7 @@ class Model:
         return next((component for component in self.components if component.id == number), None)
 
     def mapped(self, change: Callable[[str, Component], Component]) -> Model:
-        """Return the model with what `change` makes of each place and component, load cases included."""
+        """Return the model with `change` applied to each place and component, load cases included."""
         places = (location for location, _ in self.all_components())
 
         def changed(parts: Iterable[Component]) -> tuple[Component, ...]:
@@ -135,7 +135,7 @@ class Model:
         return replace(self, components=components, spectra=tuple(spectra))
 
     def all_components(self) -> Iterator[tuple[str, Component]]:
-        """Yield the components with their place in the file, those of load cases too."""
+        """Yield the components with their places in the file, including components of load cases."""
         yield from ((f"component {component.id}", component) for component in self.components)
         for spectrum in self.spectra:
             for case in spectrum.cases:
@@ -147,7 +147,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Document:
-    """A model and the files that lie beside it in its archive, by their names."""
+    """A model and the other files of its archive, by their names."""
 
     model: Model
     files: Mapping[str, bytes] = field(default_factory=dict)

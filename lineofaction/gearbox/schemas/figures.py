@@ -34,13 +34,13 @@ class Source:
 
 
 class Part(BaseModel):
-    """A part of figures. A service of a later version may add members, which are kept."""
+    """A part of figures. It keeps members that a service of a later version adds."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
 
 class Figures(Part):
-    """Figures of a result, and what is known of its file."""
+    """Figures of a result and of its file."""
 
     hash: str
     """Content hash of the input, the name of the result."""
@@ -71,7 +71,7 @@ class TableFigures(Figures):
         pressure_by_tooth_mpa: list[float] | None = None
 
     class InsertedNodes(Part):
-        """Values of the axes that were inserted between those requested, to meet the tolerance."""
+        """Values of the axes that were inserted between the requested values to meet the tolerance."""
 
         torque_n_m: list[float] = Field(default_factory=list)
         normal_force_n: list[float] = Field(default_factory=list)
@@ -184,7 +184,7 @@ class ExcitationFigures(Part):
 
 
 Excitations = Annotated[list[ExcitationFigures], Source("excitations", missing=[])]
-"""Excitations of a linear response; empty where the forces are those of a run."""
+"""Excitations of a linear response; empty if the forces come from a run."""
 Ledger = Annotated[Json, Source("effect_ledger", document=True, turned=boundary_ledger)]
 """The effect ledger of a scene."""
 Seconds = Annotated[dict[str, float], Source("seconds")]

@@ -1,4 +1,4 @@
-"""Housings as files beside a scene file, and all files that a table names, read and written out in it."""
+"""Files that a scene's housings name, and all files that a table names: read and written out in it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONS
 """Endings of the files whose content goes along with the scene, by the fields that name the files."""
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
 Content: TypeAlias = tuple[Table, Table]
-"""Fields of a file that those of its housing replace, and fields that replace those of the housing."""
+"""Fields from a file that the fields of its housing override, and fields that override those."""
 Contents: TypeAlias = dict[tuple[str, Path], Content]
 
 

@@ -18,7 +18,7 @@ _LARGEST_FILE = 16_000_000
 
 
 def in_folder(folder: Path) -> Find:
-    """Return what finds files by their names relative to a folder."""
+    """Return a function that finds files by their names relative to a folder."""
     return lambda name, _field: folder / name
 
 

@@ -1,4 +1,4 @@
-"""A channel of a recording: values over time, or over another abscissa, with what its file says of them."""
+"""A channel of a recording: values over time, or over another abscissa, with facts of its file."""
 
 from __future__ import annotations
 

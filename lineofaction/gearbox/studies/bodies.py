@@ -30,7 +30,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Body:
-    """A part of a unit: what it is, its name, where its axis crosses z = 0, m, and its rings."""
+    """A part of a unit: its kind, its name, the point where its axis crosses z = 0, m, and its rings."""
 
     kind: str
     name: str

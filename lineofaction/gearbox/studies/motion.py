@@ -52,7 +52,7 @@ class UnitMotion:
 
 @dataclass(frozen=True)
 class OfferedMotion:
-    """A motion of a result: in which group it is listed, what it is, and what makes it."""
+    """A motion of a result: its group, its name, and the function that makes it."""
 
     group: str
     name: str

@@ -1,4 +1,4 @@
-"""Predicted cost of the runs of a scene, measured on a few steps of it."""
+"""Predicted cost of the runs of a scene, measured on a few of their steps."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Receipt = Literal["minimal", "full"]
 def runs_cost(
     scene: SceneInput, runs: Callable[[Scene], tuple[list[float], float]], receipt: Receipt | None = None
 ) -> StudyCost | None:
-    """Return the cost of runs of a scene: so many times its steps each, and CPU seconds beside the steps.
+    """Return the cost of runs of a scene: number of runs times steps, and CPU seconds outside the steps.
 
     None: nothing predicts it.
     """

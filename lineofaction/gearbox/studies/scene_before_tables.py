@@ -14,7 +14,7 @@ from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case
@@ -35,7 +35,7 @@ _POSITIONS = 48
 
 @dataclass(frozen=True)
 class SceneText:
-    """A scene by its text: what is made of the last ones is kept, since several verbs are of the same."""
+    """A scene whose text is the key of a cache: several verbs work on the same scene."""
 
     text: str
     scene: SceneInput = field(compare=False)
@@ -66,7 +66,7 @@ def scene_in_motion(written: SceneText) -> Scene | None:
     pairs = _pairs(scene)
     if pairs is None:
         return None
-    geometry = {name: PairFacts.of(pair) for name, pair in pairs.items()}
+    geometry = {name: PairGeometry.of(pair) for name, pair in pairs.items()}
     return check_scene(scene, geometry, {name: _usual_table(pair) for name, pair in pairs.items()})
 
 

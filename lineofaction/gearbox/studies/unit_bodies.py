@@ -59,7 +59,7 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
 
 
 def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.float32]:
-    """Return how the points of all surfaces among the bodies of a scene move per freedom, (p, 3, n), 32 bits.
+    """Return the motion of all points of a scene's surfaces per freedom, (p, 3, n), 32 bits.
 
     `freedom` are the names of a system's freedoms. No points: none of these moves a housing.
     """

@@ -49,7 +49,7 @@ def _over_face(curve: Curve) -> tuple[str, str]:
 
 
 def edge_text(pressure: float) -> str:
-    """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
+    """Return text on the pressure (Pa) of contacts at an edge, separate from the flank's; empty for 0."""
     if pressure <= 0.0:
         return ""
     return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"

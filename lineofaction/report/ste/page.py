@@ -63,7 +63,7 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
 
 
 def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
-    """Show what one database says of its pair; the deflection is split at the load nearest to `force` (N)."""
+    """Show the results of a pair's database; the deflection is split at the load nearest to `force` (N)."""
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair, tolerance_class_of(database)),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
@@ -82,7 +82,7 @@ def _transmission_error(database: SteDatabase) -> Section:
 
 
 def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
-    """Show the mesh stiffness and what yields.
+    """Show the mesh stiffness and the deflections by part.
 
     Over a longer period the deflection holds the teeth's errors, and a secant through them means nothing.
     """
@@ -104,7 +104,7 @@ def _flanks(database: SteDatabase) -> tuple[Section, ...]:
 
 
 def static_making(database: SteDatabase) -> tuple[Section, ...]:
-    """Show how exact the database is, what it cost, and what it was made from."""
+    """Show the errors of the database, its cost, and its inputs."""
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
     if bias := metadata.receipt.get("bias"):
@@ -151,7 +151,7 @@ def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
-    """Tabulate both gears beside each other, then the rest of the case."""
+    """Tabulate both gears side by side, then the rest of the case."""
     pair = case.get("pair")
     if not isinstance(pair, dict) or not {"pinion", "wheel"} <= set(pair):
         return (settings_table("Case", case),)

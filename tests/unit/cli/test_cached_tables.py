@@ -55,7 +55,7 @@ def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDat
     before, after = (scene.databases["mesh"] for scene in (first, again))
     for name in before.stored:
         np.testing.assert_array_equal(getattr(before, name), getattr(after, name), err_msg=name)
-    assert (before.facts, before.metadata) == (after.facts, after.metadata)
+    assert (before.geometry, before.metadata) == (after.geometry, after.metadata)
 
 
 def test_an_unchanged_case_is_analyzed_once(computed: list[SteDatabase], tmp_path: Path) -> None:

@@ -119,7 +119,7 @@ class FlankChange:
         return bool(np.all(self.after.quantiles()[2, :, 0] <= self.requirement))
 
     def verdict(self) -> str:
-        """Return what the change brings of all orders of the mesh, in a sentence."""
+        """Return a sentence on the change of all orders of the mesh together."""
         low, median, high = self.change_quantiles[:, :, 0]
         at = int(np.argmax(median))
         band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"
@@ -134,7 +134,7 @@ class FlankChange:
         return f"{said}: {band}, {100.0 * self.louder_share[at, 0]:.0f} % of the pairs get louder."
 
     def required(self) -> str:
-        """Return whether the requirement is met, in a sentence; empty where there is none."""
+        """Return a sentence on whether the requirement is met; empty without a requirement."""
         if self.requirement is None:
             return ""
         high = self.after.quantiles()[2, :, 0]
@@ -159,7 +159,7 @@ class FlankChange:
                 )
 
     def partings(self) -> Iterator[str]:
-        """Yield where flanks would part, so that no linear response holds."""
+        """Yield sentences on load cases in which flanks part, so that no linear response holds."""
         for name, design in (("before", self.before), ("after", self.after)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
                 torque = f"{self.torque[load]:.4g} N m"

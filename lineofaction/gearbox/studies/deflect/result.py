@@ -13,6 +13,7 @@ from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from model_studies import in_unit
+from model_studies.record import under_key
 
 HARMONICS = 5
 RIGID_DIAMETER = 0.08
@@ -41,15 +42,15 @@ class MeshFlanks:
     face_load_factor: float
     """K_Hbeta over the cycle; NaN in the plane."""
     load_arm_difference: float = field(metadata=in_unit("m"))
-    """Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
-    plane.
+    """Arm of the load on the flanks less the arm in the table by which the shafts were deflected, m; NaN in
+    the plane.
     """
     largest_pressure: float = field(metadata=in_unit("pa"))
     """Largest pressure on the flanks, Pa."""
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
-    """`face_position`, `face_load`: Along the face from the pinion's mid-face, m; mean load over the cycle
-    there, N/m. Shape (41,) each.
+    """`face_position`, `face_load`: Positions along the face from the pinion's mid-face, m, and mean load
+    over the cycle there, N/m. Shape (41,) each.
     """
     roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
     """Roll length of the pinion, m. Shape (40,)."""
@@ -82,7 +83,7 @@ class Outline:
 
     @staticmethod
     def of(scene: Scene) -> Outline:
-        """Return the outline of a scene; bearings are those to the ground and planet bearings."""
+        """Return the outline of a scene; bearings are bearings to the ground and planet bearings."""
         index = {shaft.name: k for k, shaft in enumerate(scene.shafts)}
         supports = (*scene.ground_bearings, *scene.planet_bearings)
         pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]
@@ -122,7 +123,7 @@ class GearboxDeflection:
     """CPU time, including the tables and housings that were made for the study."""
     scene: Json = field(default_factory=dict)
     """The scene as it was written, without the cases; empty in files of versions that did not keep it."""
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Facts, among them the bodies of the picture; empty in files of versions that did not store them."""
 
 
@@ -139,7 +140,7 @@ def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:
 
 
 def _pitch_diameters(scene: Scene) -> dict[str, float]:
-    """Return the operating pitch diameter of every gear in its first mesh, m; of others that of the base."""
+    """Return the operating pitch diameter of every gear in its first mesh, else its base diameter, m."""
     diameter = {gear.name: 2.0 * gear.base_radius for gear in scene.gears}
     seen: set[str] = set()
     for mesh, line in zip(scene.meshes, mechanism_of(scene).lines, strict=True):

@@ -51,7 +51,7 @@ class SceneHousings:
 
     @classmethod
     def of(cls, subject: HousedScene, means: Means) -> SceneHousings:
-        """Return those of a scene."""
+        """Return the housings of a scene."""
         return cls(subject.housings, {part.name: part.bushings for part in subject.inputs.housings}, means)
 
     def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
@@ -179,7 +179,7 @@ def received_run(name: str, run: RunResult, housings: SceneHousings, receiver: R
 
 
 def recording_metadata(recording: Recording) -> Json:
-    """Return what a recording holds, in its unit."""
+    """Return the facts of a recording, in its unit."""
     return {
         "quantity": recording.quantity,
         "unit": recording.unit,

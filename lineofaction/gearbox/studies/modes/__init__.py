@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.studied import MAX_SPEEDS, Orders, OverSpeeds,
 
 
 class Inputs(OverSpeeds):
-    """Speeds at which modes are looked for, beside those at rest."""
+    """Speeds at which modes are computed, in addition to modes at rest."""
 
     at_rest: ClassVar[bool] = True
     speed_rpm: Row[Speed] = Field(

@@ -44,8 +44,8 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
     )
     microphone_mm: Point | None = Field(
         default=None,
-        description="Where the sound pressure is found too, x, y, z in mm in the frame of the scene: free "
-        "field; default: the microphone of the scene's complaint, if it has one",
+        description="Microphone of the sound pressure in a free field, x, y, z in mm in the frame of the "
+        "scene; default: the microphone of the scene's complaint, if it has one",
         examples=[[40.0, 60.0, 1000.0]],
     )
 
@@ -191,13 +191,13 @@ class NoiseFigures(Figures):
     """
 
     class BearingSound(Part):
-        """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
+        """Levels by order, then by speed: by the force of a bearing alone, and without this force."""
 
         alone_db_a: Annotated[list[list[float]], Source("bearing_alone_level")]
         without_db_a: Annotated[list[list[float]], Source("level_without_bearing")]
 
     class LoudPoint(Part):
-        """An order at a speed at which it is louder than at the speeds beside it."""
+        """An order at a speed at which it is louder than at the neighboring speeds."""
 
         order: float
         speed_rpm: float

@@ -21,7 +21,7 @@ from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, SOUND_TRIALS = 3, 8
 PAIRS = 32
-"""Over which start and optimum are told: a few CPU seconds."""
+"""Number of pairs over which start and optimum are compared: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _LIST = (Strict(False), Field(min_length=1, max_length=64))
 Torques = Annotated[tuple[Load, ...], *_LIST]
@@ -63,11 +63,11 @@ class GearVariablesInput(BoundaryModel):
 
 @with_fields({figure.field: _deviation(figure) for figure in _FREE})
 class GearScatterInput(BoundaryModel):
-    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+    """Standard deviations of one gear's modifications as manufactured; one that is left out is 0."""
 
 
 class ScatterInput(BoundaryModel):
-    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+    """Independent normal deviations from the design, and the quadrature rule of their expectation."""
 
     misalignment_um: float = Field(
         default=0.0,
@@ -193,7 +193,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
     @model_validator(mode="after")
     def _orders_in_range(self) -> Self:
-        """Refuse orders that are not heard, and misalignments of other load cases."""
+        """Refuse orders beyond the computed ones, and misalignments of other load cases."""
         for index, order in enumerate(self.counted_orders):
             if order > self.orders:
                 refuse(f"counted_orders[{index}]", order, f"at most orders, {self.orders}", "Raise orders.")
@@ -205,7 +205,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
 
 class Inputs(BoundaryModel):
-    """An optimization of flank modifications: of a case by its ripple, of a scene by what is heard."""
+    """Inputs of an optimization of flank modifications: of a case by its ripple, of a scene by its level."""
 
     class VariablesInput(BoundaryModel):
         """Design variables of both gears."""
@@ -292,7 +292,7 @@ class Inputs(BoundaryModel):
     limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
     heard: HeardObjectiveInput | None = Field(
         default=None,
-        description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
+        description="Level of a scene that is minimized in place of the peak-to-peak",
         examples=[None],
         exclude_if=lambda value: value is None,
     )

@@ -19,9 +19,9 @@ from model_studies import in_unit
 from model_studies.spread import quantiles
 
 FALL = 25.0
-"""dB below the loudest line: what is lower is not told."""
+"""Level in dB below the loudest line from which a line is not mentioned."""
 MORE = 0.01
-"""Parts by which a pressure or a face load factor has to rise to be told."""
+"""Relative rise of a pressure or a face load factor from which the rise is mentioned."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +29,13 @@ class HeardDesign:
     """A design under L load cases in K lines."""
 
     values: dict[str, float]
-    """``gear.quantity`` to m."""
+    """Values of the variables in m, by ``gear.quantity``."""
     objective: Estimate
-    """dB."""
+    """Level that is minimized, with its error, dB."""
     level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
-    """`level`, `level_error`: dB; the error is that of the discretization of the contact. Shape (L, K) each.
+    """`level`, `level_error`: Levels and the errors of the contact's discretization in them, dB. Shape (L, K)
+    each.
     """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
@@ -62,14 +63,15 @@ class HeardDesign:
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full(1, np.nan))
-    """`pressure_error`, `face_load_factor_error`: Of the discretization; NaN: not estimated. Shape (L,) each.
+    """`pressure_error`, `face_load_factor_error`: Errors of the discretization; NaN: not estimated. Shape
+    (L,) each.
     """
 
 
 @brief
 @dataclass(frozen=True)
 class HeardOptimization:
-    """The start and the optimum of a search by what is heard."""
+    """The start and the optimum of a search for the quietest flanks."""
 
     mesh: str
     quantity: str
@@ -136,7 +138,7 @@ class HeardOptimization:
         return sentences[self.outcome]
 
     def ended(self) -> str:
-        """Return how the search ended, and how many of its starts agree, in a sentence."""
+        """Return a sentence on the end of the search, and on the number of its starts that agree."""
         run, ends = self.runs[self.best_run], np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
         same = max(AUDIBLE, self.optimum.objective.error)
@@ -160,7 +162,7 @@ class HeardOptimization:
         return float(np.mean(self.pairs[1] > self.pairs[0]))
 
     def within_tolerances(self) -> str:
-        """Return what the flanks bring of pairs as they are made, in a sentence; empty where none are."""
+        """Return a sentence on the change for pairs as made; empty without a tolerance class."""
         if not self.pairs.size:
             return ""
         (_, _, before), (_, _, after), (low, median, high) = self.bands
@@ -171,7 +173,7 @@ class HeardOptimization:
         )
 
     def worse(self) -> Iterator[str]:
-        """Yield what gets worse: orders by load case, largest first, then ripple, pressure, K_Hbeta."""
+        """Yield figures that get worse: orders by load case, largest first, ripple, pressure, K_Hbeta."""
         before, after = self.start, self.optimum
         change, error = after.level - before.level, before.level_error + after.level_error
         floor = max(before.level.max(), after.level.max()) - FALL
@@ -198,12 +200,12 @@ class HeardOptimization:
             yield f"{name} at {self.torque[load]:.4g} N m {ends}"
 
     def costs(self) -> str:
-        """Return what gets worse, in a sentence."""
+        """Return a sentence on the figures that get worse."""
         worse = list(self.worse())
         return f"Gets worse: {'; '.join(worse)}." if worse else "Nothing gets worse beyond its error."
 
     def partings(self) -> Iterator[str]:
-        """Yield where flanks would part, so that no linear response holds."""
+        """Yield sentences on load cases in which flanks part, so that no linear response holds."""
         for name, design in (("the start", self.start), ("the optimum", self.optimum)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
                 yield f"Flanks of {name} would part at {self.torque[load]:.4g} N m: no linear level holds."

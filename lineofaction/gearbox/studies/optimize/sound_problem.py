@@ -59,11 +59,11 @@ class HeardAt:
     """Share of the duration; the shares of all load cases add up to 1."""
 
     def power(self, table: SteDatabase) -> FloatArray:
-        """Return what is heard of a table at each speed (S,)."""
+        """Return the counted power of a table at each speed (S,)."""
         return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
     def powers(self, tabled: TabledLoads) -> Powers:
-        """Return what is heard of designs about a table, to first order of what excites."""
+        """Return the counted powers of designs about a table, to first order of the excitation."""
         transfer, form = self.case.transfer, self.case.form
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
@@ -95,7 +95,7 @@ class HeardObjective:
     worst_load: bool
 
     def rows(self, values: FloatArray) -> FloatArray:
-        """Return what is the largest of (R, ...): of values (L, S, ...) by load case and speed."""
+        """Return the rows (R, ...) whose largest counts, from values (L, S, ...) by load case and speed."""
         if not self.worst_load:
             share = np.array([load.share for load in self.at])
             values = np.tensordot(share, values, 1)[None]
@@ -183,7 +183,7 @@ class HeardProblem(SearchProblem):
         return replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
-        """Evaluate the design at a point (d,) with the derivatives of what excites."""
+        """Evaluate the design at a point (d,) with the derivatives of the excitation."""
         values = self.values(point)
         tasks = [(values, nodes) for nodes in self.evaluator.runs]
         by = workers if len(tasks) > 1 else InProcess()
@@ -232,14 +232,14 @@ class HeardProblem(SearchProblem):
         return level, loud / loud.sum()
 
     def relative(self, objective: float) -> float:
-        """Return the amplitude over that of the start."""
+        """Return the amplitude over the start's amplitude."""
         return float(10.0 ** ((objective - self.scale) / 20.0))
 
     def _violation(self, figures: Sequence[LoadFigures]) -> float:
         return self.evaluator.evaluation(figures).violation(self.limits)
 
     def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
-        """Return the table of each load case, at its own load and beside it, of those of a node."""
+        """Return the table of each load case at its load and the neighbors, from the tables of a node."""
         count, groups, tables = LOAD_FACTORS.size, self.evaluator.groups, []
         for case in range(len(self.sound.at)):
             of_case = [np.flatnonzero(group // count == case) for group in groups]
@@ -294,5 +294,5 @@ def _no_merit(variables: int) -> HeardMerit:
 
 
 def with_neighbor_loads(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return loads (3 L,) and misalignments of an evaluator: those of the cases, and beside each."""
+    """Return loads (3 L,) and misalignments of an evaluator: each load case's, and its two neighbors."""
     return np.outer(load, LOAD_FACTORS).ravel(), np.repeat(misalignment, LOAD_FACTORS.size)

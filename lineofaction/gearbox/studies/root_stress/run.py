@@ -58,7 +58,7 @@ class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
     def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
-        """Return what the gears, one solution with its errors, and the stresses on two meshes take."""
+        """Return the cost of the gears, one solution with its errors, and the stresses on two meshes."""
         with boundary_errors():
             checked = case.at_point
             plan = checked.planned(cache)

@@ -53,9 +53,9 @@ class PairStudy:
     name: str
     normal_force: float = field(metadata=in_unit("n"))
     center_distance: float = field(metadata=in_unit("m"))
-    """`normal_force`, `center_distance`: N; m."""
+    """`normal_force`, `center_distance`: Normal force of the curves, N; center distance, m."""
     curves: tuple[Sensitivity, ...]
-    """Without and with corner contact."""
+    """Curves over each deviation, without and with corner contact."""
 
 
 Studies = tuple[PairStudy, ...]
@@ -99,7 +99,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         _ = case.request(_tables, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the gears and the tables over each deviation take, without and with corner contact."""
+        """Return the cost of the gears and the tables over each deviation, with and without corners."""
         with boundary_errors():
             checked = case.request(_tables, inputs)
             skewed = replace(checked.request, center_distance_change=np.zeros(1))  # a table has one axis
@@ -131,7 +131,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
 
 class _TableByTable:
-    """Turns the progress of each table into that of the study."""
+    """Progress of the study from the progress of each table."""
 
     def __init__(self, report: Progress) -> None:
         self._report, self._tables = report, list[TableFraction]()
@@ -148,7 +148,7 @@ class _TableByTable:
 
 
 def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
-    """Return the changes of the center distance in per cent: those named, or usual ones that mesh."""
+    """Return the changes of the center distance in per cent: the named ones, or usual ones that mesh."""
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):

@@ -110,7 +110,7 @@ class FactorInput(BoundaryModel):
 
 
 class Inputs(BoundaryModel):
-    """A study of a scene: what is varied, and what is taken from every run."""
+    """Inputs of a study of a scene: factors that are varied, and responses of every run."""
 
     class ResponseInput(BoundaryModel):
         """A figure that is taken from every run."""
@@ -118,7 +118,7 @@ class Inputs(BoundaryModel):
         quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
         part: Name | None = Field(
             default=None,
-            description="Its mesh or bearing; left out: the largest over all",
+            description="Mesh or bearing of the response; left out: the largest over all",
             examples=["input left"],
         )
         order: int | None = Field(
@@ -277,4 +277,4 @@ class StudyFigures(Figures):
     design: Json
     """Inputs of the study, as JSON."""
     runs: dict[str, str]
-    """Content hashes of the runs that are kept in full, by point."""
+    """Content hashes of the runs that are stored in full, by point."""

@@ -41,8 +41,9 @@ class Inputs(BoundaryModel):
         ),
         min_length=1,
         max_length=6,
-        description="What is drawn, the first in the table of the terminal too: peak_to_peak, harmonic_1, "
-        "harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in the plane)",
+        description="Figures that are drawn, the first in the table of the terminal too: peak_to_peak, "
+        "harmonic_1, harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in "
+        "the plane)",
         examples=[["peak_to_peak", "max_pressure"]],
     )
 

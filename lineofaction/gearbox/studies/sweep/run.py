@@ -33,8 +33,8 @@ from lineofaction.gearbox.units import UM, factor, unit_name
 
 STEPS = 9
 """Values of an axis whose range is not given."""
-_MIN_TORQUES = 3  # fewer torques of a case are no range
-_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center distance
+_MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
+_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
 _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 
@@ -236,7 +236,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             _ = case.request(_request, inputs).checked
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies and every design at all torques take."""
+        """Return the cost of the bodies and of every design at all torques."""
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
@@ -244,7 +244,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
-        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
+        """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""
         with boundary_errors():
             run = means.analysis
             result = sweep(case.request(_request, inputs), run)

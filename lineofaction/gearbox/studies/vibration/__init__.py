@@ -47,7 +47,7 @@ class Inputs(OverSpeedsOrRun):
 
 
 class VibrationFigures(Figures):
-    """Velocities by order and speed, and what makes the motion at one of them."""
+    """Velocities by order and speed, and contributions to the motion at one order and speed."""
 
     class PointVelocity(Part):
         """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame.

@@ -16,18 +16,18 @@ class PointVelocity:
     """Velocity of a point at S speeds in H orders, root mean square, m/s."""
 
     velocity: FloatArray
-    """Shape (H, S)."""
+    """Velocity of all axes together. Shape (H, S)."""
     velocity_xyz: FloatArray
-    """Along x, y, z. Shape (3, H, S)."""
+    """Velocity along x, y, z. Shape (3, H, S)."""
     overall: FloatArray
-    """All orders together. Shape (S,)."""
+    """Velocity of all orders together. Shape (S,)."""
     left_out: FloatArray
     overall_error: FloatArray
-    """`left_out`, `overall_error`: The part of `overall` in orders that are not listed, and what it may be
-    off for them. Shape (S,) each.
+    """`left_out`, `overall_error`: Part of `overall` in orders that are not listed, and the error of
+    `overall` for these orders. Shape (S,) each.
     """
     level: FloatArray
-    """dB. Shape (H, S)."""
+    """Level of `velocity`, dB. Shape (H, S)."""
 
 
 def root_mean_square(velocity: ComplexArray) -> FloatArray:

@@ -68,9 +68,9 @@ class HousingVibrationResult:
     mode_shape: SurfaceShape | None = None
 
     @property
-    def facts(self) -> Json:
+    def metadata(self) -> Json:
         """Return the facts of the analysis."""
-        return self.analysis.facts
+        return self.analysis.metadata
 
     @property
     def shape(self) -> SurfaceShape | None:
@@ -110,7 +110,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
             raise BadInput.of("housings", value, "one with mass, a surface or points", _REMEDY)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the forces on bearings take, with which the motion of the housing is a product."""
+        """Return the cost of the forces on bearings, with which the motion of the housing is a product."""
         seen = any(map(_vibrates, scene.housings))
         return predicted_forces(scene, inputs) if seen else None
 
@@ -136,8 +136,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
                 bound = f"from 1 to {len(housing.frequency)}, the modes kept"
                 raise BadInput.of("mode", inputs.mode, bound, "Keep more modes of the housing.")
             mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
-        seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
-        analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
+        seconds = {**analysis.metadata["seconds"], "vibration": cpu_seconds() - began}
+        analysis = replace(analysis, metadata={**analysis.metadata, "seconds": seconds})
         analysis = with_scene_metadata(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
@@ -168,8 +168,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
         return figures_of(
             VibrationFigures,
             vibration,
-            analysis.facts,
-            order_name=order_names(vibration.order, analysis.facts),
+            analysis.metadata,
+            order_name=order_names(vibration.order, analysis.metadata),
             housing=analysis.housing,
             natural_frequency=result.natural_frequency,
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],
@@ -186,7 +186,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
 
 
 def _vibrates(housing: HousingInput) -> bool:
-    """Whether something of a housing may be looked at: matrices alone do not say what moves."""
+    """Whether a housing has points or a surface to look at; matrices alone have none."""
     return housing.has_surface or housing.is_measured
 
 

@@ -33,8 +33,9 @@ from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
-"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
-than four intervals the middles alone: those are short."""
+"""Positions of the held-out loads in every interval, on a logarithmic scale: a kink may round the curve
+anywhere in it. With more than four intervals only the middles are solved, since the intervals are short.
+"""
 AWAY = 1.4
 """Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
 lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
@@ -60,8 +61,8 @@ class LoadErrors:
 
 
 @dataclass(frozen=True)
-class HeldOutLoads:
-    """The first pitch of a table at some positions, held against solutions between its loads."""
+class ValidationLoads:
+    """The first pitch of a table at some positions, compared with solutions between its loads."""
 
     table: SteDatabase
     """Table of the first base pitch."""
@@ -153,7 +154,7 @@ class HeldOutLoads:
         return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
 
     def _shares(self, probes: SupportLoads, change: FloatArray, goal: IntervalGoal) -> FloatArray:
-        """Return the larger part of what is allowed that the changes take of mean and peak-to-peak, (L,).
+        """Return the larger part of the tolerance that the changes of mean and peak-to-peak take, (L,).
 
         Every point of an interval states the error of the worst: the least that is allowed in it counts.
         """
@@ -213,7 +214,7 @@ class HeldOutLoads:
 
 
 def halvings_reached(limit: int) -> str:
-    """Say that an axis was halved as often as it may be."""
+    """Return the text that intervals were halved as often as allowed."""
     return f"the limit of {limit} halvings is reached"
 
 

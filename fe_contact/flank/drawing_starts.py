@@ -33,7 +33,7 @@ _REMEDY = "A relief starts on the involute, before the end of the flank to which
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
+    """A coordinate that names a point of a flank, with its conversion to roll length and back."""
 
     text: str
     unit: str
@@ -41,7 +41,9 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Of the base radius in m and the other."""
+    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
+    each returns the other one.
+    """
 
 
 WAYS = {
@@ -73,7 +75,7 @@ def _start(relief: str, way: str, example: float) -> Any:
 
 @described
 @dataclass(frozen=True, kw_only=True)
-class StatedStarts:
+class DrawingStarts:
     """Starts of the reliefs of a gear, each stated in one way or none.
 
     Raises `InputError`: a value out of its bound.
@@ -142,7 +144,7 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     return min(max(length, SHORTEST), abs(gear.tip_radius - gear.form_radius))
 
 
-RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(StatedStarts)))
+RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(DrawingStarts)))
 """The amounts whose length may be stated by its start."""
 
 
