@@ -19,7 +19,8 @@ from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
 from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_at, operating_point
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
