@@ -153,16 +153,16 @@ def nominal_backlash(pair: ParallelAxes, m_n: float, beta: float, a: float, x_1:
 def test_the_printed_pair_that_jams_most_gets_its_table() -> None:
     row = min(PAIRS, key=jams_most)
     assert not float(row["helix_angle_deg"])
-    gets_its_table(row, "plane_strain")
+    check_table(row, "plane_strain")
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("row", PAIRS, ids=names)
 def test_a_printed_pair_gets_its_table(row: Row) -> None:
-    gets_its_table(row, "auto")
+    check_table(row, "auto")
 
 
-def gets_its_table(row: Row, model: str) -> None:
+def check_table(row: Row, model: str) -> None:
     case = printed_case(row, model)
     pair = gear_pair(case)
     table = analyze(pair, table_axes(case), analysis_options(case))
