@@ -39,7 +39,7 @@ def run_variants(
     -------
     results : dict
         By name, in the order of the variants.
-    left_out : dict of str to str
+    omitted : dict of str to str
         Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
     """
     results, omitted = {}, {}
@@ -57,22 +57,22 @@ def run_variants(
 
 @contextmanager
 def reason_of_failure(
-    left_out: dict[str, str], name: str, failures: tuple[type[Exception], ...]
+    omitted: dict[str, str], name: str, failures: tuple[type[Exception], ...]
 ) -> Iterator[None]:
-    """Note in `left_out` why the variant of a name has no result: `LeftOut`, one of `failures`, no memory."""
+    """Note in `omitted` why the variant of a name has no result: `LeftOut`, one of `failures`, no memory."""
     known: tuple[type[Exception], ...] = (LeftOut, *failures)
     try:
         yield
     except known as error:
-        left_out[name] = str(error)
+        omitted[name] = str(error)
     except MemoryError:
-        left_out[name] = "out of memory"
+        omitted[name] = "out of memory"
 
 
 def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:
     """Return the result of a variant and None, or None and the reason why it has none: one task."""
     compute, failures = shared
-    left_out: dict[str, str] = {}
-    with reason_of_failure(left_out, "variant", failures):
+    omitted: dict[str, str] = {}
+    with reason_of_failure(omitted, "variant", failures):
         return compute(variant), None
-    return None, left_out["variant"]
+    return None, omitted["variant"]

@@ -42,8 +42,8 @@ def housed_bearing_elements(
         index, part = supports[at.name]
         gradient, none = at.directions @ seat_motion(rotors, index, part), np.zeros(len(at.directions))
         elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.row_stiffness))
-        matrices = (part.seat_stiffness, part.seat_damping)
-        laws.append(tuple(_per_meter(at.directions, matrix) for matrix in matrices))
+        stiffness = _per_meter(at.directions, part.seat_stiffness)
+        laws.append((stiffness, _per_meter(at.directions, part.seat_damping)))
     return tuple(elements), LinearBearingLaws.packed(laws)
 
 

@@ -36,7 +36,7 @@ class TurningGap:
     """Base radius of the gear, m."""
     period: int
     """Base pitches after which the gap repeats."""
-    revolutions: float
+    roll_angle: float
     """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
     waves: tuple[Wave, ...]
@@ -95,7 +95,7 @@ class TurningGap:
             slope=steep / radius,
             spread=float(height @ np.minimum(order * self.roll_angle, 2.0)),
             bend=float(height @ order**2) / radius**2,
-            revolutions=steep * radius,
+            rotation_bound=steep * radius,
         )
         count = 0 if self.surfaces is None else len(self.surfaces.amounts)
         flanks = Extent() if self.surfaces is None else self.surfaces.extents
