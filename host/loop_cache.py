@@ -1,8 +1,12 @@
 """Compiled loops on disk, found by the content of all code that they call.
 
-numba finds an entry by the hash of the file of its loop: an inner loop that another file changed would leave
-the code of its callers as it was. Here an entry has the key of that file and of all that it imports, and of
-the versions that compile, in its name and in it: whatever changes, a stale entry is never read.
+numba checks an entry by the file of its loop alone: after a change of an inner loop in another file, it would
+still run the old code of the callers. Here a key stands in the name of an entry and in the entry. It is a
+hash of the file of the loop and of all files that this file imports, with the versions of Python, numba,
+llvmlite and numpy: a stale entry is never read.
+
+numba's words: an overload is the code for one signature; an index (``.nbi``) lists the overloads of a loop,
+each of which is a file of data (``.nbc``). Both begin with ``filename_base``, "loop-LINE.pyXY".
 
 Entries are read, and new ones written, in `NUMBA_CACHE_DIR`, beside the source or in the user's folder of
 caches, the first that can be written; they are read in `SHIPPED` too, which an installation fills.
@@ -45,7 +49,7 @@ _UNREADABLE = (AttributeError, ImportError, EOFError, pickle.UnpicklingError, Ty
 
 
 class _Provided(UserProvidedCacheLocator):
-    """Folders in NUMBA_CACHE_DIR by the name of a package: clones of the project share compiled loops."""
+    """Locator of folders in NUMBA_CACHE_DIR by the name of a package: clones share compiled loops."""
 
     def __init__(self, function: Callable[..., Any], file: str) -> None:
         super().__init__(function, file)
@@ -83,7 +87,7 @@ class _Entries(IndexDataCacheFile):
 
 
 class LoopCache(FunctionCache):
-    """The cache of a loop."""
+    """The cache of the compiled overloads of one loop, beside the source and in an installation."""
 
     _impl_class = _Implementation
 
@@ -93,6 +97,7 @@ class LoopCache(FunctionCache):
         folder = Path(self._cache_path)
         self._sources, key = _key(file, function.__module__, folder)
         self._loop = self._impl.filename_base
+        # 16 digits of the key tell versions apart in names; the stamp has all of it
         entries = partial(_Entries, filename_base=f"{self._loop}.{key[:16]}", source_stamp=key)
         self._cache_file = entries(str(folder))
         self._shipped = entries(str(_folder(SHIPPED, function)))
@@ -113,7 +118,7 @@ class LoopCache(FunctionCache):
 
     def _remove_old(self) -> None:
         """Remove all versions of the loop in the folder but the last few."""
-        loop = self._loop.rpartition("-")[0]  # without its line
+        loop = self._loop.rpartition("-")[0]  # without "-LINE.pyXY": of any line and Python
         indices = sorted(Path(self._cache_path).glob(f"{loop}-*.nbi"), key=lambda path: -path.stat().st_mtime)
         for index in indices[MAX_VERSIONS:]:
             for file in [index, *index.parent.glob(f"{index.stem}.*.nbc")]:
@@ -125,17 +130,23 @@ def _folder(folder: Path, function: Callable[..., Any]) -> Path:
 
 
 def _key(file: Path, module: str, folder: Path) -> tuple[Sources, str]:
-    """Return the files that decide what a loop is, and the key of their content and of what compiles them."""
+    """Return the sources that a loop depends on, and the key of their content and of `VERSIONS`."""
+    # The module a.b.c is root/a/b/c.py: as many parents up as it has dots is the folder of its package.
     depth = min(module.count("."), len(file.parents) - 1)
     root = PROJECT if PROJECT in file.parents else file.parents[depth]
     package = file.relative_to(root).parts[0].removesuffix(".py")
     manifest = _manifest(folder, package) if root == PROJECT and package in PACKAGES else None
-    found = sources(root, package)
-    return found, f"{found.key(file, manifest)}-{'-'.join(map(str, VERSIONS))}"
+    files = sources(root, package)
+    return files, f"{files.key(file, manifest)}-{'-'.join(map(str, VERSIONS))}"
 
 
 def _manifest(folder: Path, package: str) -> Path:
-    """Return the file that keeps the keys of a package, by the folder that its loops are kept in."""
+    """Return the file that stores the keys of a package; `folder` is the cache folder of one of its loops.
+
+    It stands in NUMBA_CACHE_DIR, in the ``__pycache__`` of the package, or beside `folder` in the user's
+    cache.
+    """
+    # Clones may share a cache, and have different sources: the name has a hash of the path of the clone.
     clone = hashlib.sha256(str(PROJECT).encode()).hexdigest()[:8]
     if config.CACHE_DIR:
         return Path(config.CACHE_DIR, f"{package}-{clone}.json")

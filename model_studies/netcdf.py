@@ -1,7 +1,8 @@
-"""netCDF-4 files that are read: nothing in them lies in another file, or loads one.
+"""Reading of netCDF-4 files from unknown senders: a file that would make HDF5 open other files is refused.
 
-HDF5 lets a file name others: for the values of a dataset, for the parts of a virtual one, behind links and
-references, and as libraries that unpack it. A file comes from anyone, so it is walked before it is read.
+HDF5 lets a file name others: for the values of a dataset, for the parts of a virtual dataset, behind links
+and references, and as libraries that unpack it. So the structure of a file is checked before its values are
+read.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 MAX_VARIABLES = 4096
 MAX_ATTRIBUTES = 256
 MAX_ENTRIES = 32
-"""Most entries of an attribute of texts or lists, the limit of dimensions in HDF5. All entries may point to
-one long text.
+"""Most entries of an attribute of texts or lists; HDF5 has the same limit of dimensions. The limit is needed
+because all entries may point to one long text, which each of them would unpack again.
 """
 FREE_BYTES = 2**30
 """Bytes of values and texts that any file may unpack to."""
@@ -49,6 +50,7 @@ def opened(path: Path) -> Iterator[Any]:
 
     if not path.is_file():
         raise UnreadableFile(f"{path.name}: no such file")
+    # Without folders of plug-ins HDF5 finds no library that a filter of the file could name.
     while h5py.h5pl.size():
         h5py.h5pl.remove(0)
     try:
@@ -72,7 +74,7 @@ def opened_netcdf(path: Path, **decoding: Any) -> Iterator[Any]:
 
 def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
     """Return a file as a dataset of xarray in memory; raises as `opened`."""
-    import xarray  # noqa: PLC0415 - a second, and not needed by other readers
+    import xarray  # noqa: PLC0415 - takes a second, and other readers do not need it
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415
 
     with opened_netcdf(path, decode_vlen_strings=True) as file:
@@ -123,16 +125,20 @@ def value_size(variable: Any, kind: Any) -> int:
     """Return the unpacked size of a variable's values; values outside the file itself are refused."""
     from h5py import h5d, h5z  # noqa: PLC0415 - needed for files only
 
-    made = variable.get_create_plist()
-    if made.get_layout() not in (h5d.COMPACT, h5d.CONTIGUOUS, h5d.CHUNKED) or made.get_external_count():
+    storage = variable.get_create_plist()
+    layout = storage.get_layout()
+    if layout not in (h5d.COMPACT, h5d.CONTIGUOUS, h5d.CHUNKED) or storage.get_external_count():
         raise UnreadableFile("has values that lie in other files")
-    filters = [made.get_filter(index)[0] for index in range(made.get_nfilters())]
+    # [0]: the code of a filter
+    filters = [storage.get_filter(index)[0] for index in range(storage.get_nfilters())]
     known = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32}
+    # A repeated filter is refused too: deflate of deflate unpacks to a million times its size.
     if not known.issuperset(filters) or len(set(filters)) < len(filters):
         raise UnreadableFile("is packed in another way than by deflate, shuffle and fletcher32")
     if not _is_plain(kind):
         raise UnreadableFile("has values that are neither numbers nor texts")
-    chunk = made.get_chunk() if made.get_layout() == h5d.CHUNKED else ()
+    # A chunk is unpacked whole, also where it is larger than the variable.
+    chunk = storage.get_chunk() if layout == h5d.CHUNKED else ()
     entries = max(math.prod(variable.get_space().get_simple_extent_dims()), math.prod(chunk))
     size: int = entries * kind.get_size()
     return size
@@ -168,14 +174,17 @@ def _is_plain(kind: Any) -> bool:
 
 
 def _is_text(kind: Any) -> bool:
-    """Whether a type is of texts of any length, which lie apart."""
+    """Whether a type is of texts of variable length, which HDF5 stores outside the values themselves."""
     from h5py import h5t  # noqa: PLC0415 - needed for files only
 
     return bool(kind.get_class() == h5t.STRING and kind.is_variable_str())
 
 
 def _parts(kind: Any) -> list[Any]:
-    """Return what a list or a record refers by, else the type itself; records number what they refer to."""
+    """Return the types of the entries of a list or a record, else the type itself.
+
+    Integers of a record are left out: beside a reference they number the dimension that it stands for.
+    """
     from h5py import h5t  # noqa: PLC0415 - needed for files only
 
     if isinstance(kind, h5t.TypeCompoundID):

@@ -1,7 +1,8 @@
 """Dataclasses as netCDF-4 files by their fields: arrays and floats are variables, the rest is JSON.
 
-Numbers of records in a row are one variable with a first dimension that is called as the row is: the field
-``mean`` of the figures ``with_effect`` of all ``effects`` is ``effects.with_effect.mean (effects, load)``.
+A tuple of records is a row. A number that every record of a row has is one variable, whose first dimension
+has the name of the row. If ``effects`` is a row of records, each with a record ``with_effect``, whose field
+``mean`` is an array over loads, then the variable is ``effects.with_effect.mean (effects, load)``.
 """
 
 from __future__ import annotations
@@ -34,18 +35,18 @@ class _FieldVariable:
     row: str = ""
 
     def of(self, field: Field[Any]) -> _FieldVariable:
-        """Return the place of a field of the record that is here."""
+        """Return the variable of a field, if this one stands for the record that has the field."""
         name = f"{self.name}.{key_of(field)}" if self.name else key_of(field)
         unit = field.metadata.get("unit", "1")
         return _FieldVariable(name, _UNITS.get(unit, unit), field.metadata.get("dimensions", ()), self.row)
 
     @property
     def in_row(self) -> _FieldVariable:
-        """The place of the entries of a tuple that is here."""
+        """The variable of the entries, if this one stands for a tuple: they are a row."""
         return replace(self, row=self.name)
 
     def stored(self, rank: int) -> Stored:
-        """Return how an array of so many dimensions is stored."""
+        """Return how an array of `rank` dimensions is stored."""
         row = (self.row,) if self.row else ()
         along = self.dimensions or tuple(f"{self.name}_{axis}" for axis in range(rank - len(row)))
         return Stored((*row, *along), self.unit, self.name.replace(".", " ").replace("_", " "))
@@ -76,12 +77,15 @@ def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
     schema, arrays, rest = read_arrays(path, tuple(kinds))
     columns: dict[str, Iterator[Any]] = {}
 
-    def taken(variable: _FieldVariable) -> Any:
-        values = arrays[variable.name]
-        return next(columns.setdefault(variable.name, iter(values if variable.row else [values])))
+    def next_entry(variable: _FieldVariable) -> Any:
+        """Return the next value of a row from its variable; a variable outside rows has one value."""
+        if variable.name not in columns:
+            values = arrays[variable.name]
+            columns[variable.name] = iter(values if variable.row else [values])
+        return next(columns[variable.name])
 
     try:
-        return _rebuilt(kinds[schema], rest, _FieldVariable(), taken)
+        return _rebuilt(kinds[schema], rest, _FieldVariable(), next_entry)
     except (*DAMAGE, StopIteration) as error:
         raise UnreadableFile(f"{path.name}: not as this version writes it") from error
 
@@ -93,8 +97,8 @@ def _split(kind: Any, value: Any, variable: _FieldVariable, columns: dict[_Field
         return None
     if is_dataclass(kind):
         return {
-            key_of(field): _split(of, getattr(value, field.name), variable.of(field), columns)
-            for field, of in _stored_fields(kind)
+            key_of(field): _split(field_type, getattr(value, field.name), variable.of(field), columns)
+            for field, field_type in _stored_fields(kind)
         }
     if get_origin(kind) is tuple:
         return [_split(get_args(kind)[0], entry, variable.in_row, columns) for entry in value]
@@ -106,25 +110,26 @@ def _split(kind: Any, value: Any, variable: _FieldVariable, columns: dict[_Field
     return dict(value) if isinstance(value, Mapping) else value
 
 
-def _rebuilt(kind: Any, plain: Any, variable: _FieldVariable, taken: Any) -> Any:
-    """Return the value of a type that `_split` took apart; `taken` gives the next entry of a variable."""
+def _rebuilt(kind: Any, plain: Any, variable: _FieldVariable, next_entry: Any) -> Any:
+    """Return the value of a type that `_split` took apart; `next_entry` reads from a variable."""
     kind = _present(kind)
     if plain is None:
         return None
     if is_dataclass(kind):
         values = {
-            field.name: _rebuilt(of, plain[key_of(field)], variable.of(field), taken)
-            for field, of in _stored_fields(kind)
+            field.name: _rebuilt(field_type, plain[key_of(field)], variable.of(field), next_entry)
+            for field, field_type in _stored_fields(kind)
             if key_of(field) in plain or (field.default is MISSING and field.default_factory is MISSING)
         }
         return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
     if get_origin(kind) is tuple:
-        return tuple(_rebuilt(get_args(kind)[0], entry, variable.in_row, taken) for entry in plain)
+        return tuple(_rebuilt(get_args(kind)[0], entry, variable.in_row, next_entry) for entry in plain)
     if _is_number(kind):
-        value = taken(variable)
+        value = next_entry(variable)
         return float(value) if kind is float else np.ascontiguousarray(value)
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(plain)
+    # JSON turns integer keys of a mapping into texts
     by_integer = isinstance(plain, dict) and get_args(kind)[:1] == (int,)
     return {int(key): value for key, value in plain.items()} if by_integer else plain
 
@@ -135,7 +140,7 @@ def _is_number(kind: Any) -> bool:
 
 
 def _present(kind: Any) -> Any:
-    """Return a type without None."""
+    """Return the type T of an optional one, "T | None"; any other type as it is."""
     if get_origin(kind) not in (Union, UnionType):
         return kind
     parts = [part for part in get_args(kind) if part is not NoneType]
@@ -143,17 +148,22 @@ def _present(kind: Any) -> Any:
 
 
 def _stored_fields(kind: Any) -> list[tuple[Field[Any], Any]]:
-    """Return the stored fields of a dataclass with their types; parameters of generic bases are put in."""
+    """Return the stored fields of a dataclass with their types.
+
+    Where a base is generic, as ``Base[FloatArray]``, its type variables are replaced by these arguments.
+    """
     bound: dict[Any, Any] = {}
-    for base in (base for ancestor in kind.__mro__ for base in getattr(ancestor, "__orig_bases__", ())):
-        bound |= dict(zip(getattr(get_origin(base), "__parameters__", ()), get_args(base), strict=False))
+    for ancestor in kind.__mro__:
+        for base in getattr(ancestor, "__orig_bases__", ()):
+            parameters = getattr(get_origin(base), "__parameters__", ())
+            bound |= dict(zip(parameters, get_args(base), strict=False))
     hints = get_type_hints(kind)
     stored = [field for field in fields(kind) if field.metadata.get("stored", True)]
     return [(field, _bound(hints[field.name], bound)) for field in stored]
 
 
 def _bound(hint: Any, bound: Mapping[Any, Any]) -> Any:
-    """Return a type with what its parameters stand for."""
+    """Return a type with its type variables replaced by what `bound` has for them."""
     if isinstance(hint, TypeVar):
         return bound.get(hint, hint)
     parameters = getattr(hint, "__parameters__", ())

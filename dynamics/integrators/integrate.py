@@ -36,7 +36,7 @@ class Trajectory(Ending):
 
     @property
     def q(self) -> FloatArray:
-        """Deviations from the kinematic motion, (T, n): points of the motion, not filtered."""
+        """Deviations from the kinematic motion at the instants of `time`, without a filter, (T, n)."""
         return self.states.q
 
     @property
@@ -58,15 +58,17 @@ def integrate(
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
-    polled about fifty times or more. `trail` saves the states of the run, and may say where it goes on for
-    another one. Samples `modal_samples` (W,) keep all freedoms.
+    polled about fifty times or more. `trail` saves states of the run after its blocks. If another run has
+    left a start value in it (`trail.taken`), this run continues from there. Samples `modal_samples` (W,) keep
+    all freedoms.
     """
     began = TimeTaken.now()
     march = start_march(system, start, integration, velocity, modal_samples)
     sink = MemorySink(march.samples, march.widths)
     if trail is not None and trail.taken is not None:
-        trail.taken.into(march, sink)
+        trail.taken.into(march, sink)  # the march starts where the other run is left
     status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
     end = ending(march, sink, status, TimeTaken.now().since(began))
     time = np.arange(end.samples) / system.sampling.rate
+    # `vars(end)`: a trajectory has all fields of an ending
     return Trajectory(**vars(end), time=time, states=sink.states(0, end.samples))

@@ -16,13 +16,16 @@ from dynamics.loads.time_law import TimeLaw
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2  # kinds of factors: the variable that they depend on
+AXIAL_ROW = 2  # row of a turning force along the axis; rows 0 and 1 turn with cosine and sine
 
 
 class ForceCourseLaws(NamedTuple):
-    """l applied forces in y: along, and where they turn across, then along the axis if they have such a part.
+    """Laws of l applied forces, each of which acts on the rows of its element.
 
-    With the factor s and the angle a of the frame they act by size s along the first row, or by size s cos a,
-    size s sin a and size s along the three. A last row, of the shaft whose speed counts, carries no force.
+    A force that stands still has one row, on which it acts with size s; s is its factor. A force that turns
+    with a frame by the angle a has two rows across the axis, with size s cos a and size s sin a, and a third
+    with size s if it has a part along the axis. Behind these a force by speed has a row without force: it
+    reads the speed of the shaft on which the factor depends.
     """
 
     kind: IntArray
@@ -30,15 +33,15 @@ class ForceCourseLaws(NamedTuple):
     size: FloatArray
     lever: FloatArray
     sense: FloatArray
-    """`size`, `lever`, `sense`: Size of the force, N; last row over rotation, m; sense in which the speed
-    counts, +1 or -1. Shape (l,) each.
+    """`size`, `lever`, `sense`: Size of the force, N; motion along the row of the speed per rotation of the
+    shaft, m; sense in which the speed counts, +1 or -1. Shape (l,) each.
     """
     rows: IntArray
     """Number of rows that carry force, 1, 2 or 3. Shape (l,)."""
     phase: IntArray
     frame: IntArray
-    """`phase`, `frame`: Phases among the positions, in turns: of the factor, of the frame; -1: none. Shape
-    (l,) each.
+    """`phase`, `frame`: Indices among the positions (`LocalState.position`) of the angle of the factor and of
+    the angle of the frame, both in turns; -1: there is none. Shape (l,) each.
     """
     factor: Cubics
     """Factors by time (s) and by speed (rad/s)."""
@@ -52,7 +55,7 @@ class ForceCourseLaws(NamedTuple):
     constant: FloatArray
     """Constant part of factors by angle. Shape (l,)."""
     mean: FloatArray
-    """Mean of s cos a and s sin a over a turn, of factors by angle. Shape (l, 2)."""
+    """Mean of s cos a and s sin a over a turn; zero unless the factor depends on an angle. Shape (l, 2)."""
     steady: BoolArray
     """Whether means act in place of forces that change with an angle. Shape (1,)."""
 
@@ -65,6 +68,7 @@ class ForceCourseLaws(NamedTuple):
             kind=np.array([kinds[type(course)] for course in courses], dtype=np.int64),
             factor=Cubics.packed([_pieces(course) for course in courses]),
             first_order=np.cumsum([0, *(len(part.order) for part in angular)], dtype=np.int64),
+            # multiples of 1/d, so that they repeat after d turns
             order=np.array([float(order) for part in angular for order in part.multiple], dtype=float),
             amplitude=np.array([size for part in angular for size in part.amplitude], dtype=float),
             angle=np.array([phase for part in angular for phase in part.phase], dtype=float),
@@ -101,31 +105,31 @@ def _pieces(course: Course) -> tuple[FloatArray, FloatArray]:
 
 @routine
 def applied_force(laws: ForceCourseLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write forces, positive where they resist, and their change with the speed."""
-    rows, size, steady = laws.rows[entry], laws.size[entry], laws.steady[0]
-    kind, factor, slope = laws.kind[entry], 0.0, 0.0
+    """Write the forces on the rows from `row`, positive where they resist, and their slopes by speed."""
+    rows, size = laws.rows[entry], laws.size[entry]
+    kind, steady = laws.kind[entry], laws.steady[0]
+    slope = 0.0  # of the factor; over rad/s where the kind is BY_SPEED, else not used
+    lever = laws.sense[entry] * laws.lever[entry]
     if kind == BY_ANGLE:
         factor = laws.constant[entry]
         if not steady:
-            turned = 2.0 * math.pi * local.position[laws.phase[entry]]
+            rotation = 2.0 * math.pi * local.position[laws.phase[entry]]
             for k in range(laws.first_order[entry], laws.first_order[entry + 1]):
-                factor += laws.amplitude[k] * math.cos(laws.order[k] * turned + laws.angle[k])
+                factor += laws.amplitude[k] * math.cos(laws.order[k] * rotation + laws.angle[k])
     else:
-        at = local.clock[0]
-        if kind == BY_SPEED:
-            lever = laws.sense[entry] * laws.lever[entry]
-            at = (local.rate[row + rows] + local.drift[row + rows]) / lever
-        factor, slope = value_and_slope(laws.factor, entry, at)
+        variable = local.clock[0]
+        if kind == BY_SPEED:  # the row of the speed: rate of the vibration, and drift of the kinematic motion
+            variable = (local.rate[row + rows] + local.drift[row + rows]) / lever
+        factor, slope = value_and_slope(laws.factor, entry, variable)
     cosine, sine = 1.0, 0.0
     if laws.frame[entry] >= 0:
         angle = 2.0 * math.pi * local.position[laws.frame[entry]]
         cosine, sine = math.cos(angle), math.sin(angle)
     for k in range(rows):
-        share = 1.0 if k == 2 else (sine if k == 1 else cosine)
+        share = 1.0 if k == AXIAL_ROW else (sine if k == 1 else cosine)
         value = factor * share
-        if steady and k < 2 and rows > 1:
+        if steady and k < AXIAL_ROW and rows > 1:  # only a turning force has more than one row
             value, share = laws.mean[entry, k], 0.0
         local.force[row + k] = -size * value
         if kind == BY_SPEED:
-            lever = laws.sense[entry] * laws.lever[entry]
             local.viscous[row + k, rows] = -size * slope * share / lever

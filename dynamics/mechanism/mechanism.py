@@ -1,4 +1,9 @@
-"""The mechanism of a scene: its bodies, their motion if all gears were conjugate, their loads."""
+"""The mechanism of a scene: its bodies, their motion if all gears were conjugate, their loads.
+
+That motion is the kinematic motion. Its laws are the speeds that the scene states: those of the drives, then
+those of the free rotations. Axes: m meshes, r = s rotors, one a shaft, k laws, N freedoms. The first six
+freedoms of a rotor are displacements x, y, z of its center and rotations about x, y, z.
+"""
 
 from __future__ import annotations
 
@@ -30,6 +35,7 @@ from dynamics.mechanism.train_phases import NO_PHASES, TrainPhases, train_phases
 from dynamics.scene.scene import Scene
 from dynamics.types import BoolArray, FloatArray
 
+X, Y, ROTATION = 0, 1, 5  # indices among the six freedoms of a rotor
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
 
@@ -72,24 +78,27 @@ class Mechanism:
     @property
     def freely_turned(self) -> BoolArray:
         """Whether free rotations turn each shaft, (s,)."""
-        return np.asarray(np.any(self.kinematics.float_ratio[:, len(self.scene.drives) :] != 0.0, axis=1))
+        # the laws of the free rotations stand behind those of the drives
+        ratio = self.kinematics.float_ratio[:, len(self.scene.drives) :]
+        return np.asarray(np.any(ratio != 0.0, axis=1))
 
     @property
     def vectors(self) -> FloatArray:
-        """Motion of all rotors per radian of each law, planets' centers with their carriers, (k, N).
+        """Motion of all rotors per radian of each law, (k, N).
 
-        In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that
-        motion seen from where the frame was: what a little more rotation of the law does to the freedoms, and
-        what an acceleration of it loads with inertia.
+        The centers of planets move with their carriers. In the rotating frame of its carrier a planet would
+        be at rest; these vectors are the motion in the frame as it stood before the rotation. They say how a
+        small rotation of the law moves the freedoms, and on which freedoms inertia acts when the law
+        accelerates.
         """
         rotors, ratio = self.rotors, self.kinematics.float_ratio
         vectors = np.zeros((ratio.shape[1], len(rotors), 6))
-        vectors[:, :, 5] = ratio.T
+        vectors[:, :, ROTATION] = ratio.T
         for index, rotor in enumerate(rotors):
             if rotor.carrier is not None:
                 arm = rotor.center - rotors[rotor.carrier].center
-                vectors[:, index, 0] = -arm[1] * ratio[rotor.carrier]
-                vectors[:, index, 1] = arm[0] * ratio[rotor.carrier]
+                vectors[:, index, X] = -arm[1] * ratio[rotor.carrier]
+                vectors[:, index, Y] = arm[0] * ratio[rotor.carrier]
         full = np.zeros((ratio.shape[1], column_count(rotors)))  # elastic coordinates rest
         full[:, : 6 * len(rotors)] = vectors.reshape(ratio.shape[1], 6 * len(rotors))
         return full
@@ -108,15 +117,27 @@ def gather_mechanism(scene: Scene, additions: Additions) -> Mechanism:
     coasts = COAST_FLANKS in additions.possible
     forces = nominal_forces(scene, kinematics, rotational_inertia(rotors), coasts=coasts)
     duties = bearing_duties(scene, rotors, forces)
-    bearings = bearing_locations(scene, rotors, gather_supports(rotors, frozenset()).name, duties)
-    known, stiffened = supports_by_name(rotors), list(rotors)
-    for at in bearings:
-        index, support = known[at.name]
+    support_names = gather_supports(rotors, seated=frozenset()).name
+    bearings = bearing_locations(scene, rotors, support_names, duties)
+    # The rotors get the stiffness of the nonlinear bearings at their typical load, with its lever.
+    supports, stiffened = supports_by_name(rotors), list(rotors)
+    for bearing in bearings:
+        index, support = supports[bearing.name]
         rotor = stiffened[index]
-        stiffened[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
+        stiffened[index] = replace(rotor, curved=(*rotor.curved, (bearing.seat, rotor.lever(support))))
     rotors = Bodies(with_couplings(scene, stiffened))
     for index, rotor in enumerate(rotors):
         if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
             raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)
-    made = Mechanism(scene, kinematics, rotors, lines, forces, duties, bearings, corrected, additions)
-    return replace(made, phases=phases)
+    return Mechanism(
+        scene=scene,
+        kinematics=kinematics,
+        rotors=rotors,
+        lines=lines,
+        nominal_force=forces,
+        bearing_duty=duties,
+        bearings=bearings,
+        corrected=corrected,
+        additions=additions,
+        phases=phases,
+    )

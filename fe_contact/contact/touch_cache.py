@@ -1,4 +1,7 @@
-"""Cache of touching points: a table, its solutions on rougher bodies and its variants look for the same."""
+"""Cache of the points where unloaded flanks touch.
+
+A table, the coarser solutions that give its discretization error, and its variants need the same points.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +16,14 @@ from fe_contact.contact.plain_touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
 _MAX, _MAX_BYTES = 8, 32_000_000
-"""Entries, and bytes of all of them: the last ones of one process."""
+"""Largest number of entries of this process and of their bytes; the oldest entries give way."""
 
 _entries: list[_Entry] = []
 _lock = threading.Lock()
 
 
 class _Entry(NamedTuple):
-    """Touching points, the digest of the arrays that they follow from, and their other inputs."""
+    """Touching points, with the digest of their input arrays, their other inputs, and their bytes."""
 
     digest: bytes
     origin: tuple[object, ...]
@@ -36,10 +39,12 @@ def cached_touch(
     Parameters
     ----------
     origin : tuple
-        What they follow from beside arrays. It is compared, not hashed: measured flanks of all teeth are
+        Inputs of `find` that are no arrays. They are compared, not hashed: measured flanks of all teeth are
         many numbers, but mostly the same objects.
     arrays : tuple of ndarray
-        The rest of what they follow from.
+        Arrays among the inputs of `find`. They are hashed.
+    find : callable
+        Computes the touching points.
     """
     digest = _digest(arrays)
     with _lock:

@@ -1,4 +1,8 @@
-"""The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator."""
+"""The start of every study of a pair's micro-geometry: one model, one compliance, one evaluator.
+
+A design is a set of values of the design variables, ``gear.quantity`` to m, such as a tip relief. The scatter
+of the manufacture is sampled at nodes: sets of deviations from the design, each with a weight.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +58,9 @@ class DesignSpace:
 
     pair: ParallelAxes
     varied: Mapping[str, float]
-    """Design by which effects are decided, ``gear.quantity`` to m: no varied quantity of it is zero."""
+    """Design for which the effects are decided, ``gear.quantity`` to m. No variable is zero in it, so that
+    each calls for its effect.
+    """
     scatter: Scatter
     misalignment: Misalignments
     """Mean misalignment, m: one value, or one for each torque."""
@@ -66,35 +72,39 @@ class DesignSpace:
     """Design with the least material removed, ``gear.quantity`` to m. Effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
-        """Check the request of a design in which everything acts that may act in any; computes nothing.
+        """Check the request of a design that calls for every effect that any design may need.
 
-        `torques`, `further_torques`: Torques that count, each with its misalignment, and further torques of
+        Nothing is computed.
+
+        `torques`: Torques that count, N m, each with its misalignment. `further_torques`: Further torques of
         the table, N m. Raises `InputError`: a value that cannot be used, or a quantity is varied whose effect
         is off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
         loads = DesignLoads.of(torques, self.misalignment)
         scattered = self.scatter.modification
-        present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
-        acting = {name: amount + _toward(name) * scattered.get(name, 0.0) for name, amount in present.items()}
-        skews = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
-        axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=skews)
+        design = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
+        extreme = {
+            name: amount + _deviation_sign(name) * scattered.get(name, 0.0) for name, amount in design.items()
+        }
+        misalignments = misalignment_axis(loads.misalignment, self.scatter.nodes().misalignment)
+        axes = TableAxes(np.union1d(loads.torque, further_torques), misalignments=misalignments)
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
-        checked = check_request(modified(self.pair, acting), axes, options, neglect=False)
+        checked = check_request(modified(self.pair, extreme), axes, options, neglect=False)
         _refuse_off(checked, self.varied, self.scatter)
-        return _with_effects_of(self._with_the_least_removed(), checked)
+        return _with_effects_of(self._pair_of_least_removal(), checked)
 
-    def _with_the_least_removed(self) -> ParallelAxes:
+    def _pair_of_least_removal(self) -> ParallelAxes:
         """Return the pair with every variable at its lower bound, less its scatter."""
-        present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
-        removed = present | dict(self.minimum)
+        design = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
+        removed = design | dict(self.minimum)
         deviation = {name: -amount for name, amount in self.scatter.modification.items()}
         return deviating(modified(self.pair, removed), deviation)
 
 
-def _with_effects_of(barest: ParallelAxes, checked: Checked) -> Checked:
-    """Turn on effects that only the design with the least removed calls for, such as corner contact."""
-    _, ledger = compose(replace(checked.request, pair=barest).scene, checked.request.choices)
+def _with_effects_of(least_removal: ParallelAxes, checked: Checked) -> Checked:
+    """Turn on effects that only the pair with the least removal calls for, such as corner contact."""
+    _, ledger = compose(replace(checked.request, pair=least_removal).scene, checked.request.choices)
     missing = {entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on}
     reasons = {entry.name: CALLED_FOR for entry in ledger if entry.on and entry.name in missing}
     if not reasons:
@@ -103,8 +113,11 @@ def _with_effects_of(barest: ParallelAxes, checked: Checked) -> Checked:
     return checked_request(replace(checked.request, turned_on=turned_on), neglect=False)
 
 
-def _toward(name: str) -> float:
-    """Return the sign of a deviation that acts: hollow flanks stand at their ends, where tip edges touch."""
+def _deviation_sign(name: str) -> float:
+    """Return the sign of a scattered deviation that calls for the most effects.
+
+    A negative profile or lead form is a hollow flank: it bears at its ends, where tip edges touch.
+    """
     return -1.0 if name.endswith("_form") else 1.0
 
 
@@ -135,26 +148,32 @@ def design_study(
     design_loads = DesignLoads.of(torques, space.misalignment)
     loads, counted = design_loads.with_torques(further_torques)
     with clock.stage("planning"):
-        decision = _on_one_mesh(checked or space.check(torques, further_torques), run.cache)
+        decision = _model_for_all_designs(checked or space.check(torques, further_torques), run.cache)
     run.progress("compliance", 0.0)
     with clock.stage("compliance"):
         report = partial(run.progress, "compliance")
         contact = pair_contact(space.pair, decision.plan, run.cache, report=report)
     run.progress("compliance", 1.0)
-    position, nodes = np.arange(space.positions) / space.positions, space.scatter.nodes()
     level = np.searchsorted(np.unique(loads.torque), loads.torque)  # the table has every torque once
     force = decision.checked.request.load[level]
-    varied, choices = replace(contact, varied=True), decision.checked.decision
     roots = None
     if limits.root_stress is not None:
         with clock.stage("root stress"):
             roots = RootInfluence.of(contact, run.cache)
-    evaluator = Evaluator(varied, choices, position, force[counted], design_loads.misalignment, nodes, roots)
-    return DesignStudy(decision, loads, force, counted, evaluator)
+    evaluator = Evaluator(
+        contact=replace(contact, varied=True),  # the flanks vary
+        choices=decision.checked.decision,
+        position=np.arange(space.positions) / space.positions,
+        load=force[counted],
+        misalignment=design_loads.misalignment,
+        nodes=space.scatter.nodes(),
+        roots=roots,
+    )
+    return DesignStudy(decision=decision, loads=loads, force=force, counted=counted, evaluator=evaluator)
 
 
-def _on_one_mesh(checked: Checked, cache: Path | None) -> Decision:
-    """Return model and mesh by the requested accuracy, every effect decided for good."""
+def _model_for_all_designs(checked: Checked, cache: Path | None) -> Decision:
+    """Return model and mesh for the requested accuracy, with every effect fixed as "on" or "off"."""
     decision = decide(checked, cache)
     request = decision.checked.request
     options = replace(request.options, effects=decision.checked.decision)
@@ -167,7 +186,7 @@ def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter)
     request = checked.request
     effects = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:
-        effects[MISALIGNMENT] = request.named(MISALIGNMENT)
+        effects[MISALIGNMENT] = request.named(MISALIGNMENT)  # the effect that brings misalignment
     for name, effect in effects.items():
         if checked.decision[effect] == "off":
             bound = f'"on" or "auto" where {name} is varied'

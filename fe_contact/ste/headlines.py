@@ -15,6 +15,10 @@ from fe_contact.ste.curve import Curve
 from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
 
+MAX_NUMBERS = 8
+"""Largest number of values of an axis that are listed; of a longer axis the ends and the number of values
+are.
+"""
 MAX_LOADS = 4
 """Largest number of loads whose figures are listed; they are spread over the loads of the table."""
 LONGEST_PERIOD = 32
@@ -43,12 +47,12 @@ def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, li
         )
         if axis.size > 1 or axis.any()
     ]
-    return title, [*rows, *_figures(table, curve_at), *_making(table)]
+    return title, [*rows, *_figures(table, curve_at), *_provenance(table)]
 
 
 def _numbers(values: FloatArray) -> str:
     listed = [engineering(float(value), 4) for value in values]
-    return ", ".join(listed) if len(listed) <= 8 else f"{listed[0]} to {listed[-1]} ({len(listed)})"
+    return ", ".join(listed) if len(listed) <= MAX_NUMBERS else f"{listed[0]} to {listed[-1]} ({len(listed)})"
 
 
 def _positions(table: SteFields) -> str:
@@ -60,11 +64,10 @@ def _positions(table: SteFields) -> str:
 def _figures(table: SteFields, curve_at: Callable[..., Curve]) -> list[Row]:
     """Return mean, peak-to-peak and first harmonic at some of the loads, aligned or nearest to it."""
     limit = MAX_LOADS if table.period <= LONGEST_PERIOD else 1
-    chosen = np.unique(
-        np.linspace(0, table.torque.size - 1, min(limit, table.torque.size)).round().astype(int)
-    )
+    count = min(limit, table.torque.size)
+    loads = np.unique(np.linspace(0, table.torque.size - 1, count).round().astype(int))
     rows = []
-    for torque in table.torque[chosen]:
+    for torque in table.torque[loads]:
         name = f"at {engineering(float(torque), 4)} N m"
         try:
             curve = curve_at(torque=float(torque), allow_failed=True, **_alignment(table))
@@ -81,17 +84,18 @@ def _alignment(table: SteFields) -> dict[str, float]:
     return {name: float(axis[np.abs(axis).argmin()]) for name, axis in axes}
 
 
-def _making(table: SteFields) -> list[Row]:
-    made = table.metadata
+def _provenance(table: SteFields) -> list[Row]:
+    """Return the effects that are on, and cost, version and hash of the table."""
+    metadata = table.metadata
     rows: list[Row] = []
-    ledger: list[Any] = made.effect_ledger if isinstance(made.effect_ledger, list) else []
+    ledger: list[Any] = metadata.effect_ledger if isinstance(metadata.effect_ledger, list) else []
     effects = [str(entry.get("name", "")).replace("_", " ") for entry in ledger if entry.get("on")]
     if any(effects):
         rows.append(("effects on", ", ".join(effects)))
-    version = made.software_versions.get("lineofaction", "")
-    seconds = made.receipt.get("cpu_seconds")
+    version = metadata.software_versions.get("lineofaction", "")
+    seconds = metadata.receipt.get("cpu_seconds")
     cost = f"{engineering(seconds, 3)} CPU s" if seconds is not None else ""
-    origin = [cost, f"lineofaction {version}" if version else "", f"content {made.content_hash[:6]}"]
-    if made.content_hash or cost:
+    origin = [cost, f"lineofaction {version}" if version else "", f"content {metadata.content_hash[:6]}"]
+    if metadata.content_hash or cost:
         rows.append(("made", "; ".join(filter(None, origin))))
     return rows

@@ -122,8 +122,8 @@ class Child:
     def end(self, within_s: float | None = None) -> Ended | None:
         """Kill the group, close the pipes, and return how the child ended; None: it is not dead in time.
 
-        A killed process needs the processor to die. At a low priority it waits for that long beside others:
-        one that is not dead after `within_s` is left to the system.
+        A killed process needs the processor to die. At a low priority it may wait long for the processor: a
+        child that is not dead after `within_s` is left to the system. `within_s` None waits until it is dead.
         """
         self.end_group()
         if self._ended is None and (within_s is None or self.has_exited(within_s)):
@@ -144,6 +144,7 @@ class Child:
         False where the system does not count the processes that it kills for lack of memory, and where it
         killed any since the start.
         """
+        # UNSEEN: the warm process that could have observed the end of the child had ended before it.
         if self._ended is None or self._ended is UNSEEN or self._was_killed:
             return False
         killed = ending_signal(self._ended.code) == "SIGKILL"

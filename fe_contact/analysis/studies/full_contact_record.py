@@ -57,7 +57,8 @@ class FullContactRecord:
     unknowns: int
     """Displacement unknowns of all nodes of both gears, upper bound."""
     seconds_per_solve: float
-    """CPU seconds of a position and load, with its coarser mesh."""
+    """CPU seconds of one position and load, solved on the mesh and on the coarser one that gives the error.
+    """
 
     @property
     def mesh_error(self) -> float:
@@ -66,9 +67,10 @@ class FullContactRecord:
         return float(np.nanmax(errors)) if np.isfinite(errors).any() else float("nan")
 
     def at_positions(self, count: int) -> FullContactRecord:
-        """Return the record at equally spaced positions, as nearly as it has them, or at all it has."""
+        """Return the record at `count` of its positions, nearly equally spaced, or at all if it has fewer."""
         size = self.position.size
-        rows = np.unique(np.round(np.arange(min(count, size)) * size / min(count, size)).astype(int))
+        count = min(count, size)
+        rows = np.unique(np.round(np.arange(count) * size / count).astype(int))
         return replace(
             self,
             position=self.position[rows],
@@ -78,13 +80,14 @@ class FullContactRecord:
 
     def within(self, misalignment: FloatArray, torque: FloatArray) -> FullContactRecord:
         """Return the record at the misalignments and torques that lie between those of a table."""
-        sides, loads = _between(self.misalignment, misalignment), _between(self.torque, torque)
+        misaligned = _between(self.misalignment, misalignment)
+        loads = _between(self.torque, torque)
         return replace(
             self,
-            misalignment=self.misalignment[sides],
+            misalignment=self.misalignment[misaligned],
             torque=self.torque[loads],
-            transmission_error=self.transmission_error[sides][..., loads],
-            error_estimate=self.error_estimate[sides][..., loads],
+            transmission_error=self.transmission_error[misaligned][..., loads],
+            error_estimate=self.error_estimate[misaligned][..., loads],
         )
 
     def curves(self) -> Iterator[tuple[float, float, FloatArray]]:
@@ -134,12 +137,12 @@ class FullContactComparison:
 
     @property
     def solves(self) -> int:
-        """The number of positions x loads x misalignments."""
+        """The number of points: positions x loads x misalignments."""
         return self.record.transmission_error.size
 
     @property
     def solved(self) -> int:
-        """The number of those that have a solution."""
+        """The number of points that have a solution."""
         return int(np.isfinite(self.record.transmission_error).sum())
 
     @property
@@ -148,7 +151,7 @@ class FullContactComparison:
         return self.seconds(self.solves)
 
     def seconds(self, solves: int) -> float:
-        """CPU seconds of a table of so many positions x loads, at the mean cost of those recorded."""
+        """CPU seconds of full contact at `solves` points, at the mean cost of a recorded point."""
         return self.record.seconds_per_solve * solves
 
     def to_json(self, solves: int) -> Json:
@@ -194,11 +197,12 @@ def full_contact_records() -> tuple[FullContactRecord, ...]:
 
 
 def solved_in(checked: Checked) -> str:
-    """Return the model that full contact of a request needs: the face where gears or flanks vary along it."""
+    """Return the model that full contact of a request needs: `FACE` where anything varies along the face."""
     request = checked.request
-    varies = any(gear.modification.varies_along_face for gear in (request.pair.pinion, request.pair.wheel))
-    inclined = varies or request.options.model == "3d" or bool(np.any(request.misalignment != 0.0))
-    return FACE if inclined else PLANE
+    gears = (request.pair.pinion, request.pair.wheel)
+    flanks_vary = any(gear.modification.varies_along_face for gear in gears)
+    misaligned = bool(np.any(request.misalignment != 0.0))
+    return FACE if flanks_vary or misaligned or request.options.model == "3d" else PLANE
 
 
 def record_of(checked: Checked, records: Sequence[FullContactRecord]) -> FullContactRecord | None:
@@ -236,14 +240,18 @@ def _worst_errors(
         if not solved.any():
             continue
         curve = table.curve(torque=torque, misalignment=misalignment, at=record.position[solved])
-        ours = np.asarray(curve.ste, dtype=float)
-        errors.append(_errors(ours, lag[solved]) if record_is_reference else _errors(lag[solved], ours))
-    means, swings = np.array(errors).reshape(-1, 2).T
+        table_lag = np.asarray(curve.ste, dtype=float)
+        record_lag = lag[solved]
+        if record_is_reference:
+            errors.append(_errors(table_lag, reference=record_lag))
+        else:
+            errors.append(_errors(record_lag, reference=table_lag))
+    means, swings = np.array(errors).reshape(-1, 2).T  # (2,) of each curve; (0, 2) without any curve
     return _worst(means), _worst(swings)
 
 
 def _errors(curve: FloatArray, reference: FloatArray) -> tuple[float, float]:
-    """Relative errors of mean and peak-to-peak over the same positions, as magnitudes; NaN if too few."""
+    """Return relative errors of mean and peak-to-peak over the same positions, >= 0; NaN if too few."""
     mean = abs(float(np.mean(curve) / np.mean(reference)) - 1.0) if curve.size else float("nan")
     swing = abs(float(np.ptp(curve) / np.ptp(reference)) - 1.0) if curve.size > 1 else float("nan")
     return mean, swing
@@ -256,14 +264,15 @@ def _worst(errors: FloatArray) -> float:
 
 def _with_none(values: FloatArray) -> list[Any]:
     """Return nested lists with None in place of NaN, which JSON does not have."""
+    # arrays of objects, as an array of floats would turn None into NaN
     plain: list[Any] = np.where(np.isfinite(values), values.astype(object), np.array(None)).tolist()
     return plain
 
 
 def _between(values: FloatArray, axis: FloatArray) -> BoolArray:
     """Return which values lie between the ends of an axis, up to rounding."""
-    room = SAME * np.abs(axis).max()
-    between: BoolArray = (values >= axis.min() - room) & (values <= axis.max() + room)
+    rounding = SAME * np.abs(axis).max()
+    between: BoolArray = (values >= axis.min() - rounding) & (values <= axis.max() + rounding)
     return between
 
 
