@@ -45,6 +45,8 @@ SPUR_RIPPLE, HELICAL_RIPPLE = 0.43, 0.1
 of 1.56 to 1.71, of helical ones the least that is usual."""
 HELICAL_OVERLAP = 0.5
 """Overlap ratio from which the constants of helical pairs hold alone: theirs was 0.5 and more."""
+RELIEVED_OVERLAP = 0.9
+"""Least overlap ratio of the pairs that the constants of relieved helical pairs are of."""
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
 """Harmonics over that peak-to-peak: the first so many alike, since where teeth take over is a step; then
 harmonic k falls with 1/k."""
@@ -124,6 +126,14 @@ def helical_share(pair: ParallelAxes) -> float:
     A helix of next to no overlap leaves the errors of a spur pair.
     """
     return min(abs(pair.overlap_ratio) / HELICAL_OVERLAP, 1.0)
+
+
+def is_relieved_helical(pair: ParallelAxes) -> bool:
+    """Whether a pair is helical, solid, and relieved on both gears: its contact ends inside the flanks."""
+    gears = pair.pinion, pair.wheel
+    solid = not pair.internal and all(gear.web is None for gear in gears)
+    relieved = all(gear.modification.varies_along_profile for gear in gears)
+    return solid and relieved and abs(pair.overlap_ratio) >= RELIEVED_OVERLAP
 
 
 def point_error(

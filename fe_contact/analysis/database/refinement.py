@@ -149,7 +149,9 @@ class _Resolution:
 def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
 
-    A pass goes up one mesh level at most, since the level between costs a third of the finer one.
+    A pass goes up one mesh level at most, since the level between costs a third of the finer one. Where it
+    is known how runs scatter, no pass begins that is expected to miss the tolerance and to lower the errors
+    by less than it leaves of them.
     `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
     quantity at every node, without those that no run lowers; more sources are not looked at.
     """
@@ -172,6 +174,11 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     finer = _settled(replace(begun, level_left=1))
     reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
+    if refined.mesh.option.error.scatter and 1.0 < finer.used and begun.used - finer.used < finer.used:
+        return (
+            f"{', '.join(finer.steps)} would lower the errors from {engineering(begun.used, 2)} to "
+            f"{engineering(finer.used, 2)} of the tolerance, by less than it leaves"
+        )
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 

@@ -13,6 +13,7 @@ from fe_contact.analysis.estimates.error_sources import estimate_errors, largest
 from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.estimates.position_errors import position_errors
+from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, mesh_bias
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
@@ -81,6 +82,8 @@ class AssessedTable:
     """`by_source`, `held_out`: The largest by source; what was measured between the nodes of each axis."""
     bias: PlaneBias | None
     """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
+    mesh_bias: FloatArray | None = None
+    """How much higher the mean lies on exact meshes, where its sign is known, m; errors hold it. Shape (F,)."""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""
@@ -112,7 +115,8 @@ class AssessedTable:
         """Return what the receipt says of the errors."""
         sources = {"error_by_source": self.by_source, "held_out": self.held_out}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
-        return sources | bias | _summary(self.curve_error)
+        signed = {} if self.mesh_bias is None else {"mesh_bias": {"mean_m": self.mesh_bias.tolist()}}
+        return sources | bias | signed | _summary(self.curve_error)
 
 
 def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
@@ -163,6 +167,7 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
         sources.to_json(),
         {name: error.to_json() for name, error in held_out.axes.items()},
         table_bias(made.table, fine, plan),
+        mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
     )
     return assessed, made
 
