@@ -32,7 +32,7 @@ of spur pairs; of helical pairs with plain and with modified profiles, whose con
 load."""
 
 
-QUIET = {"draft": (1.4e-3, 6.2e-4), "standard": (5e-4, 1.8e-4), "fine": (4e-4, 1.5e-4)}
+QUIET = {"draft": (1.4e-3, 9.8e-4), "standard": (5e-4, 2.5e-4), "fine": (4e-4, 2e-4)}
 """The same of helical pairs whose gears are both relieved (`is_relieved_helical`), over what second order
 leaves of the change to the coarse mesh: medians of drawn pairs."""
 

@@ -38,8 +38,8 @@ class MeshRemainder(NamedTuple):
 
 
 REMAINDER = {
-    "draft": MeshRemainder(0.65, 1.55, 0.3, 0.85, 2.0),
-    "standard": MeshRemainder(0.45, 1.55, 0.12, 0.85, 1.8),
+    "draft": MeshRemainder(0.72, 1.55, 0.3, 1.35, 2.0),
+    "standard": MeshRemainder(0.45, 1.55, 0.2, 1.2, 1.8),
 }
 """The level fine has those of standard."""
 
