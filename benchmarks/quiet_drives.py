@@ -1,4 +1,4 @@
-"""Quiet helical pairs of electric drives, drawn by a seed: what errors of their meshes are set and assessed on."""
+"""Quiet helical pairs of electric drives, drawn by a seed, on which errors of their meshes are assessed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What meshes leave of the errors of quiet helical pairs: drawn pairs on two levels against finer solutions."""
+"""What meshes leave in quiet helical pairs: drawn pairs on two levels against finer solutions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MORE_LAYERS = 1.3
 """Layers of the mesh fine over those of the mesh standard from which it tells what the latter leaves."""
 FINE = (1,)
 """Pairs that are solved on it, 60 CPU s each; the limit of drafts is that of the mesh standard."""
-LEVELS, NM = ("draft", "standard"), 1e-9
+LEVELS, NM = ("draft", "medium", "standard"), 1e-9
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,8 @@ def measured(drive: QuietDrive, *, finer: bool) -> Iterator[MeshRow]:
     ]
     solved = {level: _solved(requests, requests[0].plan(level)) for level in LEVELS}
     # patches of the coarse mesh of the level fine are those of the mesh standard, which is two thirds as fine
-    yield from _rows(drive.name, "draft", solved["draft"], solved["standard"])
+    for level in LEVELS[:-1]:
+        yield from _rows(drive.name, level, solved[level], solved["standard"])
     if finer:
         plan = requests[0].plan("fine")
         layers = [made.plan.discretization.recipes[0].layers for made in solved.values()]
@@ -190,7 +191,7 @@ def _solved(requests: Sequence[Checked], plan: Plan, coarse: FloatArray | None =
     in_slices = (body.in_slices(count) for count in (made.coarse_slices, 2 * made.slices + 1))
     sliced, many_slices = (_curves(requests, contact) for contact in in_slices)
     table, patched = (_curves(requests, contact) for contact in (body, body.in_coarse_patches))
-    level = "draft" if plan.level == "draft" else "standard"
+    level = plan.level if plan.level in REMAINDER else "standard"
     no_load = np.repeat([_no_load(checked, body) for checked in requests], requests[0].request.load.size)
     return _Curves(plan, level, table, patched, coarse, sliced, many_slices, no_load)
 
@@ -233,7 +234,4 @@ def _rows(name: str, level: str, curves: _Curves, limit: _Curves) -> Iterator[Me
             "ripple_missing": np.ptp(sliced[:, c]) - np.ptp(own),
         }
         places = divmod(c, own.size and curves.table.shape[1] // FLANKS)
-        yield MeshRow(
-            name, *places, level, made.slices, **{key: float(x) / NM for key, x in lengths.items()}
-        )
-
+        yield MeshRow(name, *places, level, made.slices, **{key: float(x) / NM for key, x in lengths.items()})

@@ -131,9 +131,7 @@ def expected_error(
     at_worst = {name: float((part / known.scale)[worst]) for name, part in parts.items()}
     mean, ripple = (float(value) for value in absolute.max(axis=1)) if known.absolute else (None, None)
     scatter = QUIET_SCATTER if _is_quiet(pair, plan) else 0.0
-    return ExpectedError(
-        **at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias, scatter=scatter
-    )
+    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias, scatter=scatter)
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:

@@ -10,13 +10,14 @@ from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.options import LEVELS, AnalysisOptions
+from fe_contact.options import LEVELS, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.expected_curves import (
     ExpectedCurves,
 )
 from fe_contact.planning.expected_error import ExpectedError, expected_error, percent
+from fe_contact.planning.model_error import is_relieved_helical
 from fe_contact.planning.plan import make_plan
 from fe_contact.types import FloatArray, Json
 
@@ -26,7 +27,7 @@ class MeshOption:
     """A mesh with its slices."""
 
     level: str
-    """"draft", "standard" or "fine"."""
+    """"draft", "medium", "standard" or "fine"."""
     slices: int
     """Of the face; 1 in the plane."""
     error: ExpectedError
@@ -128,7 +129,9 @@ def mesh_options(
     meshes = [option(level) for level in LEVELS]
     usual = make_plan(pair, load, options, model, "draft").discretization
     if isinstance(usual, FaceDiscretization):
-        meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
+        levels = MESHES if is_relieved_helical(pair) else LEVELS
+        meshes += [option(level) for level in levels if level not in LEVELS]
+        meshes += [option(level, n) for level in levels for n in FINER_SLICES]
     return meshes
 
 

@@ -52,6 +52,8 @@ two thirds; of one with a thin rim, more; of a helical pair, over what second or
 the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
 pairs of docs/lab/index.md ("Constants"); the level fine has the parts of standard."""
 
+COARSER_THAN_STANDARD = ("draft", "medium")
+
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
@@ -212,7 +214,7 @@ def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
     """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
-    level = "draft" if plan.level == "draft" else "standard"
+    level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
     if isinstance(made, FaceDiscretization):
         spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
         mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound

@@ -1,11 +1,11 @@
 """Errors of the meshes of relieved helical pairs: of the mean with their sign, of the ripple without one.
 
-Where relief ends the contact inside the flanks, meshes and load patches take the same part off the compliance
-at every position and load: finer meshes soften it, narrower patches stiffen it. What they leave of the mean is
-so known by its sign, and stated with a doubt of its own. What they leave of peak-to-peak is not: the difference
-of two meshes along the curve tells its size alone.
+Where reliefs end the contact inside the flanks, meshes and load patches change the compliance by the same
+part at every position: finer meshes soften it, narrower patches stiffen it. What they leave of the mean has a
+known sign, and a doubt of its own. What they leave of peak-to-peak has none: the difference of two meshes
+along the curve tells its size alone.
 
-All constants are of 40 drawn pairs of electric drives at three loads (docs/lab/index.md, "Quiet helical pairs").
+The constants are of drawn pairs of electric drives (docs/lab/index.md, "Quiet helical pairs").
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ class MeshRemainder(NamedTuple):
 
 REMAINDER = {
     "draft": MeshRemainder(0.72, 1.55, 0.3, 1.35, 2.0),
+    "medium": MeshRemainder(1.0, 1.55, 0.5, 1.0, 2.0),
     "standard": MeshRemainder(0.45, 1.55, 0.2, 1.2, 1.8),
 }
 """The level fine has those of standard."""
@@ -46,7 +47,7 @@ REMAINDER = {
 
 def remainder_of(plan: Plan) -> MeshRemainder:
     """Return what the meshes of a plan leave."""
-    return REMAINDER["draft" if plan.level == "draft" else "standard"]
+    return REMAINDER.get(plan.level, REMAINDER["standard"])
 
 
 def has_signed_errors(pair: ParallelAxes, made: Discretization) -> bool:
@@ -96,10 +97,10 @@ def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) ->
 
 
 def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, plan: Plan) -> FloatArray:
-    """Return the errors by mesh and by patches (2, 23, F, M, D) in m, of `changes` as second order leaves them.
+    """Return the errors by mesh and by patches (2, 23, F, M, D) in m.
 
-    The error by mesh holds all that is left of the mean. `added` (f, m, d) is what the load adds to the mean at
-    the points that were solved again, m.
+    `changes` are what second order leaves of them. The error by mesh holds all that is left of the mean.
+    `added` (f, m, d) is what the load adds to the mean at the points that were solved again, m.
     """
     left, remaining = remainder_of(plan), plan.discretization.remaining
     by_mesh, by_patches = changes.copy()
