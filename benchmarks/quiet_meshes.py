@@ -20,9 +20,10 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.contact import ContactSolution
 from fe_contact.options import TableAxes
+from fe_contact.planning.discretization import face_discretization
 from fe_contact.planning.plan import Plan
 from fe_contact.ste.curve_quantities import PEAK_TO_PEAK, quantity_changes
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, Json
 
 SUBJECT = "meshes of quiet helical pairs against finer ones"
 RECORD = Path(__file__).parents[1] / "docs" / "lab" / "quiet_meshes.csv"
@@ -148,8 +149,10 @@ def measured(drive: QuietDrive, *, finer: bool) -> Iterator[MeshRow]:
         yield from _rows(drive.name, level, solved[level], solved["standard"])
     if finer:
         plan = requests[0].plan("fine")
-        layers = [made.plan.discretization.recipes[0].layers for made in solved.values()]
-        assert plan.discretization.recipes[0].layers >= MORE_LAYERS * layers[-1]
+        few, many = (
+            face_discretization(drive.pairs[0], level).recipes[0].layers for level in ("standard", "fine")
+        )
+        assert many >= MORE_LAYERS * few
         fine = _solved(requests, plan, solved["standard"].table)
         yield from _rows(drive.name, "standard", solved["standard"], fine)
 
@@ -221,7 +224,7 @@ def _rows(name: str, level: str, curves: _Curves, limit: _Curves) -> Iterator[Me
     exact, sliced = limit.limit(limit.table), limit.limit(limit.many_slices)
     for c in range(curves.table.shape[1]):
         own = curves.table[:, c]
-        lengths = {
+        lengths: Json = {
             "mean": own.mean(),
             "added": own.mean() - curves.no_load[c],
             "ripple": np.ptp(own),
@@ -233,5 +236,9 @@ def _rows(name: str, level: str, curves: _Curves, limit: _Curves) -> Iterator[Me
             "mean_missing": exact[:, c].mean() - own.mean(),
             "ripple_missing": np.ptp(sliced[:, c]) - np.ptp(own),
         }
-        places = divmod(c, own.size and curves.table.shape[1] // FLANKS)
-        yield MeshRow(name, *places, level, made.slices, **{key: float(x) / NM for key, x in lengths.items()})
+        places = divmod(c, curves.table.shape[1] // FLANKS)  # flanks, load
+        yield MeshRow(name, *places, level, made.slices, **_in_nm(lengths))
+
+
+def _in_nm(lengths: Json) -> Json:
+    return {name: float(length) / NM for name, length in lengths.items()}

@@ -83,7 +83,7 @@ class AssessedTable:
     bias: PlaneBias | None
     """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
     mesh_bias: FloatArray | None = None
-    """How much higher the mean lies on exact meshes, where its sign is known, m; in the errors. Shape (F,)."""
+    """How much higher the mean lies on exact meshes, where its sign is known; in the errors, m. (F,)"""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with them, and with the metadata that state them."""

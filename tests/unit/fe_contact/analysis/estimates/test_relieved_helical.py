@@ -125,7 +125,7 @@ def test_the_mesh_is_the_cheapest_that_nine_runs_of_ten_keep():
     draft = decision(quiet_pair(), level="draft", **request).mesh.option.error
     doubtful = decision(quiet_pair(), tolerance=AllowedError(1.1 * draft.bought, 0.0), **request)
     sure = decision(quiet_pair(), tolerance=AllowedError(1.1 * draft.prudent, 0.0), **request)
-    assert (doubtful.mesh.level, sure.mesh.level) == ("standard", "draft")
+    assert (doubtful.mesh.level, sure.mesh.level) == ("medium", "draft")
 
 
 def test_no_mesh_is_tried_that_gains_less_than_it_leaves():
