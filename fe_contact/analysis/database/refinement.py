@@ -26,13 +26,17 @@ from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
 
 AIM = 0.9
-"""Part of the tolerance that a pass is planned to use; the rest is for what predictions miss."""
+"""Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
-"""Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
+"""Factor within which predictions are right. No pass begins where even the finest discretization misses the
+tolerance by more than it.
+"""
 
 SMALL = 0.3
-"""Part of the tolerance, a tenth of what may be used, that is refined only where it decides."""
+"""Part of the tolerance below which an error source is refined only where it decides: a tenth of the sum of
+squares.
+"""
 
 MESH_STEP = {
     "plane": {"draft": 0.45, "medium": 0.6, "standard": 0.2},
@@ -186,7 +190,7 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
 
 
 def _settled(resolution: _Resolution) -> _Resolution:
-    """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
+    """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:
         used, sources = resolution.used, resolution.sources
         decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)
