@@ -1,4 +1,4 @@
-"""Gear pairs drawn at random from one recipe: what stated errors and tolerances are assessed on."""
+"""Gear pairs drawn at random from one recipe, on which stated errors and tolerances are assessed."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.geometry.backlash import reference_center_distance
 
 LOADS = (0.4, 1.0, 2.0)
-"""Over the rated one."""
+"""Loads over the rated load."""
 UM = 1e-6
 Draw = np.random.Generator
 

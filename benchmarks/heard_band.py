@@ -15,7 +15,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "flexible_shafts_scene.toml"
@@ -23,7 +23,7 @@ SPEED = 24_000.0 * math.pi / 30.0
 TEETH = 20
 SECONDS, COMPARED = 0.1, 0.02
 WIDE = 1e6
-"""Hz; a band that leaves ten orders whole."""
+"""Wide band, Hz; it leaves ten orders whole."""
 
 
 def figures() -> list[Figure]:

@@ -1,4 +1,4 @@
-"""Do the errors that a table states between its nodes cover what is solved there? Drawn tables."""
+"""Do the errors that a table states between its nodes cover the solutions there? Drawn tables."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ UM = 1e-6
 
 @dataclass(frozen=True)
 class BetweenNodes:
-    """One table at points between its nodes, held against a table that is solved there."""
+    """A table at points between its nodes, compared with a table that is solved there."""
 
     name: str
     met: bool
-    """Whether the table says that it meets its tolerance."""
+    """Whether the table states that it meets its tolerance."""
     inserted: int
-    """Its inserted loads, misalignments and center distances."""
+    """Number of inserted loads, misalignments and center distances."""
     mean: FloatArray
     ripple: FloatArray
-    """`mean`, `ripple`: Value, stated error less that which the solution at the point has in common, true
-    difference, and allowed error of mean and peak-to-peak, m. Shape (Q, 4) each.
+    """`mean`, `ripple`: Mean and peak-to-peak: value, stated error without the part that the solution at the
+    point shares, true difference, and allowed error, m. Shape (Q, 4) each.
     """
     outside: FloatArray
     """Part of the positions at which the difference is beyond the band. Shape (Q,)."""
@@ -76,7 +76,7 @@ def drawn_tables(
 def between_nodes(
     case: PairCase, axes: dict[str, Any], at: FloatArray, cache_dir: Path | None
 ) -> BetweenNodes:
-    """Hold one table against a solution at each of its points."""
+    """Compare one table with a solution at each of its points."""
     options = {"tolerance": TOLERANCE, "cache": cache_dir}
     table = analyze(case.pair, **axes, **options)
     rows = []

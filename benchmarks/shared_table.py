@@ -1,4 +1,4 @@
-"""A table of ten alignments by one process and by two, and what a model of the scaling says of more."""
+"""A table of ten alignments by one process and by two, and the prediction of a scaling model for more."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import numpy as np
 from benchmarks.figures import Figure
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from model_studies.workers import ByExecutor, InProcess, Workers
-from model_studies.workers.executor import RunCost
+from model_studies.workers.run_cost import RunCost
 
 SUBJECT = "a helical table of 10 alignments, gears in the cache"
 TARGET = 0.6
@@ -38,11 +38,11 @@ class Recording:
 
     @property
     def cost(self) -> RunCost:
-        """That of the workers."""
+        """Cost of the workers."""
         return self.workers.cost
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
-        """Start what they do, and yield what they yield."""
+        """Start the tasks of the workers, and yield their results."""
         seconds: list[float] = []
         self.runs.append(seconds)
         return self._recorded(self.workers.run(function, shared, items), seconds)
@@ -61,7 +61,7 @@ class Recording:
 
 @dataclass(frozen=True)
 class Share:
-    """Who spent what on one table."""
+    """Shares of the cost of one table by process."""
 
     wall: float
     caller: float
@@ -109,7 +109,7 @@ def figures() -> list[Figure]:
 
 
 def _table(cache: Path, workers: Workers) -> Share:
-    """Compute the table, and return what it took."""
+    """Compute the table, and return its cost."""
     recording = workers if isinstance(workers, InProcess) else Recording(workers)
     began, cpu = time.perf_counter(), time.process_time()
     analyze(_pair(), torques=_TORQUES, misalignments=_MISALIGNMENTS, cache=cache, workers=recording)

@@ -34,22 +34,22 @@ class ToleranceRun:
 
     name: str
     ended: str
-    """Mesh and slices of the table it gives."""
+    """Mesh and slices of the final table."""
     passes: int
     met: bool
-    """What its receipt says."""
+    """Whether the receipt states that the tolerance is met."""
     stated: float
     true: float
-    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, in parts of
-    what is allowed; of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh
-    lowers.
+    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, relative to
+    the allowed error. The stated error is the part that a tolerance bounds: it leaves out `METHOD`, which no
+    mesh lowers.
     """
     seconds: float
     """CPU seconds of all passes."""
     least_stated: float
     least_true: float
-    """`least_stated`, `least_true`: Of the quickest run whose stated, or whose true errors are within the
-    tolerance; NaN if there is none.
+    """`least_stated`, `least_true`: Cost of the quickest run whose stated, or whose true errors are within
+    the tolerance; NaN if there is none.
     """
     reason: str = "met"
     """Why the passes ended."""
@@ -99,7 +99,7 @@ def assess(case: PairCase) -> ToleranceRun:
 
 
 def used(error: FloatArray, value: FloatArray) -> float:
-    """Return the largest error of mean and peak-to-peak in parts of what the tolerance allows."""
+    """Return the largest error of mean and peak-to-peak over the allowed error."""
     return float(np.max(np.abs(error[:2]) / ALLOWED.of(value[:2])))
 
 
@@ -170,7 +170,7 @@ def _row(one: ToleranceRun) -> str:
 
 
 def _per_cent(found: Iterable[bool]) -> float:
-    """Per cent of what is true."""
+    """Return the percentage of true values."""
     return 100.0 * float(np.mean(list(found)))
 
 

@@ -1,4 +1,4 @@
-"""Plausibility: limits of practice, and what is beyond them. A check warns and changes no number."""
+"""Plausibility: limits of practice, and findings beyond them. A check warns and changes no number."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ TYPED: dict[str, tuple[Unit, ...]] = {
     "kg m^2": (Unit("kg cm^2", 1e-4), Unit("kg mm^2", 1e-6), Unit("kg m^2", 1.0)),
     "1": (Unit("per cent", 1e-2),),
 }
-"""By SI unit: what people type instead, the likeliest first."""
+"""Units that people type by mistake, by the SI unit of the field; the likeliest first."""
 
 SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
 def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, high: float) -> str:
-    """Return the unit in which a number makes sense that does not in its own; empty where there is none.
+    """Return the unit in which a number is plausible that is not in the field's unit; empty if there is none.
 
     Parameters
     ----------
@@ -53,19 +53,19 @@ def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, 
 
 @dataclass(frozen=True)
 class Check:
-    """A limit of practice that a quantity is held against."""
+    """A limit of practice that a quantity is compared with."""
 
     name: str
-    """What a finding is called."""
+    """Name of the findings of the check."""
     quantity: str
-    """What is compared, in words."""
+    """Compared quantity, in words."""
     low: float | None
     high: float | None
     """`low`, `high`: Bounds in `unit`; None: no such bound."""
     unit: str
     """Unit of the bounds; "1" for a ratio."""
     source: str
-    """Where the limit comes from."""
+    """Source of the limit."""
 
 
 class PlausibilityWarning(UserWarning):
@@ -81,27 +81,27 @@ class Finding:
     field: str
     """Dotted name of the field, as in an `InputError`."""
     value: float
-    """Of the field, in `unit`."""
+    """Value of the field, in `unit`."""
     low: float
     high: float
-    """`low`, `high`: Usual values of the field in `unit`: here, with all that is beside it. No bound is 0 or
-    infinity.
+    """`low`, `high`: Usual values of the field in `unit`, given the other values of the case. No bound is 0
+    or infinity.
     """
     unit: str
     """SI unit."""
     reason: str
-    """What is implausible, in words."""
+    """Reason why the value is implausible, in words."""
     source: str
-    """Of the limit."""
-    whole: str = ""
-    """Other fields that must have slipped with this one, in words; empty if it stands alone."""
+    """Source of the limit."""
+    unit_note: str = ""
+    """Other fields that must have slipped with the field, in words; empty if it slipped alone."""
 
     def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
-        """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
+        """Return the finding in one line, in the caller's name and unit of the field (default: ours, SI)."""
         unit = field_unit or SI_UNITS[self.unit]
         suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")
-        question = f" Did you give {suspected}{self.whole}?" if suspected else ""
+        question = f" Did you give {suspected}{self.unit_note}?" if suspected else ""
         return f"{field or self.field} = {written}: {self.reason} ({self.source}).{question}"
 
     def to_json(self) -> Json:
@@ -115,7 +115,7 @@ class Finding:
             "high": self.high if math.isfinite(self.high) else None,
             "reason": self.reason,
             "source": self.source,
-            "whole": self.whole,
+            "whole": self.unit_note,
             "message": self.message(),
         }
 
@@ -135,7 +135,7 @@ class Checklist:
         *,
         scale: float = 1.0,
         reason: str | None = None,
-        whole: str = "",
+        unit_note: str = "",
         skip_zero: bool = False,
     ) -> Iterator[Finding]:
         """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
@@ -144,7 +144,7 @@ class Checklist:
         high = math.inf if rule.high is None else rule.high * scale
         if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
             text = reason or f"implausible {rule.quantity}"
-            yield Finding(check, field, float(value), low, high, unit, text, rule.source, whole)
+            yield Finding(check, field, float(value), low, high, unit, text, rule.source, unit_note)
 
 
 def finding_of(content: Json) -> Finding:

@@ -29,29 +29,31 @@ from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
-MAX_BLOCKS, ORDERS = 6, 5
-MIN_SAMPLES = 32
-MIN_PITCHES = 2.0
+MAX_BLOCKS, ORDERS = 6, 5  # most blocks of a run that are compared, and mesh orders compared in each
+MIN_SAMPLES = 32  # least samples of a block
+MIN_PITCHES = 2.0  # least base pitches of the first mesh in a block
 BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
 IN_PLANE = (*BY_TORSION, "x", "y")
-ORDER_MATCH = 1e-6
-NM = 1e-9
+ORDER_MATCH = 1e-6  # relative difference of orders, below which they are the same
+NM = 1e-9  # nanometer, m
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
 NAN = float("nan")
-WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
+WARM_UP = 1e-4  # duration of a run before the measured ones, s: it compiles their routines
 HALF, TABLE_REST = "table_half", 1.0 / 3.0
-"""The fidelity of every second position node, and what of its error the whole table leaves: second order."""
-MIN_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+"""Name of the fidelity of every second position node, and share of its error that the whole table has: second
+order.
+"""
+MIN_RATE = 1.5  # least fall of errors from fidelity to fidelity that allows an extrapolation
 STEPS = 0.2
 """Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 
 
 @dataclass(frozen=True)
 class _Vibration:
-    """In B blocks of a run: m meshes, b bearings, n mesh orders (of the first mesh for bearings)."""
+    """Vibration in B blocks of a run: m meshes, b bearings, n orders of a mesh (first mesh for bearings)."""
 
     rms: FloatArray
-    """Of the transmission error about its mean, m. Shape (B, m)."""
+    """Root mean square of the transmission error about its mean, m. Shape (B, m)."""
     error_orders: FloatArray
     """Amplitudes of the transmission errors, m. Shape (B, m, n)."""
     force_orders: FloatArray
@@ -67,7 +69,7 @@ class BlockGrid:
     time: FloatArray
     """Output grid, s. Shape (T,)."""
     position: FloatArray
-    """Of the meshes in the kinematic motion, unwrapped base pitches. Shape (m, T)."""
+    """Position of the meshes in the kinematic motion, unwrapped base pitches. Shape (m, T)."""
     bounds: IntArray
     """First sample of each block, and the one behind its last. Shape (B, 2)."""
     orders: int
@@ -140,11 +142,13 @@ class TimeIntegration:
     title: str
     family: str
     tolerance: float | None = None
-    """m; None: the scene's own."""
+    """Tolerance of the time steps, m; None: the tolerance of the scene."""
     every: int = 1
     """Position nodes of the tables that are kept: every one, every second ..."""
     additions: tuple[str, ...] | None = None
-    """What effects may add; those that add something else, or nothing, are off. None: all."""
+    """Additions to the model that effects may make. An effect that makes another one, or none, is off. None:
+    all.
+    """
 
     def refusal(self, scene: Scene) -> str | None:
         """Say that fewer effects change nothing, or that a fixed step knows no tolerance."""
@@ -254,7 +258,7 @@ class _LinearResponse:
 
 
 def _of_one_speed(response: HarmonicResponse, system: System, blocks: BlockGrid) -> _Vibration:
-    """Pick each mesh's own orders, and those of the first mesh for bearings."""
+    """Return the vibration of each mesh at its orders, and of bearings at the orders of the first mesh."""
     pace = np.abs(blocks.position[:, -1] - blocks.position[:, 0])
     ratio = pace / pace[0]
     size = np.abs(response.dynamic_transmission_error[:, 0])
@@ -304,12 +308,14 @@ class FidelityResult(model_studies.FidelityResult):
 
     family: str
     rms_error: float = NAN
-    """Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of squares
-    over that of the reference. NaN: not known.
+    """Relative error of the rms of the transmission errors: over all blocks and meshes, root of the sum of
+    squared errors over that of the squares of the reference. NaN: not known.
     """
     transmission_error_orders: float = NAN
     bearing_force_orders: float = NAN
-    """`transmission_error_orders`, `bearing_force_orders`: Likewise of the amplitudes at the orders."""
+    """`transmission_error_orders`, `bearing_force_orders`: Relative errors of the amplitudes at the orders,
+    formed as `rms_error` is.
+    """
 
 
 @brief
@@ -328,7 +334,7 @@ class Frontier(model_studies.Frontier[FidelityResult]):
     blocks: int
     """`orders`, `blocks`: Orders that were compared, and blocks of the run."""
     transmission_error_rms: FloatArray = field(metadata=in_unit("m", "block", "mesh"))
-    """Of the reference, m. Shape (blocks, meshes)."""
+    """Root mean square of the transmission errors in the reference, m. Shape (blocks, meshes)."""
 
 
 def frontier(
@@ -355,7 +361,7 @@ def frontier(
     system = assemble(scene)
     blocks, scene = BlockGrid.of(system), system.resolved(scene)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
-    outcomes, left_out = run_fidelities(
+    outcomes, omitted = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         scene,
         partial(_warm_up, scene, blocks),
@@ -375,7 +381,7 @@ def frontier(
     )
     return Frontier(
         results,
-        left_out,
+        omitted,
         knee_of_results(results),
         _chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,
@@ -385,7 +391,7 @@ def frontier(
 
 
 def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], float]:
-    """Return the steps of the run of each valid fidelity over those of the scene's own, and no cost beside.
+    """Return the steps of the run of each valid fidelity, over the steps of the scene as it is, and 0.
 
     Raises `InputError`: no mesh, or a run too short to compare.
     """
@@ -437,7 +443,7 @@ def _relative_difference(values: FloatArray, reference: FloatArray) -> float:
 
 
 def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) -> Errors:
-    """Return what the errors of two fidelities leave behind the finer one, by the rate at which they fell."""
+    """Estimate the errors of the finer of two fidelities by the rate at which the errors fell."""
     if len(coarser) < 2:
         return dict.fromkeys(FIGURES, NAN)
     (_, far), (_, near) = coarser[-2:]
@@ -448,5 +454,5 @@ def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) 
 
 
 def knee_of_results(results: Sequence[FidelityResult]) -> str | None:
-    """Return the knee; differences below what steps and tables of the reference leave say nothing."""
+    """Return the knee; differences below the errors of the reference by steps and tables do not count."""
     return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

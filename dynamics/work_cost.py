@@ -1,18 +1,15 @@
-"""Cost of a piece of work: predicted before it runs, corrected by what is known of the host, measured."""
+"""Cost of a piece of work: predicted before it runs, corrected for the host, measured."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from bounds import engineering
 from host import memory_figure, peak_memory
 from model_studies.progress import ANNOUNCED, Progress
 from model_studies.workers import InProcess, Workers, spent
-
-Result = TypeVar("Result")
 
 
 class Cost(NamedTuple):
@@ -26,12 +23,12 @@ class Cost(NamedTuple):
         return Cost(self.seconds + later.seconds, max(self.bytes, later.bytes))
 
     def times(self, count: float) -> Cost:
-        """Return the cost of so many pieces of the same work, one after the other."""
+        """Return the cost of `count` pieces of the same work, one after the other."""
         return Cost(self.seconds * count, self.bytes)
 
     @property
     def text(self) -> str:
-        """Say the cost: "about 25 CPU s, 1.2 GB"."""
+        """The cost in words: "about 25 CPU s, 1.2 GB"."""
         return f"about {engineering(self.seconds, 2)} CPU s, {engineering(self.bytes / 1e9, 2)} GB"
 
 
@@ -40,25 +37,25 @@ class WorkCost:
     """Predicted and measured cost of work that was done."""
 
     predicted_seconds: float
-    """`predicted_seconds`, `seconds`: CPU seconds; predicted for this host."""
+    """`predicted_seconds`, `seconds`: CPU seconds, predicted for this host and measured."""
     predicted_bytes: float
-    """Of the largest working set."""
+    """Predicted bytes of the largest working set."""
     seconds: float
     bytes: float | None = None
-    """By how much the process grew above what it held before; None where it had been as large before, and
-    nobody can tell.
+    """Growth of the process above its largest memory before; None where it had been as large before, so that
+    the growth is unknown.
     """
 
 
 def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
-    """Return a predicted cost with the speed of this host, and with what earlier work of a kind took.
+    """Return a predicted cost with the speed of this host, and with the cost of earlier work of a kind.
 
     Parameters
     ----------
     kind : str
         The name under which `run_log` keeps the work.
     cost : Cost
-        On the reference host of `host_speed`.
+        Cost on the reference host of `host_speed`.
     cache : Path, optional
         Directory of what is known of the host; None: its speed is measured once per process.
     """
@@ -69,36 +66,59 @@ def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
     return cost._replace(seconds=cost.seconds * factor)
 
 
-def measured(
-    kind: str,
-    cost: Cost,
-    cache: Path | None,
-    work: Callable[[], Result],
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> tuple[Result, WorkCost]:
-    """Do work; return its result and what it cost beside what was predicted, which the log keeps too.
+@dataclass(frozen=True)
+class WorkMeter:
+    """Clock and memory of this process at the beginning of a piece of work."""
 
-    Parameters
-    ----------
-    kind, cost, cache
-        As of `on_this_host`.
-    workers : Workers
-        Who does some of it: their time counts.
-    """
-    from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
-    from model_studies.run_log import record  # noqa: PLC0415
+    kind: str
+    reference: Cost
+    """Predicted, on the reference host."""
+    cache: Path | None
+    workers: Workers
+    predicted: Cost
+    """On this host."""
+    began: float
+    """CPU seconds that were spent before."""
+    memory: int | None
+    """Resident before, bytes; None: the system does not tell."""
+    peak: int
+    """Largest resident memory before, bytes."""
 
-    predicted = on_this_host(kind, cost, cache)
-    memory, peak, began = memory_figure("VmRSS"), peak_memory(), spent(workers)
-    result = work()
-    seconds, highest = spent(workers) - began, peak_memory()
-    record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
-    grown = float(highest - memory) if memory is not None and highest > peak else None
-    return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)
+    @classmethod
+    def at_start(
+        cls,
+        kind: str,
+        reference: Cost,
+        cache: Path | None,
+        workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    ) -> WorkMeter:
+        """Read clock and memory before the work.
+
+        Parameters
+        ----------
+        kind, reference, cache
+            Arguments kind, cost and cache of `on_this_host`.
+        workers : Workers
+            Who does some of it: their time counts.
+        """
+        predicted = on_this_host(kind, reference, cache)
+        memory, peak = memory_figure("VmRSS"), peak_memory()
+        return cls(kind, reference, cache, workers, predicted, spent(workers), memory, peak)
+
+    def finish(self) -> WorkCost:
+        """Return what the work cost beside what was predicted, which the log keeps too."""
+        from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
+        from model_studies.run_log import record  # noqa: PLC0415
+
+        seconds, highest = spent(self.workers) - self.began, peak_memory()
+        expected = self.reference.seconds * host_slowness(self.cache)
+        record(self.cache, {self.kind: expected}, {self.kind: seconds})
+        grown = float(highest - self.memory) if self.memory is not None and highest > self.peak else None
+        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, grown)
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
-    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+    """Report the cost of a stage before it begins, after its name, if that is more than a moment.
 
     `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
     """

@@ -36,7 +36,7 @@ State = tuple[int, int, int, int]
 
 
 class Sources:
-    """Files below a folder as they were when they were first looked at, and those of this project.
+    """Files below a folder in the state of their first reading, and the files of this project.
 
     Among foreign packages of an installation, `packages` names those that count.
     """
@@ -63,7 +63,7 @@ class Sources:
         return self._keys[name]
 
     def unchanged(self) -> bool:
-        """Whether all files that were looked at are as they were then."""
+        """Whether all files are in the state of their first reading."""
         files = (entry for entry in self._states.items() if entry[0].endswith(".py"))
         return all(_state(path) == state for path, state in files)
 
@@ -112,7 +112,7 @@ class Sources:
         return self._roots[package]
 
     def _read(self, manifest: Path) -> bool:
-        """Take the keys of a manifest if all of its files are as they were."""
+        """Read the keys of a manifest if all of its files are in the recorded state."""
         try:
             content = json.loads(manifest.read_bytes())
             states: dict[str, State | None] = {path: tuple(s) for path, s in content["states"].items()}
@@ -157,7 +157,7 @@ def _absolute(module: str, file: str) -> str:
 
 
 def _state(path: str) -> State | None:
-    """Return what changes with a file, or with the list of files of a folder; None if there is none."""
+    """Return a state that changes with a file or with the list of files of a folder; None without it."""
     try:
         status = os.stat(path)  # noqa: PTH116 - called for each file of the project
     except OSError:

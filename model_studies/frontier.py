@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from bounds.brief import brief
 from host import cpu_seconds
 from model_studies.progress import Progress
+from model_studies.record import under_key
 from model_studies.variants import run_variants
 
 R = TypeVar("R")
@@ -29,11 +30,11 @@ class Fidelity(Protocol[Q_contra]):
 
     @property
     def title(self) -> str:
-        """In words."""
+        """Name of the fidelity in words."""
 
     @property
     def family(self) -> str:
-        """The parameter it varies: errors within a family fall towards its finest."""
+        """Parameter that varies within a family: errors fall towards its finest value."""
 
     def refusal(self, request: Q_contra) -> str | None:
         """Return why this fidelity is not valid for a request; None if it is."""
@@ -74,7 +75,7 @@ def run_fidelities(
 
     Returns
     -------
-    outcomes, left_out
+    outcomes, omitted
         As of `run_variants`.
     """
     refusals = {fidelity.name: fidelity.refusal(request) for fidelity in fidelities}
@@ -89,10 +90,10 @@ def run_fidelities(
 
     by_name = {fidelity.name: fidelity for fidelity in valid}
     outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
-    left_out = refused | failed
+    omitted = refused | failed
     if len(outcomes) < 2:
-        raise failures[-1](f"an error needs two fidelities to compare; left out: {left_out}")
-    return list(outcomes.values()), left_out
+        raise failures[-1](f"an error needs two fidelities to compare; left out: {omitted}")
+    return list(outcomes.values()), omitted
 
 
 def against_finest(
@@ -151,12 +152,12 @@ class FidelityResult:
     """The outcome of one fidelity; a library adds its errors and further figures."""
 
     FIGURES: ClassVar[tuple[str, ...]]
-    """The fields that are relative errors; NaN: not known."""
+    """Names of the fields that are relative errors; an error of NaN is not known."""
 
     name: str
     title: str
     cpu_seconds: float
-    """Of the whole computation."""
+    """CPU seconds of the whole computation."""
 
     @property
     def errors(self) -> dict[str, float]:
@@ -179,8 +180,10 @@ class Frontier(Generic[R_co]):
     """An accuracy study."""
 
     results: tuple[R_co, ...]
-    """In the order of their usual cost; the last one is the reference, whose errors are its own."""
-    left_out: dict[str, str]
+    """Results in the order of their usual cost. The last one is the reference: its errors are its own
+    estimates.
+    """
+    omitted: dict[str, str] = field(metadata=under_key("left_out"))
     """Name of a fidelity to the reason why it has no result."""
     knee: str | None
     """The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,

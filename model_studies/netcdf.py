@@ -20,13 +20,15 @@ if TYPE_CHECKING:
 MAX_VARIABLES = 4096
 MAX_ATTRIBUTES = 256
 MAX_ENTRIES = 32
-"""Of an attribute of texts or lists, as of dimensions in HDF5: all may point to one long text."""
+"""Most entries of an attribute of texts or lists, the limit of dimensions in HDF5. All entries may point to
+one long text.
+"""
 FREE_BYTES = 2**30
-"""Of values and texts, which any file may unpack to."""
+"""Bytes of values and texts that any file may unpack to."""
 UNPACKED = 100
 """Bytes of values and texts per byte of a larger file."""
 DAMAGE = (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError, MemoryError)
-"""What HDF5, its readers and a record of foreign fields raise is not one class."""
+"""Errors of damaged files. HDF5, its readers and a record of foreign fields have no common error class."""
 
 
 class UnreadableFile(ValueError):
@@ -78,7 +80,7 @@ def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
 
 
 def _check(file: Any, maximum: int) -> None:
-    """Refuse what is no variable of the file itself, and more than so many bytes of values and texts."""
+    """Refuse members that are no variables of the file itself, and too many bytes of values and texts."""
     total = 0
     for size in _sizes(file):
         total += size
@@ -105,7 +107,7 @@ def _sizes(file: Any) -> Iterator[int]:
 
 
 def _names(root: Any) -> list[bytes]:
-    """Return the names of what a group holds; links to other places are refused."""
+    """Return the names of the members of a group; links to other places are refused."""
     from h5py import h5l  # noqa: PLC0415 - needed for files only
 
     if root.get_num_objs() > MAX_VARIABLES:
@@ -118,7 +120,7 @@ def _names(root: Any) -> list[bytes]:
 
 
 def value_size(variable: Any, kind: Any) -> int:
-    """Return the unpacked size of a variable's values; what is not in the file itself is refused."""
+    """Return the unpacked size of a variable's values; values outside the file itself are refused."""
     from h5py import h5d, h5z  # noqa: PLC0415 - needed for files only
 
     made = variable.get_create_plist()

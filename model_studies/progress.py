@@ -7,22 +7,24 @@ from collections.abc import Callable, Mapping
 from bounds import engineering
 
 Progress = Callable[[str, float], None]
-"""Called as progress(stage, fraction); behind a semicolon the stage may say more, see `stage_name`."""
+"""Callback for progress, called as progress(stage, fraction); behind a semicolon the stage may say more, see
+`stage_name`.
+"""
 
 Report = Callable[[float], None]
-"""Called with the fraction done of one piece of work, from 0 to 1."""
+"""Callback for the fraction done of one piece of work, from 0 to 1."""
 
 ANNOUNCED = 3.0
 """CPU seconds from which on a cost is reported before the work begins."""
 
 
 def stage_name(reported: str) -> str:
-    """Return the name of a stage without what is said of it behind a semicolon."""
+    """Return the name of a stage without the remark behind a semicolon."""
     return reported.partition(";")[0]
 
 
 def announce(progress: Progress, stage: str, seconds: float, subject: str = "") -> None:
-    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+    """Report the predicted cost of a stage before it begins, behind its name, if it is more than a moment.
 
     `progress`: called as progress("pairs; 200 before and after: about 25 CPU s", 0.0).
     """

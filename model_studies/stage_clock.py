@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from bounds.types import Json
 from host import children_peak_memory, cpu_seconds, peak_memory
 from model_studies.progress import Progress, silent
-from model_studies.workers.executor import RunCost
+from model_studies.workers.run_cost import RunCost
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class StageClock:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time what happens inside."""
+        """Time the block as a stage; a context manager."""
         begun = TimeTaken.now(self._remote)
         try:
             yield

@@ -1,4 +1,4 @@
-"""From the velocity of any surface to sound: radiation models, levels, sound power by order, recordings."""
+"""Sound from the velocity of any surface: radiation models, levels, sound power by order, recordings."""
 
 from dynamics.acoustics.air import Air
 from dynamics.acoustics.boundary_elements import (
@@ -11,6 +11,7 @@ from dynamics.acoustics.levels import (
     LevelBand,
     Range,
     a_weighting,
+    band_cases,
     free_field_pressure,
     level_bands,
     sound_power_level,
@@ -72,6 +73,7 @@ __all__ = [
     "SoundFigures",
     "a_weighting",
     "audible",
+    "band_cases",
     "common_full_scale",
     "compare_models",
     "errors_db",

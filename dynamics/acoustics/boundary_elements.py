@@ -30,14 +30,16 @@ from model_studies.progress import Progress, by_cost, silent
 from model_studies.workers import InProcess, Workers
 
 MARGIN = 8
-"""Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
+"""Orders of spherical harmonics above the wavenumber times the radius; their part of the far field is below
+1e-6.
+"""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
 EDGES = 2.6
 """Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
 RESIDUAL = 1e-8
 """Greatest relative residual of the dense solve."""
 MAX_PANELS = 8000
-"""So many take 7 GB at the peak."""
+"""Most panels of a hull: 8000 take 7 GB at the peak."""
 SHARES = {"operators": 0.98, "pressure": 0.02}
 """Usual shares in the time."""
 STAGE = "boundary elements"
@@ -48,7 +50,8 @@ def _far_field_resistance(
 ) -> ComplexArray:
     """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
 
-    Of the kernel e^{+ikr}: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn of panels.
+    The kernel is e^{+ikr}. Arguments: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn
+    of panels.
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())
@@ -69,16 +72,17 @@ class _SurfacePressure:
     """The solution of the exterior problem at one frequency."""
 
     pressure: ComplexArray
-    """At the nodes, Pa, complex peak amplitudes of e^{+i omega t} for the shapes with amplitude 1. Shape (N,
-    M).
+    """Pressure at the nodes for the shapes with amplitude 1, Pa: complex peak amplitudes of e^{+i omega t}.
+    Shape (N, M).
     """
     resistance: ComplexArray
-    """From the far field, kg/s. Shape (M, M)."""
+    """Resistance by the power in the far field, kg/s. Shape (M, M)."""
     surface_resistance: ComplexArray
-    """From pressure and velocity on the hull, Hermitian part; equal but for the discretization. Shape (M, M).
+    """Resistance by pressure and velocity on the hull, Hermitian part, kg/s: equal to `resistance` but for
+    the discretization. Shape (M, M).
     """
     residual: float
-    """Of the linear solve, relative."""
+    """Relative residual of the linear solve."""
 
     def imbalance(self, amplitudes: ComplexArray) -> float:
         """Return the power into the air at the hull less that in the far field, relative to the latter."""
@@ -109,7 +113,7 @@ class BoundaryElements:
         return operators_cost(panels)
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return what the mesh is off: 1 % on spheres and boxes, 0.3 dB by the rounding of a coarse hull."""
+        """Return the error bounds of the mesh: 1 % on spheres and boxes, 0.3 dB by a coarse hull."""
         del ka
         return -0.3, 0.3
 

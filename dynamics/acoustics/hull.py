@@ -16,7 +16,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 PANELS_PER_WAVELENGTH = 6.0
 """Least number of the longest edges in a wavelength, where a model resolves the waves on the hull."""
 ROUNDED_DOWN = 1.0 - 1e-12
-"""Of a limit of wavelength or frequency: no panel fails by rounding to resolve it."""
+"""Factor on a limit of wavelength or frequency, by which rounding alone makes no panel miss the limit."""
 FLAT = 1e-9
 """A triangle of less height over its longest edge has no normal."""
 
@@ -29,7 +29,7 @@ class Hull:
     """
 
     nodes: FloatArray
-    """m. Shape (N, 3)."""
+    """Positions of the nodes, m. Shape (N, 3)."""
     triangles: IntArray
     """Nodes of each panel, counterclockwise as seen from the air. Shape (T, 3)."""
 

@@ -15,7 +15,7 @@ from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers, divided
 
 BLOCK = 512
-"""Panels, at most, whose rows of the operators are a task."""
+"""Most panels whose rows of the operators make one task."""
 TESTED = "tested"
 """Name of the panels of a block in the library's mesh."""
 SECONDS, GROWTH = 1.40e-6, 2.24
@@ -25,7 +25,9 @@ Fitted to spheres of 500 to 2880 panels, within 1.2; 7040 panels of a box took 6
 is more than the square of assembly: larger operators miss the cache more often.
 """
 BYTES, LIBRARY = 110.0, 1e8
-"""For the square of the number of panels (5.9 GB measured with 7040), and of NGSolve."""
+"""Memory of the operators over the square of the number of panels, bytes (5.9 GB measured with 7040 panels),
+and memory of NGSolve, bytes.
+"""
 
 
 def operators_cost(panels: int) -> Cost:

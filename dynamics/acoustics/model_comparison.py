@@ -1,4 +1,8 @@
-"""The radiation models side by side for one vibration: level, error, cost predicted and measured."""
+"""The radiation models side by side for one vibration: level, error, cost predicted and measured.
+
+Models differ in what they neglect. `ka` is the wavenumber times the radius of the sphere with the hull's
+volume.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +26,10 @@ from dynamics.acoustics.radiation import (
 from dynamics.checks import positive
 from dynamics.errors import DynamicsError
 from dynamics.types import ComplexArray, FloatArray
-from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
+from dynamics.work_cost import Cost, WorkCost, WorkMeter, announce, on_this_host
 from host import MissingExtra
 from model_studies.progress import Progress, silent
-from model_studies.variants import run_variants
+from model_studies.variants import reason_of_failure
 from model_studies.workers import InProcess
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
@@ -34,7 +38,9 @@ PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
 OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
-"""ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
+"""Values of ka, and least and largest error of monopoles at each, dB, on spheres, a box and modes of five
+gear cases.
+"""
 WAVES_IN_MEMORY = 4
 """Arrays of phases."""
 
@@ -59,7 +65,7 @@ class ElementalRadiators:
 
     @property
     def solid_angle(self) -> float:
-        """Return that into which each panel radiates, sr."""
+        """Return the solid angle into which each panel radiates, sr."""
         return 2.0 * np.pi if self.baffled else 4.0 * np.pi
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
@@ -137,19 +143,19 @@ MODELS: tuple[RadiationModel, ...] = (
     ElementalRadiators(baffled=True),
     BoundaryElements(),
 )
-"""From coarse to fine."""
+"""Radiation models from coarse to fine."""
 
 
 @dataclass(frozen=True)
 class _ModelResult:
-    """What a radiation model says of a vibration."""
+    """Sound power of a vibration by one radiation model."""
 
     power: float
-    """W."""
+    """Sound power, W."""
     efficiency: float
     """Radiation efficiency, 1."""
     cost: WorkCost
-    """Predicted and measured."""
+    """Predicted and measured cost."""
 
     @property
     def level(self) -> float:
@@ -162,11 +168,11 @@ class ModelComparison:
     """Results by the model's name, from coarse to fine, and why others have none."""
 
     results: Mapping[str, _ModelResult]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     predicted: Mapping[str, Cost]
     """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
-    """By how much the level of each may be off, dB, from and to; below 0: too quiet."""
+    """Bounds of the error of each level, dB: lower and upper; a negative error is a level that is too low."""
 
     @property
     def errors(self) -> dict[str, float]:
@@ -195,7 +201,7 @@ def compare_models(
     progress : callable
         Called as progress(stage, fraction); before a costly model with its predicted cost behind the stage.
     offered : sequence of RadiationModel, optional
-        Of which cost and error are stated, too; they are not computed.
+        Further models whose cost and error are stated; they are not computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     """
@@ -206,20 +212,17 @@ def compare_models(
     panels, outer = len(hull.triangles), wavenumber * hull.outer_radius
     reference = {name: model.cost(panels, outer, 1) for name, model in listed.items()}
     predicted = {name: on_this_host(WORK.format(name), cost, cache) for name, cost in reference.items()}
-
-    def compute(model: RadiationModel) -> _ModelResult:
-        name = model.model_name
-        announce(progress, name.replace("_", " "), f"{panels} panels", predicted[name])
-        power, cost = measured(
-            WORK.format(name),
-            reference[name],
-            cache,
-            lambda: sound_power(model, hull, frequency, normal_velocity, air),
-            getattr(model, "workers", InProcess()),
-        )
-        return _ModelResult(power, power / plane, cost)
-
-    results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
+    results: dict[str, _ModelResult] = {}
+    omitted: dict[str, str] = {}
+    for count, (name, model) in enumerate(by_name.items()):
+        progress("models", count / len(by_name))
+        with reason_of_failure(omitted, name, (DynamicsError, MissingExtra)):
+            announce(progress, name.replace("_", " "), f"{panels} panels", predicted[name])
+            workers = getattr(model, "workers", InProcess())
+            meter = WorkMeter.at_start(WORK.format(name), reference[name], cache, workers)
+            power = sound_power(model, hull, frequency, normal_velocity, air)
+            results[name] = _ModelResult(power, power / plane, meter.finish())
+    progress("models", 1.0)
     ka = wavenumber * hull.equivalent_radius
     bands = {name: model.error_band(ka) for name, model in listed.items()}
-    return ModelComparison(results, left_out, predicted, bands)
+    return ModelComparison(results, omitted, predicted, bands)

@@ -29,11 +29,11 @@ class ModalResistance:
     """
 
     frequency: FloatArray = field(metadata=stored("Hz", "frequency", "frequency"))
-    """Hz, increasing. Shape (F,)."""
+    """Frequencies, Hz, increasing. Shape (F,)."""
     matrix: ComplexArray = field(
         metadata=stored("kg s-1", "radiation resistance", "frequency", "coordinate", "coordinate")
     )
-    """Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
+    """Resistance matrices, Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
 
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.
@@ -43,7 +43,7 @@ class ModalResistance:
         Parameters
         ----------
         frequency : (B,) array
-            Hz.
+            Frequencies, Hz.
         velocity : (B, M) array
             Complex peak amplitudes of the shapes, m/s.
         """
@@ -128,11 +128,11 @@ class OrderPower:
     """
 
     frequency: FloatArray
-    """Hz, above zero. Shape (K, B)."""
+    """Frequencies of the orders, Hz, above zero. Shape (K, B)."""
     power: FloatArray
-    """W. Shape (K, B)."""
+    """Sound power of the orders, W. Shape (K, B)."""
     floor: FloorPower | None = None
-    """Of orders that are not among these: totals and bands have it."""
+    """Sound power of orders that are not among these K; totals and bands include it."""
 
     def __post_init__(self) -> None:
         frequency, power = np.asarray(self.frequency, dtype=float), np.asarray(self.power, dtype=float)
@@ -165,7 +165,7 @@ class OrderPower:
 
     @property
     def weighted_error(self) -> FloatArray:
-        """Return by how much the A-weighted power of all orders may be off for them, (B,), W."""
+        """Return the error of the A-weighted power of all orders by the floor, (B,), W."""
         return self._of_floor("missed")
 
     def _of_floor(self, name: str, weighted: bool = True) -> FloatArray:
@@ -186,7 +186,7 @@ class OrderPower:
 
     @property
     def total_error(self) -> FloatArray | None:
-        """Return by how much `total_weighted_level` may be off for them, (B,), dB; None without any."""
+        """Return the error of `total_weighted_level` by the floor, (B,), dB; None without a floor."""
         if self.floor is None:
             return None
         total = self.total_weighted_power
@@ -231,7 +231,7 @@ def order_power(resistance: ModalResistance, frequency: FloatArray, velocity: Co
     Parameters
     ----------
     frequency : (K, B) array
-        Hz, within those of the resistance.
+        Frequencies within those of the resistance, Hz.
     velocity : (K, B, M) array
         Complex peak amplitudes of the M shapes.
     """

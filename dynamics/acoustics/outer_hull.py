@@ -29,11 +29,15 @@ MARGIN = 8.0
 """Pixels by which another face must be in front: a face under `STEEP` spans 5 in depth in its own pixel."""
 
 OUTSIDE = 0.5
-"""A face that sees this part of its sky is outside."""
+"""Least part of its sky that a face sees, by which it is outside."""
 JOINED = 0.15
-"""So is what is joined to such a face and sees this part: ribs, recesses; walls behind a bore see less."""
+"""Least part of its sky that a face sees, by which it is outside if it is joined to a face that is: ribs and
+recesses pass, walls behind a bore do not.
+"""
 POCKET = 0.05
-"""So is what is left in between if it sees this part on average: corners of a tub, but no inner cavity."""
+"""Least mean part of its sky, by which an area among outside faces is outside too: corners of a tub pass,
+inner cavities do not.
+"""
 QUARTERS = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]])
 """Nodes of the four panels of a triangle with six nodes."""
 
@@ -146,16 +150,16 @@ def _cap(points: FloatArray, rim: IntArray, first: int) -> tuple[IntArray, Float
 
 @dataclass(frozen=True)
 class OuterHull:
-    """What the air outside touches: closed, walls of inner cavities left out, openings capped."""
+    """Outer surface of a housing, closed: without the walls of inner cavities, openings capped."""
 
     hull: Hull
     """Panels of outer faces, four for each face of an element, then the caps."""
     motion: FloatArray
     """Displacement of each node per reduced coordinate. Shape (N, 3, r)."""
     inner_area: float
-    """Of the faces left out, m^2."""
+    """Area of the inner faces, which the hull leaves out, m^2."""
     cap_area: float
-    """Of the caps, m^2."""
+    """Area of the caps over openings, m^2."""
 
     @cached_property
     def shapes(self) -> FloatArray:
@@ -194,8 +198,8 @@ def outer_hull(housing: ReducedHousing) -> OuterHull:
         motion = np.concatenate([motion, np.tensordot(weights, motion[rim], 1)])
     hull = Hull(points, np.concatenate(covers))
     a, b, c = (housing.surface.points[triangles[~outer][:, k]] for k in range(3))
-    left_out = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return OuterHull(hull, motion, left_out, float(hull.areas[len(panels) :].sum()))
+    inner_area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return OuterHull(hull, motion, inner_area, float(hull.areas[len(panels) :].sum()))
 
 
 def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:

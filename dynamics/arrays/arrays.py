@@ -1,4 +1,9 @@
-"""The assembled system as plain arrays: what the compiled loops see."""
+"""The assembled system as plain arrays, which the compiled loops read.
+
+A law sets the speed of a shaft over time: a drive, or the free rotation of a train without a drive. The
+kinematic motion turns all shafts by exact ratios to the laws; freedoms q are the deviations from it. Local
+coordinates y = G q + y0 are those in which a force element has its law.
+"""
 
 from __future__ import annotations
 
@@ -55,13 +60,13 @@ class KinematicMotion(NamedTuple):
     each of f frames against another, exact fractions. Shape (m + f, k) each.
     """
     per_radian: FloatArray
-    """The same per radian of each law, rounded. Shape (m + f, k)."""
+    """Base pitches, or revolutions of frames, per radian of each law, rounded. Shape (m + f, k)."""
     offset: FloatArray
-    """Position of each mesh at t = 0, base pitches; 0. Shape (m + f,)."""
+    """Position of each mesh at t = 0, base pitches; 0 for frames. Shape (m + f,)."""
     period: IntArray
-    """Base pitches after which the mesh's table repeats; 1. Shape (m + f,)."""
+    """Base pitches after which the mesh's table repeats; 1 for frames. Shape (m + f,)."""
     freedom: IntArray
-    """For the law of a free train the index of its shaft's rotation in q; -1 for a drive. Shape (k,)."""
+    """Index in q of the shaft's rotation that the law of a free train sets; -1 for a drive. Shape (k,)."""
     vector: FloatArray
     """Change of q when the law's shaft turns by one radian and all parts with it. Shape (k, n)."""
 
@@ -91,11 +96,11 @@ class Drives(NamedTuple):
     """
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: Of springs and dampers that the shaft's rotation strains; of the drive's own
-    spring. Shape (k, n) each.
+    """`stiffness`, `damping`: Stiffness and damping of the parts that the shaft's rotation strains, or of the
+    drive's spring. Shape (k, n) each.
     """
     inertia: FloatArray
-    """kg m^2. Shape (k, k)."""
+    """Inertia that each law's torque accelerates, per law, kg m^2. Shape (k, k)."""
     constant: FloatArray
     """Torque of pins off their nominal position, N m. Shape (k,)."""
 
@@ -115,10 +120,10 @@ class SystemArrays(NamedTuple):
     """G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
     whose first coordinate is the transmission error. Shape (R, n).
     """
-    turn: FloatArray
-    """Derivative of the meshes' positions in q, base pitches; 0. Shape (m + f, n)."""
+    position_gradient: FloatArray
+    """Derivative of the meshes' positions in q, base pitches; 0 for frames. Shape (m + f, n)."""
     sparse: SparseMatrices
-    """M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`."""
+    """M, C, K, G and `position_gradient` by their entries: who changes them takes `with_matrices`."""
     constant: FloatArray
     """External force that never changes: of pins off their nominal position, of preloaded bearings, of
     gravity. Shape (n,).
@@ -128,9 +133,11 @@ class SystemArrays(NamedTuple):
     n).
     """
     total_inertia: FloatArray
-    """Of all bodies as seen at the laws, kg m^2: kinetic energy of the kinematic motion. Shape (k, k)."""
+    """Inertia of all bodies as seen at the laws, kg m^2: gives the kinetic energy of the kinematic motion.
+    Shape (k, k).
+    """
     drive: Drives
-    """What it takes to impose the motion."""
+    """Arrays that give the torques of the drives, see `Drives`."""
     scale: FloatArray
     """Meters per unit of q, for error norms: 1, or a base radius for rotations. Shape (n,)."""
     rate_scale: FloatArray
@@ -148,5 +155,5 @@ class SystemArrays(NamedTuple):
         springs = (changed.drive.stiffness, changed.drive.damping)
         others = (changed.inertial, changed.reference.vector, changed.load.direction, *springs)
         matrices_of_motion = (changed.mass, changed.damping, changed.stiffness)
-        sparse = sparse_matrices(*matrices_of_motion, changed.direction, changed.turn, others)
+        sparse = sparse_matrices(*matrices_of_motion, changed.direction, changed.position_gradient, others)
         return changed._replace(sparse=sparse)

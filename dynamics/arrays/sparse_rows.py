@@ -24,9 +24,9 @@ class _SparseRows(NamedTuple):
     first: IntArray
     """First entry of each row, and the number of entries. Shape (rows + 1,)."""
     column: IntArray
-    """Shape (entries,)."""
+    """Columns of the entries. Shape (entries,)."""
     weight: FloatArray
-    """Shape (entries,)."""
+    """Weights of the entries. Shape (entries,)."""
 
 
 class RowRuns(NamedTuple):
@@ -38,7 +38,7 @@ class RowRuns(NamedTuple):
     column: IntArray
     """`entry`, `column`: First entry of each run, and its column. Shape (runs,) each."""
     length: IntArray
-    """Shape (runs,)."""
+    """Lengths of the runs. Shape (runs,)."""
 
 
 def _row_runs(rows: _SparseRows) -> RowRuns:
@@ -59,26 +59,27 @@ def _row_runs(rows: _SparseRows) -> RowRuns:
 
 
 class SparseMatrices(NamedTuple):
-    """What the compiled loops multiply with."""
+    """Sparse matrices of a system for the products in compiled loops."""
 
     damping: _SparseRows
     stiffness: _SparseRows
     direction: _SparseRows
-    turn: _SparseRows
-    """`damping`, `stiffness`, `direction`, `turn`: Of `SystemArrays`. The first two have the same entries:
-    those where either matrix is not 0.
+    position_gradient: _SparseRows
+    """`damping`, `stiffness`, `direction`, `position_gradient`: Matrices of `SystemArrays`. The first two
+    have the same entries: all at which either matrix is not 0.
     """
     bodies: _SparseRows
     """The entries of `direction` before the modal freedoms."""
     mobility: _SparseRows
     """Inverse of the mass matrix."""
     coupling: _SparseRows
-    """Where the inverse of any sum of mass, damping and stiffness has entries: two freedoms that a chain of
-    entries joins. Weights are 1.
+    """Pattern of the inverse of any sum of mass, damping and stiffness: an entry for any two freedoms that a
+    chain of entries joins. Weights are 1.
     """
     coupling_runs: RowRuns
     resistance_runs: RowRuns
-    """`coupling_runs`, `resistance_runs`: Of `coupling`, and of `damping` and `stiffness`."""
+    """`coupling_runs`, `resistance_runs`: Runs of the rows of `coupling`, and of `damping` and `stiffness`.
+    """
     modal: ModalFreedoms
     """The last freedoms, where each of them is alone in the first two matrices."""
 
@@ -95,23 +96,24 @@ def sparse_matrices(
     damping: FloatArray,
     stiffness: FloatArray,
     direction: FloatArray,
-    turn: FloatArray,
+    position_gradient: FloatArray,
     others: Sequence[FloatArray] = (),
 ) -> SparseMatrices:
-    """Lay out the matrices of a system: (n, n), `direction` (R, n) and `turn` (m, n).
+    """Lay out the matrices of a system: (n, n), `direction` (R, n) and `position_gradient` (m, n).
 
     `others` (..., n) are all further rows that act on its freedoms, or that these act on.
     """
     coupling = joined_by_chains((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
     mobility = np.where(joined_by_chains(mass != 0.0), np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
-    modal = modal_freedoms_of(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    gradients = np.concatenate([position_gradient, *others])
+    modal = modal_freedoms_of(mass, damping, stiffness, direction, gradients)
     joined, resisting = _sparse_rows(coupling.astype(float)), _sparse_rows(damping, either)
     return SparseMatrices(
         damping=resisting,
         stiffness=_sparse_rows(stiffness, either),
         direction=_sparse_rows(direction),
-        turn=_sparse_rows(turn),
+        position_gradient=_sparse_rows(position_gradient),
         bodies=_sparse_rows(direction[:, : modal.first]),
         mobility=_sparse_rows(mobility),
         coupling=joined,
@@ -136,7 +138,7 @@ def joined_by_chains(entries: BoolArray) -> BoolArray:
 
 
 NO_ENTRIES = sparse_matrices(_NONE, _NONE, _NONE, _NONE, _NONE)
-"""Of a system without freedoms."""
+"""Matrices of a system without freedoms."""
 
 
 @inner
@@ -163,7 +165,7 @@ def row_products(
 
 @inner
 def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
-    """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
+    """Subtract the forces of dampers and springs at `q` and `v` (n,) from `force`."""
     damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
     for i in range(sparse.modal.first):
         damped, elastic = row_products(sparse.damping, i, damping, v, stiffness, q)
@@ -186,7 +188,7 @@ def run_product(runs: RowRuns, weight: FloatArray, row: int, vector: FloatArray)
 def subtract_resistance_by_runs(
     sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray
 ) -> None:
-    """Subtract what `subtract_resistance` does, the sums of a row in any order."""
+    """Subtract the forces as `subtract_resistance` does, the sums of a row in any order."""
     damping, stiffness, runs = sparse.damping.weight, sparse.stiffness.weight, sparse.resistance_runs
     for i in range(sparse.modal.first):
         force[i] -= run_product(runs, damping, i, v) + run_product(runs, stiffness, i, q)

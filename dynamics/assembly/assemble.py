@@ -1,4 +1,7 @@
-"""Assembly of a scene into a system: effects decided, bearings linear where they must be, arrays laid out."""
+"""Assembly of a scene into a system: effects decided, bearings linear where they must be, arrays laid out.
+
+A system is what integrators and linear theory solve: arrays for compiled loops with the names of their axes.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +49,7 @@ class System:
 
     scene: Scene
     arrays: SystemArrays
-    """For the compiled loops."""
+    """Arrays for the compiled loops."""
     freedoms: Freedoms
     kinematics: Kinematics
     lines: tuple[LineOfAction, ...]
@@ -62,9 +65,9 @@ class System:
     seats: Seats
     """The bearings that are more than three springs to rigid ground or pin."""
     bearings: tuple[BearingElement, ...]
-    """Where the last elements act: those of bearings that are not linear."""
+    """Points of action of the last elements, which are the bearings that are not linear."""
     housed: tuple[BearingElement, ...]
-    """Where the elements before those act: linear bearings in housings that move."""
+    """Points of action of the elements before these: linear bearings in housings that move."""
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
@@ -74,7 +77,7 @@ class System:
     bearing_map: BearingForce
     """The whole force at the supports."""
     sampling: Sampling
-    """How the run is sampled."""
+    """Sample rate of the run and steps of its samples."""
     ledger: EffectLedger
     corrected: Corrections
     """Base radii of gears as given and as used, m, that were corrected to the base pitch of their train."""

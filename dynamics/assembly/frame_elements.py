@@ -1,4 +1,4 @@
-"""The force elements of rotating frames: what rotation adds to rotors, and couplings across frames.
+"""The force elements of rotating frames: terms of rotors that rotate, and couplings across frames.
 
 Axis letters: N columns, the six freedoms of every rotor; k laws of the kinematic motion.
 """
@@ -25,7 +25,7 @@ from dynamics.types import FloatArray
 
 
 def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], RotatingFrameLaws]:
-    """Return the elements of what effects add to rotors because they or their frames rotate, and their laws.
+    """Return the elements, and their laws, of the terms that effects add to rotors in rotation.
 
     A lever makes lengths of angles. Terms that no freedom moves have no element.
     """
@@ -49,7 +49,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
-    """Return the terms of a rotor, those that move alike added up: every term costs two unknowns a stage."""
+    """Return the terms of a rotor, those of equal motion in sum: each term costs two unknowns a stage."""
     merged: list[FrameTerm] = []
     for term in terms:
         for entry, other in enumerate(merged):
@@ -97,9 +97,9 @@ def frame_coupling_elements(model: Model) -> tuple[tuple[Element, ...], FrameCou
             packed[entry] = full_matrix(matrix, 0.0)[np.ix_(ACROSS, ACROSS)] / np.outer(size, size)
         ends = (section_rows(rotors, rotor, part.height) for rotor in (part.first, part.second))
         gradient = np.concatenate([(moves[list(ACROSS)] * size[:, None])[:n] for moves in ends])
-        typical = np.tile(np.diag(stiffness[entry])[:n], 2)
+        row_stiffness = np.tile(np.diag(stiffness[entry])[:n], 2)
         phase = len(scene.meshes) + entry
         offset = np.zeros(2 * n)
-        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=typical))
+        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=row_stiffness))
     directions = np.array([part.directions for part in parts], dtype=np.int64)
     return tuple(elements), FrameCouplingLaws(directions, stiffness, damping)

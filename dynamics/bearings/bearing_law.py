@@ -1,4 +1,4 @@
-"""What the nonlinear laws of bearings have in common; the rest of the model knows none of them by name."""
+"""The interface of the nonlinear laws of bearings, through which the rest of the model knows them."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class BearingDuty:
-    """What is expected of a bearing."""
+    """Expected duty of a bearing: its load, its mass and its size."""
 
     load: float
-    """Its typical load, N."""
+    """Typical load of the bearing, N."""
     mass: float
-    """Its share of the mass on the shaft, kg."""
+    """Share of the bearing in the mass on the shaft, kg."""
     lever: float
-    """Radius that makes lengths of tilts where a law has none of its own, m."""
+    """Radius by which tilts become lengths, where a law states no lever, m."""
 
 
 class BearingLaw(Protocol):
@@ -30,32 +30,35 @@ class BearingLaw(Protocol):
 
     @property
     def bushing(self) -> str:
-        """Where it acts."""
+        """Name of the bushing at which the law acts."""
 
     @property
     def acts_at(self) -> str:
-        """That and, of a law of a direction, the direction: no two laws of a kind have the same."""
+        """Key of the law's action: the bushing, for a law of one direction also the direction.
+
+        No two laws of a kind share a key.
+        """
 
     def rows(self, duty: BearingDuty) -> FloatArray:
-        """Return its coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
+        """Return the coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
 
-    def laid_out(self, duty: BearingDuty) -> Any:
-        """Return what those take of it."""
+    def array_entry(self, duty: BearingDuty) -> Any:
+        """Return the law as `packed` of its arrays takes it."""
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (p,), N/m."""
 
     def tangent_error(self, duty: BearingDuty) -> float:
-        """Return what its tangent misses of the displacement under the typical load, m."""
+        """Return the displacement under the typical load, less that by the tangent, m."""
 
 
 class PlausibleValue(NamedTuple):
-    """A value of a law that is held against those of real bearings."""
+    """A value of a law, to compare with the values of real bearings."""
 
     check: str
     """Name of the check in `dynamics.plausibility`."""
     field: str
-    """Where a scene file has the value: the law's table and its field, without the unit."""
+    """Address of the value in a scene file: the law's table and its field, without the unit."""
     value: float
     unit: str
     skip_zero: bool = False
@@ -63,7 +66,10 @@ class PlausibleValue(NamedTuple):
 
 
 class SceneBearingLaw:
-    """What a `BearingLaw` that is a part of the scene says beyond its force; others leave these defaults."""
+    """Defaults of a bearing law that is a part of the scene, for all but its force.
+
+    A law replaces those that differ.
+    """
 
     def scaled(self, factor: float) -> Self:
         """Return the law with all its elastic forces times `factor`."""
@@ -87,5 +93,5 @@ class SceneBearingLaw:
         return None
 
     def plausible_values(self) -> Iterable[PlausibleValue]:
-        """Return the values that are held against those of real bearings."""
+        """Return the values to compare with those of real bearings."""
         return ()

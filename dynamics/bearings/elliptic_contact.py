@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from dynamics.checks import positive
 
-MIN_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
+MIN_RATIO = 1e-12  # least ratio of the axes: that of radii which differ by 23 orders of magnitude
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class EllipticContact:
         return a, q * a
 
     def approach(self, load: float) -> float:
-        """Return how far the bodies approach under `load` (N, > 0), m."""
+        """Return the approach of the bodies under `load` (N, > 0), m."""
         from scipy.special import elliprf  # noqa: PLC0415 (start-up time)
 
         a, b = self.axes(load)

@@ -12,7 +12,7 @@ from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.types import FloatArray
 
-ANGLES = 32
+ANGLES = 32  # usual number of cage angles over the passing of an element
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class _ElementPassing:
     order: float
     """Passings per revolution of the inner ring, the outer at rest."""
     angle: FloatArray
-    """Of the first element from x towards y, rad; one pitch, its end left out. Shape (T,)."""
+    """Angle of the first element from x towards y, rad: one pitch, its end left out. Shape (T,)."""
     displacement: FloatArray
-    """m, rad. Shape (T, 5)."""
+    """Displacement of the inner ring, m and rad. Shape (T, 5)."""
 
     @property
     def peak_to_peak(self) -> FloatArray:

@@ -19,23 +19,23 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-EXPONENT = 10.0 / 9.0
-DIRECTIONS = 5
+EXPONENT = 10.0 / 9.0  # exponent of line contact, from load over approach
+DIRECTIONS = 5  # number of displacements of a bearing: x, y, z, tilt_x, tilt_y
 
 
 class RollerElements(NamedTuple):
     """Rollers of l bearings."""
 
     rollers: IntArray
-    """Their number. Shape (l,)."""
+    """Number of rollers of each bearing. Shape (l,)."""
     stiffness: FloatArray
     """c of one lamina between both raceways, N/m^(10/9). Shape (l,)."""
     damping: FloatArray
     """Damping of a lamina over its load, s/m. Shape (l,)."""
     cosine: FloatArray
     sine: FloatArray
-    """`cosine`, `sine`: Of the contact angle; the normal has these parts along radius and axis. Shape (l,)
-    each.
+    """`cosine`, `sine`: Cosine and sine of the contact angle, the parts of the normal along radius and axis.
+    Shape (l,) each.
     """
     arm: FloatArray
     """Radius of the circle of the rollers' centers times the sine, over the lever of tilts. Shape (l,)."""
@@ -47,13 +47,13 @@ class RollerElements(NamedTuple):
     """First lamina of each bearing. Shape (l + 1,)."""
     coordinate: FloatArray
     drop: FloatArray
-    """`coordinate`, `drop`: Middle of each lamina along the roller over the lever of tilts, and by how much
-    its profile is lower there, on both contacts together, m. Shape (L,) each.
+    """`coordinate`, `drop`: Middle of each lamina along the roller over the lever of tilts, and relief of the
+    profile at it, on both contacts together, m. Shape (L,) each.
     """
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
-        """Lay out `rows` and how they are placed."""
+        """Lay out `rows` with their placements."""
         figures = [_figures(bearing, at) for bearing, at in rows]
         places = [bearing.lamina_places for bearing, _ in rows]
         drops = [
@@ -157,7 +157,7 @@ def _laminae(
 def _add(
     local: LocalState, row: int, g: tuple[float, ...], t: tuple[float, ...], sums: tuple[float, ...]
 ) -> None:
-    """Add what a roller does, by the sums over its laminae."""
+    """Add the forces of a roller, by the sums over its laminae."""
     load, moment, total, turns, k, kx, kxx, d, dx, dxx = sums
     for i in range(DIRECTIONS):
         local.elastic[row + i] += load * g[i] + moment * t[i]

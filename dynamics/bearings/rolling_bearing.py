@@ -88,7 +88,7 @@ LOCATING = Declared(
     BOTH,
     later=True,
 )
-ALONG, AGAINST = 1, 2
+ALONG, AGAINST = 1, 2  # bits of the directions in which the seats hold the rings: along z, against z
 LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 """The directions as bits."""
 AXIAL_PRELOAD = Declared(
@@ -152,7 +152,7 @@ class _Row:
         return (1.0 - self.slenderness) / 2.0
 
     def check_row(self) -> None:
-        """Refuse what is no row.
+        """Refuse a value that is no row.
 
         Raises `InputError`: a field out of its bounds, or more elements than their circle holds.
         """
@@ -167,7 +167,7 @@ class _Row:
 @described
 @dataclass(frozen=True)
 class CatalogLine:
-    """What a catalog says of a deep groove ball bearing, and its clearance, which it does not."""
+    """Catalog data of a deep groove ball bearing, and its clearance, which no catalog states."""
 
     bore: float = required(BORE)
     outside_diameter: float = required(OUTSIDE)
@@ -292,7 +292,7 @@ class RollerBearing(_Row):
         return self.laminae * self.lamina_stiffness
 
     def drop(self, coordinate: FloatArray) -> FloatArray:
-        """Return how far the profile lies below the middle at a `coordinate`, m; one contact."""
+        """Return the drop of the profile below the middle at a `coordinate`, m; one contact."""
         length, diameter, tapered = self.length, self.diameter, self.contact_angle != 0.0
         if self.profile != LOGARITHMIC:
             crown = self.crown if self.profile == CROWNED else 0.0
@@ -333,7 +333,7 @@ class RollingBearing:
     of one bearing, or bearings side by side, are several of these, each at its own position.
 
     Its rings are held in their seats along the axis, or one slides: a non-locating ball bearing carries no
-    axial force (`locating`). Of cylindrical rollers it changes nothing.
+    axial force (`locating`). It changes nothing in rows of cylindrical rollers.
 
     An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
     pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided

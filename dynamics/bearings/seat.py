@@ -17,7 +17,7 @@ from dynamics.errors import InputError
 from dynamics.shafts.bodies import TEMPERATURE
 from dynamics.types import FloatArray
 
-DEFAULT_DAMPING_RATIO = 0.05
+DEFAULT_DAMPING_RATIO = 0.05  # damping ratio where a scene states none
 SEAT = 5
 """Number of directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
 
@@ -46,11 +46,12 @@ DAMPING_RATIO = Declared(
 SEAT_TEMPERATURE = replace(
     TEMPERATURE, description="Steady temperature of the housing at this seat; left out: that of the housing"
 )
-# of the kind of a slope: a position error has a sign
 _RADIAL = Declared(
-    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
+    Kind.DEVIATION, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
 )
-_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6)
+_TANGENTIAL = Declared(
+    Kind.DEVIATION, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6
+)
 
 
 class _Seat:

@@ -21,10 +21,10 @@ DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
 
 
 class SpringCurveLaws(NamedTuple):
-    """Curves."""
+    """Force-displacement curves of l bearings."""
 
     force: Cubics
-    """By displacement, m or rad; N, N m."""
+    """Force over displacement: N over m, or N m over rad."""
     energy: FloatArray
     """Energy at the start of each piece less that at no displacement, J. Shape (S,)."""
     lever: FloatArray
@@ -52,15 +52,15 @@ class SpringCurve(SceneBearingLaw):
     """
 
     bushing: str
-    """The bushing or planet bearing in whose place it acts."""
+    """Bushing or planet bearing that the curve replaces."""
     direction: str
     """One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
     axis.
     """
     displacement: tuple[float, ...]
-    """m, rad for a tilt; strictly increasing, at least 2."""
+    """Displacements of the table, m, or rad for a tilt; strictly increasing, at least 2."""
     force: tuple[float, ...]
-    """N, N m for a tilt; strictly increasing."""
+    """Forces of the table, N, or moments, N m, for a tilt; strictly increasing."""
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)
@@ -93,16 +93,16 @@ class SpringCurve(SceneBearingLaw):
         """Return the displacement of its direction, (1, 5)."""
         return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
 
-    def laid_out(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
-        """Return what its arrays take."""
+    def array_entry(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
+        """Return the curve as `SpringCurveLaws.packed` takes it."""
         return self, duty
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
-        """Return its mean stiffness, (1,), N/m."""
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
+        """Return the mean stiffness of the curve, (1,), N/m."""
         return np.array([self.slope / self.lever(duty) ** 2])
 
     def tangent_error(self, duty: BearingDuty) -> float:
-        """Return how far the table is off a straight line through its value at 0, m; of a tilt 0."""
+        """Return the deviation of the table from a straight line through its value at 0, m; of a tilt 0."""
         if self.direction.startswith("tilt"):
             return 0.0
         ways, forces = np.array(self.displacement), np.array(self.force)
@@ -122,12 +122,12 @@ class SpringCurve(SceneBearingLaw):
 
     @property
     def holds_axially(self) -> bool:
-        """Whether it acts along z."""
+        """Whether the curve acts along z."""
         return self.direction == "z"
 
     @property
     def fixed_direction(self) -> str | None:
-        """Its direction, unless that is the axis."""
+        """Name of the direction field, unless the curve acts along the axis (None)."""
         return None if self.direction == "z" else "direction"
 
     def pieces(self) -> tuple[FloatArray, FloatArray]:

@@ -29,16 +29,16 @@ class Cylinder:
 
     @property
     def shrinkage(self) -> float:
-        """Return by how much its outer diameter falls, of itself, per pressure on it, 1/Pa [1]_."""
+        """Return the decrease of the outer diameter over itself, per pressure on it, 1/Pa [1]_."""
         return (self._stretch - self.poissons_ratio) / self.youngs_modulus
 
     @property
     def widening(self) -> float:
-        """Return by how much its bore grows, of itself, per pressure in it, 1/Pa [1]_."""
+        """Return the increase of the bore over itself, per pressure in it, 1/Pa [1]_."""
         return (self._stretch + self.poissons_ratio) / self.youngs_modulus
 
     def far_side(self, pressed: float) -> float:
-        """Return by how much the free diameter grows, m per Pa of pressure on that at `pressed` (m) [1]_.
+        """Return the increase of the free diameter, m per Pa of pressure on the diameter `pressed` (m) [1]_.
 
         A pressure in the bore widens the outside, one on the outside narrows the bore.
         """
@@ -55,16 +55,18 @@ def fit_pressure(inside: Cylinder, around: Cylinder, interference: float) -> flo
 
 @dataclass(frozen=True)
 class WarmRings:
-    """What temperatures do to a row."""
+    """Play and interference of a row at temperature."""
 
     play: float
     """Change of the row's clearance as it counts it, m."""
     interference: tuple[float, float] | None
-    """Of the inner ring on the shaft and the outer in its bore, m; < 0: loose. None: not stated."""
+    """Interference of the inner ring on the shaft and of the outer ring in its bore, m; < 0: loose. None: no
+    fits are stated.
+    """
 
 
 class _Row(Protocol):
-    """What play needs of a row, in m and rad."""
+    """Geometry of a row that its play follows from, in m and rad."""
 
     @property
     def pitch_diameter(self) -> float: ...

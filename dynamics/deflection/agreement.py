@@ -19,9 +19,11 @@ TOLERANCE = 1e-6
 SMALL = 1e-6
 """Misalignment below which a change counts over this one, m."""
 PASSES = 6
-"""Most passes."""
+"""Most passes between table and deflection."""
 MARGIN, MIN_MARGIN = 0.5, 2e-6
-"""How far the first knots lie beyond the misalignments without contact: part of their range, least in m."""
+"""Distance of the first knots beyond the range of the misalignments without contact: over that range, and
+least distance, m.
+"""
 CLOSEST = 2e-8
 """Least distance of knots, m: a closer one takes the place of the one before."""
 
@@ -65,13 +67,13 @@ def in_agreement(
     Parameters
     ----------
     contacts : mapping
-        Of the meshes whose load may vary over the face, by name.
+        Contacts of the meshes whose load may vary over the face, by name.
     first : Deflection
-        On the tables of the scene.
+        Deflection with the tables of the scene.
     complete : callable
         Called with the knots by mesh, m, before their tables are asked for.
     workers : Workers
-        As of `deflect`.
+        Workers as in `deflect`.
     """
     if not contacts:
         return Agreement(first, 1, 0.0)

@@ -19,7 +19,7 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 
 LIFE_EXPONENT = 10.0 / 3.0
-"""Of roller bearings; ball bearings have 3."""
+"""Exponent of load in the life of roller bearings, ISO 281; ball bearings have 3."""
 
 
 def bearing_life(bearing: RollingBearing, displacement: FloatArray) -> float:
@@ -45,7 +45,7 @@ def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: S
     revolutions : (C,) sequence
         Life L under each case alone; may be infinite, NaN if not known.
     speed : (C,) sequence
-        rad/s, >= 0.
+        Speeds under the load cases, rad/s, >= 0.
     share : (C,) sequence
         Shares q of the duration, in any unit, not all 0.
     """
@@ -62,11 +62,11 @@ class BearingLoad:
     name: str
     shaft: str
     speed: float = field(metadata=in_unit("rad_s"))
-    """Of the shaft against what holds the bearing, rad/s, >= 0."""
+    """Speed of the shaft relative to the part that holds the bearing, rad/s, >= 0."""
     force: FloatArray = field(metadata=in_unit("n", "direction"))
-    """On the housing, of a planet bearing on the pin, N and N m. Shape (5,)."""
+    """Force and moment on the housing, or of a planet bearing on its pin, N and N m. Shape (5,)."""
     largest_radial: float = field(metadata=in_unit("n"))
-    """Over the cycle, N."""
+    """Largest radial force over the mesh cycle, N."""
     elastic: FloatArray = field(metadata=in_unit("m", "direction"))
     clearance: FloatArray = field(metadata=in_unit("m", "direction"))
     seat: FloatArray = field(metadata=in_unit("m", "direction"))

@@ -1,4 +1,4 @@
-"""Displacements at bearings by cause: what yields, what is clearance, and what the seat moves."""
+"""Displacements at bearings by cause: elasticity and clearance of the bearing, and motion of the seat."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.types import FloatArray
 
-HALVINGS = 50
+HALVINGS = 50  # bisections that find the clearance
 FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
-    local = make_local(arrays.elements, arrays.turn.shape[0])
+    local = make_local(arrays.elements, arrays.position_gradient.shape[0])
     rows = slice(arrays.elements.first[element], arrays.elements.first[element + 1])
     system, at = by_address(arrays), by_address(local)
 
@@ -53,19 +53,19 @@ def _evaluate(system: SystemArrays, local: LocalState, element: int) -> None:
 class BearingStrain:
     """Displacements x, y, z (m), tilt_x, tilt_y (rad) at b bearings, each (b, 5); their sum is the shaft's.
 
-    Of a planet bearing: of the planet against its pin.
+    Displacements at a planet bearing are those of the planet relative to its pin.
     """
 
     elastic: FloatArray
-    """What the bearing yields under its load. Shape (b, 5)."""
+    """Elastic displacement in the bearing under its load. Shape (b, 5)."""
     clearance: FloatArray
-    """What it moves before anything presses back. Shape (b, 5)."""
+    """Displacement through the clearance, before the bearing carries load. Shape (b, 5)."""
     seat: FloatArray
-    """Of its seat in an elastic housing. Shape (b, 5)."""
+    """Displacement of the seat in an elastic housing. Shape (b, 5)."""
 
     @property
     def shaft(self) -> FloatArray:
-        """Of the shaft's section in the bearing, (b, 5)."""
+        """Displacement of the shaft's section in the bearing, (b, 5)."""
         return self.elastic + self.clearance + self.seat
 
 
@@ -91,7 +91,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     seat = carried + _condensed_seats(system, total)
     yielded, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
     for e, at in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
-        along = np.linalg.pinv(at.way) @ at.way
+        along = np.linalg.pinv(at.directions) @ at.directions
         if np.any(np.abs(places[names[at.support]][1].seat_stiffness @ along) > 0.0):
             continue
         rows = slice(elements.first[e], elements.first[e + 1])
@@ -101,7 +101,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
-    """Return the motions (b, 5) of the seats in housings that are no freedoms by the shafts' there (b, 5)."""
+    """Return the motions (b, 5) of seats in massless housings by those of the shafts in them (b, 5)."""
     places, names = supports_by_name(system.rotors), list(system.supports.name)
     displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):

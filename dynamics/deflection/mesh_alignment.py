@@ -23,8 +23,9 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 
 CAUSES = ("shaft", "bearing", "clearance", "housing", "coupling", "set")
-"""Elastic shafts, elastic bearings, their clearance, the motion of their seats, shafts that couplings alone
-hold, and what the scene itself sets."""
+"""Causes of misalignment: elastic shafts, elastic bearings, clearance of bearings, motion of their seats,
+shafts that couplings alone hold, and the misalignment that the scene sets.
+"""
 SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
 TILT = slice(3, 5)
 
@@ -83,7 +84,7 @@ def _line_tilt(z: FloatArray, displacement: FloatArray) -> FloatArray:
 
 def _radial(system: System, index: int) -> list[str]:
     """Return the bearings of a rotor that hold it across its axis."""
-    lawful = {system.supports.name[at.support] for at in system.bearings if at.way[:, :2].any()}
+    lawful = {system.supports.name[at.support] for at in system.bearings if at.directions[:, :2].any()}
     return [
         part.name
         for part in system.rotors[index].supports
@@ -92,7 +93,7 @@ def _radial(system: System, index: int) -> list[str]:
 
 
 def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
-    """Return how the gap of mesh `index` grows over its common face by the twist of both shafts, m.
+    """Return the growth of the gap of mesh `index` over its common face by the twist of both shafts, m.
 
     Towards positive z of the table's driving gear, as misalignment. The shafts as they are under the gears;
     a torque that enters evenly along the face twists its ends as one that enters in its middle.
@@ -123,28 +124,30 @@ class MeshAlignment:
 
     name: str
     force: float = field(metadata=in_unit("n"))
-    """Transverse, N."""
+    """Transverse mesh force, N."""
     misalignment: float = field(metadata=in_unit("m"))
-    """m."""
+    """Misalignment, mean over the cycle, m."""
     least: float = field(metadata=in_unit("m"))
     largest: float = field(metadata=in_unit("m"))
     """`least`, `largest`: Misalignment over the cycle, m."""
     causes: FloatArray = field(metadata=in_unit("m", "cause"))
     """Parts of the misalignment by `CAUSES`, m. Shape (6,)."""
     center_distance_change: float = field(metadata=in_unit("m"))
-    """m, with what the scene sets."""
+    """Change of the center distance, with the change that the scene sets, m."""
     lead_torsion: float = field(metadata=in_unit("m"))
     """Growth of the gap over the common face width by the twist of both shafts along it, m; not part of the
     misalignment.
     """
     load_arm: float = field(metadata=in_unit("m"))
-    """Of the mesh force from mid-face of the table's driving gear, m; NaN: it acts at mid-face."""
+    """Axial distance of the mesh force from mid-face of the table's driving gear, m; NaN: the force acts at
+    mid-face.
+    """
     in_table: bool = True
     """Whether the table has the misalignments of the whole cycle, or no such axis."""
 
 
 def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain) -> MeshAlignment:
-    """Return the alignment of mesh `index` in the rest positions, `strain` that of their mean."""
+    """Return the alignment of mesh `index` in the rest positions; `strain` belongs to their mean."""
     scene, mesh, rotors = system.scene, system.scene.meshes[index], system.rotors
     line, sense = system.lines[index], system.kinematics.mesh_sense[index]
     motion = rest.motion.mean(axis=0)

@@ -27,13 +27,13 @@ class Rest:
     element: FloatArray
     """Local coordinates of all force elements, m. Shape (K, R)."""
     mesh_force: FloatArray
-    """Transverse, N. Shape (K, m)."""
+    """Transverse mesh force, N. Shape (K, m)."""
     load_arm: FloatArray
-    """Of the mesh force from mid-face of the driving gear, m, as in a table; NaN where it acts at mid-face.
-    Shape (K, m).
+    """Axial distance of the mesh force from mid-face of the driving gear, m, as in a table; NaN where the
+    force acts at mid-face. Shape (K, m).
     """
     bearing_force: FloatArray
-    """Force and moment on what holds each bearing, N and N m. Shape (K, b, 5)."""
+    """Force and moment on the part that holds each bearing, N and N m. Shape (K, b, 5)."""
 
 
 def rest_over(system: System, times: FloatArray) -> Rest:

@@ -23,7 +23,7 @@ class Axial(RotorEffect):
     cost = "one freedom per shaft"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where a helical mesh or a force pushes along an axis that bushings hold."""
+        """Call for the effect where a helical mesh or a force pushes along an axis that bushings hold."""
         stiffness = rotor.rotor.axial_stiffness
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)
@@ -36,7 +36,7 @@ class Axial(RotorEffect):
         return Verdict(True, True, "a helical mesh pushes along the axis", influence)
 
     def check(self, mechanism: Mechanism) -> None:
-        """Refuse a shaft that is pushed along its axis and that nothing holds there.
+        """Refuse a shaft that is pushed along its axis and that no bearing holds axially.
 
         Idlers and planets between sun and ring balance themselves. So do double helical gears: their meshes
         alone hold them, and between these the shaft floats; without axial stiffness it would not. Three

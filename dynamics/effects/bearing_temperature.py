@@ -22,7 +22,7 @@ UNLOADED = 1e-9  # m; within it rows of a pair just touch
 
 
 class BearingTemperature(RotorEffect):
-    """Other rows in the place of those as drawn."""
+    """Rows of bearings at temperature in place of the rows as drawn."""
 
     name = "bearing_temperature"
     at_rest = True
@@ -33,7 +33,7 @@ class BearingTemperature(RotorEffect):
         return warmed_bearings(scene)
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it wherever temperatures change a bearing.
+        """Call for the effect wherever temperatures change a bearing.
 
         Its influence is how far the shaft moves at a mesh as its rows yield more, or less, under their loads.
         """
@@ -63,7 +63,7 @@ def _differs(row: WarmBearing) -> bool:
 
 
 def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Say what becomes of every row without a contact angle; a negative clearance is a preload."""
+    """Return the clearance of each row without contact angle in words; a negative clearance is a preload."""
     for row in rows:
         if row.drawn.row.contact_angle == 0.0:
             before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))
@@ -74,7 +74,7 @@ def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
 
 
 def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Say the play or the preload of rows with contact angles that hold the shaft against each other."""
+    """Return the play or preload of rows that hold the shaft against each other, in words."""
     angled = [row for row in rows if row.drawn.row.contact_angle]
     if len({row.drawn.row.contact_angle > 0.0 for row in angled}) == 2:
         names = ", ".join(f'"{row.drawn.name}"' for row in angled)
@@ -118,7 +118,7 @@ def _mesh_displacement(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float
     duties, more, at = mechanism.bearing_duty, [], []
     for row in rows:
         duty = duties[row.drawn.name]
-        more.append(row_law(row.warm).way(duty) - row_law(row.drawn).way(duty))
+        more.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
         at.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
     levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
     line = np.polyfit(at, more, 1 if np.ptp(at) > 0.0 else 0)

@@ -1,4 +1,4 @@
-"""An effect of the multibody model: its facts, its decision and what it contributes where it is on.
+"""An effect of the multibody model: its facts, its decision and its contribution where it is on.
 
 An effect is one file: a class of a rotor or of a mesh and a line in the registry. The rest of the model knows
 none by name; what an effect does not contribute, the class it derives from leaves as it is.
@@ -28,7 +28,7 @@ class Verdict:
     possible: bool
     """False: the scene has no such freedom or data, and requesting it changes nothing."""
     reason: str
-    """In words."""
+    """Reason for the verdict, in words."""
     influence: float
     """Static displacement along the line of action that the effect adds at the nominal force, m."""
 
@@ -37,29 +37,31 @@ class Effect:
     """One optional piece of physics."""
 
     name: ClassVar[str]
-    """What a scene calls it."""
+    """Name of the effect in a scene."""
     cost: ClassVar[str]
-    """What it costs, in words."""
+    """Cost of the effect, in words."""
     adds: ClassVar[tuple[str, ...]] = ()
-    """What it adds to the model: names of `FREEDOMS` that it gives a rotor, names of `additions`."""
+    """Additions of the effect to the model: names of `FREEDOMS` that a rotor gets, names of `additions`."""
     linear: ClassVar[bool] = True
-    """Whether linear theory estimates its influence; False: of impacts it says nothing."""
+    """Whether linear theory estimates the influence of the effect; False for effects on impacts, of which it
+    knows nothing.
+    """
     at_rest: ClassVar[bool | None] = None
     """Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
     one of motion; None: where the scene calls for it, as in a run.
     """
     compulsory: ClassVar[bool] = False
-    """Whether there are scenes that cannot do without it, whatever they choose."""
+    """Whether there are scenes that need the effect, whatever they choose."""
 
     def prepared(self, scene: Scene) -> Scene:
-        """Return `scene` with what the effect, if it is not switched off, changes of its parts.
+        """Return `scene` with the changes that the effect, unless it is switched off, makes to its parts.
 
         Raises `InputError`.
         """
         return scene
 
     def neglected(self, scene: Scene) -> Scene:
-        """Return `scene` without what causes the effect, which is switched off."""
+        """Return `scene` without the cause of the effect, which is switched off."""
         return scene
 
     def check(self, mechanism: Mechanism) -> None:
@@ -105,5 +107,5 @@ class MeshEffect(Effect):
         return flanks
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
-        """Return `terms` with what the effect adds to the force of one flank."""
+        """Return `terms` with the terms that the effect adds to the force of one flank."""
         return terms

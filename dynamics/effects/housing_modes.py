@@ -16,11 +16,13 @@ from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency, top_passing_frequency
 
 SHARE = 0.01
-"""Least motion of a seat by the housing's inertia, over its static one, that calls for it."""
+"""Least motion of a seat by the housing's inertia, over its static motion, at which a scene calls for the
+effect.
+"""
 
 
 class HousingModes(RotorEffect):
-    """The amplitudes of all modes of a housing, as freedoms beside those of the shafts in it."""
+    """The amplitudes of all modes of a housing, as freedoms in addition to those of the shafts in it."""
 
     name = "housing_modes"
     at_rest = False
@@ -29,7 +31,7 @@ class HousingModes(RotorEffect):
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
-        """Call for it in housings whose first mode mesh orders wanted, loads or passing elements come near.
+        """Call for the effect where mesh orders, loads or passing elements come near a housing's first mode.
 
         All shafts in a housing have its verdict, and where one sits in two, that of the one it is on in.
         Static motions are the same without it.

@@ -1,4 +1,8 @@
-"""The ledger of the effects of a scene, and the mechanism with what they may add."""
+"""The ledger of the effects of a scene, and the mechanism with what they may add.
+
+A verdict says whether a part of the scene calls for an effect. The decision also takes the choice of the
+scene: "auto", "on" or "off".
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from functools import cached_property
 from bounds import engineering
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
-from dynamics.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.effects.registry import EFFECTS, NEGLECTED
 from dynamics.identity_cache import cached_by
 from dynamics.mechanism.additions import Additions
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
@@ -22,7 +26,7 @@ UNSHARED = ("outputs", "quantity")
 
 @dataclass(frozen=True)
 class _Verdicts:
-    """What the parts of a scene call for, made when it is first read."""
+    """Verdicts of all parts of a scene, made when first read."""
 
     make: Callable[[], Sequence[Verdict]]
 
@@ -39,14 +43,14 @@ class _LedgerEntry:
     part: str
     """The shaft or the mesh that it is decided for."""
     choice: str
-    """What the scene requests: ``"auto"``, ``"on"``, ``"off"``."""
+    """Choice of the scene: ``"auto"``, ``"on"``, ``"off"``."""
     verdicts: _Verdicts
-    """Of all parts; `index` is that of this one."""
+    """Verdicts of all parts; the one of this part has the number `index`."""
     index: int
 
     @property
     def verdict(self) -> Verdict:
-        """What the scene calls for."""
+        """Verdict of this part."""
         return self.verdicts.made[self.index]
 
     @property
@@ -106,7 +110,7 @@ class _LedgerEntry:
 
 @dataclass(frozen=True)
 class EffectLedger:
-    """All decisions, and what this model leaves out."""
+    """All decisions on effects, and the effects that the model leaves out."""
 
     entries: tuple[_LedgerEntry, ...] = ()
 
@@ -179,7 +183,7 @@ class EffectLedger:
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
         entries = [entry.to_json() for entry in self.entries]
-        return {"entries": entries, "left_out": dict(LEFT_OUT)}
+        return {"entries": entries, "left_out": dict(NEGLECTED)}
 
 
 def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:

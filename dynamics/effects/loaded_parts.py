@@ -58,7 +58,10 @@ class LoadedRotor:
 
     @property
     def applied(self) -> tuple[float, ...]:
-        """Where forces and unbalances act across it: distances from its center of mass, m; weight: at 0."""
+        """Distances along the axis from the rotor's center of mass to its lateral forces and unbalances, m.
+
+        Weight acts at 0.
+        """
         scene, body = self.mechanism.scene, self.rotor
         across = [part for part in scene.forces if any((*part.force[:2], *part.moment[:2]))]
         parts: list[OnShaft] = [*across, *scene.unbalances]
@@ -164,7 +167,7 @@ class LoadedMesh:
         return bool(np.any(self.axes[axis] != 0.0))
 
     def not_read(self) -> str | None:
-        """Reason that the table cannot be read along its axes as bodies move; None where it can."""
+        """Reason why the table cannot be read along its axes as bodies move; None where it can."""
         if self.mesh.technique != "variable_torque":
             return "the constant-torque technique has one stiffness per position"
         if getattr(self.mesh.table, "deflection_derivative", None) is None:
@@ -172,7 +175,7 @@ class LoadedMesh:
         return None
 
     def change_along(self, axis: int) -> float:
-        """Return how the mean transmission error changes as the nominal force moves the bodies, m.
+        """Return the change of the mean transmission error as the nominal force moves the bodies, m.
 
         Along one axis of the table: misalignment (0) or center distance (1).
         """

@@ -24,7 +24,7 @@ class MeshTemperature(MeshEffect):
         return warmed_meshes(scene)
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it wherever temperatures change a mesh.
+        """Call for the effect wherever temperatures change a mesh.
 
         Its influence is the change of the mean transmission error by the operating point of the table, or of
         the backlash where the load reverses.
@@ -58,7 +58,7 @@ def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
 
 
 def _text(mesh: LoadedMesh, change: WarmMesh) -> str:
-    """Say what changes, and which of it the scene cannot follow."""
+    """Return the changes of a mesh in words, with those that the scene cannot follow."""
     table, coast = mesh.mesh.table, mesh.mesh.coast
     parts = [f"center distance {1e6 * change.distance_change:+.4g} µm against the gears"]
     if np.size(table.center_distance_change) == 1:

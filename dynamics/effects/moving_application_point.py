@@ -13,7 +13,7 @@ from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import LOAD_ARM
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 
-CENTERED = 1e-9  # of the face width
+CENTERED = 1e-9  # distance from mid-face over the face width, below which a load is centered
 
 
 class MovingApplicationPoint(MeshEffect):
@@ -25,7 +25,7 @@ class MovingApplicationPoint(MeshEffect):
     cost = "one more row per flank and four more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the load has an arm about the pitch point in mid-face and a shaft can tilt.
+        """Call for the effect where the load has an arm about the pitch point and a shaft can tilt.
 
         Its influence is the displacement along the line of action at the load that its moment makes.
         """

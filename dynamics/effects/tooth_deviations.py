@@ -19,8 +19,8 @@ from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 ASSUMED_CLASS = 6
-"""Of gears whose table knows nothing of how they are made."""
-SAMPLES = 256
+"""Tolerance class (ISO 1328) assumed for gears whose table states no tooth deviations."""
+SAMPLES = 256  # positions of a base pitch at which mesh order 1 is computed
 
 
 class ToothDeviations(MeshEffect):
@@ -39,10 +39,10 @@ class ToothDeviations(MeshEffect):
         return _with_tables(scene, nominal_table)
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the table covers more than one base pitch.
+        """Call for the effect where the table covers more than one base pitch.
 
-        Its influence is how far a base pitch differs from their mean. Of a table of one pitch it is the
-        run-out of both gears of an assumed class, which nothing can switch on.
+        Its influence is how far a base pitch differs from their mean. For a table of one pitch the influence
+        is the run-out of both gears of an assumed class, which nothing can switch on.
         """
         made = table_as_made(mesh.mesh.table)
         if made.period == 1:

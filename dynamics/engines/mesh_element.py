@@ -15,7 +15,7 @@ from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 
-MAX_TEETH = 100_000
+MAX_TEETH = 100_000  # largest number of teeth of a gear
 
 
 @dataclass(frozen=True)
@@ -27,15 +27,15 @@ class MeshElement:
     """
 
     table: MeshTable
-    """May have axes of misalignment and center-distance change."""
+    """Table of mesh forces, with or without axes of misalignment and center-distance change."""
     teeth: tuple[int, int]
-    """Of the driver and the driven gear."""
+    """Numbers of teeth of the driver and the driven gear."""
     base_radius: tuple[float, float]
-    """m, in the same order, both positive."""
+    """Base radii of the driver and the driven gear, m, both positive."""
     base_helix_angle: float = 0.0
-    """rad, of the driver; > 0 is right-handed."""
+    """Base helix angle of the driver, rad; > 0 is right-handed."""
     damping: float = 0.0
-    """N s/m in full contact."""
+    """Mesh damping in full contact, N s/m."""
     damping_reach: float | None = None
     """Elastic force in N from which the damping acts in full. None: 5 % of the table's last level."""
     position_offset: float = 0.0
@@ -70,7 +70,7 @@ class MeshElement:
 
     @property
     def base_pitch(self) -> float:
-        """Transverse, m."""
+        """Transverse base pitch, m."""
         return 2.0 * math.pi * self.base_radius[0] / self.teeth[0]
 
 

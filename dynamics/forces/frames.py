@@ -18,11 +18,13 @@ class FrameTerm:
     """A term of a rotating-frame element."""
 
     rows: FloatArray
-    """Its coordinates across the axis, m, in all rotors' freedoms. Shape (2, N)."""
+    """Gradient of the term's coordinates across the axis in all rotors' freedoms; coordinates in m. Shape
+    (2, N).
+    """
     factors: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    """Those of `RotatingFrameLaws`."""
+    """Factors c_1 to c_5 of `RotatingFrameLaws`."""
     load: tuple[float, float] = (0.0, 0.0)
-    """Its load, kg m."""
+    """Load l of `RotatingFrameLaws`, kg m."""
 
     def plus(self, other: FrameTerm) -> FrameTerm:
         """Return the sum of two terms whose rows move alike."""
@@ -43,7 +45,7 @@ class RotatingFrameLaws(NamedTuple):
     load: FloatArray
     """l: mass times arm from the frame's axis, kg m. Shape (l, 2)."""
     lever: FloatArray
-    """Of the row of the spin, m: row over angle. Shape (l,)."""
+    """Coordinate of the spin's row over its angle, m. Shape (l,)."""
     spinning: BoolArray
     """Whether a third row adds the shaft's own rotation to the spin of the kinematic motion. Shape (l,)."""
 

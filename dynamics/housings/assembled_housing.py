@@ -20,7 +20,7 @@ from dynamics.types import FloatArray, IntArray
 LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 BLOCK = 3
-"""Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
+"""Consecutive freedoms that are ordered as one: three of a node, half of those of a rigid face."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class _Freedoms:
     free: IntArray
     """The free nodes."""
     faces: tuple[_RigidFace, ...]
-    """Those that move. Six freedoms each: x, y, z, rotations about x, y, z through its point."""
+    """Rigid faces that move. Each has six freedoms: x, y, z, rotations about x, y, z through its point."""
 
     def face(self, name: str) -> IntArray:
         """Return the six freedoms of a rigid face."""
@@ -109,10 +109,10 @@ class AssembledHousing:
     """M x'' + C x' + K x = B' f; q = B x."""
 
     freedoms: _Freedoms
-    """x, f of them."""
+    """Freedoms x; f in all."""
     mass: sp.csr_array
     stiffness: sp.csr_array
-    """`mass`, `stiffness`: With the mounts' stiffness. (f, f) sparse arrays."""
+    """`mass`, `stiffness`: Matrices M and K, the mounts' stiffness included. (f, f) sparse arrays."""
     mounts: tuple[sp.csr_array, sp.csr_array]
     """Stiffness and damping of the mounts alone. Tuple of two (f, f) sparse arrays."""
     seats: sp.csr_array
@@ -121,7 +121,7 @@ class AssembledHousing:
     loose: FloatArray
     """Rigid motions that feet and mounts do not hold; six without any. Shape (f, k)."""
     body: RigidBody
-    """Of the mesh."""
+    """Mass, center and inertia of the mesh as a rigid body."""
 
 
 def assemble(housing: MeshedHousing) -> AssembledHousing:

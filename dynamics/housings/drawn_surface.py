@@ -24,14 +24,18 @@ from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
-MAX_TRIANGLES = 20_000
+MAX_TRIANGLES = 20_000  # largest number of triangles of a drawn surface
 WANTED_TRIANGLES = 6_000
-"""Of a solid without small faces."""
+"""Most triangles of a drawn solid without small faces; a solid with them may have up to the maximum."""
 _FARTHEST = from_to(0.0, 1e3, "m")
 _AGGRESSIVENESS = 3.0, 5.0, 7.0
-"""Of the reduction, in turn: the first keeps shapes best, the last closes bores where there are too many."""
+"""Aggressiveness of the tries of the mesh reduction: the first keeps shapes best, the last closes bores where
+too many triangles are left.
+"""
 _OF_NORMALS, _MIN_AREA = 0.2, 1e-6
-"""What normals count beside places, over the size of facets; least area of a facet over the mean of all."""
+"""Weight of normals relative to positions in the search for the nearest node, over the size of facets; least
+area of a facet over the mean area.
+"""
 
 
 @dataclass(frozen=True)
@@ -42,10 +46,11 @@ class DrawnSurface:
     facets: IntArray
 
     def reduced(self, maximum: int) -> tuple[DrawnSurface, IntArray]:
-        """Return it with at most so many triangles, and which of its points that one has.
+        """Return the surface with at most `maximum` triangles, and the indices of the points that it keeps.
 
-        Edges are collapsed to where all planes about them are least far off [1]_; the nearest points of the
-        same skin stand there. More triangles are left of what hangs together in no surface.
+        Each edge collapses to the point with the least distance from the planes around the edge [1]_. The
+        nearest point of the surface whose normal agrees takes its place. More triangles are left if the
+        triangles do not hang together.
 
         .. [1] Garland, Heckbert: "Surface simplification using quadric error metrics", SIGGRAPH 1997.
         """
@@ -75,7 +80,10 @@ def _across(corners: FloatArray) -> FloatArray:
 
 
 def _at_corners(corners: IntArray, values: FloatArray, count: int) -> FloatArray:
-    """Return the sums (g, k) of the values (t, k) of all that have a corner (t, c) at each of so many."""
+    """Return sums (g, k) of values (t, k) of the facets that meet at each of `count` = g points.
+
+    The points of the facets are `corners` (t, c).
+    """
     rows, columns = corners.ravel(), np.repeat(np.arange(len(corners)), corners.shape[1])
     return np.asarray(csr_array((np.ones(rows.size), (rows, columns)), shape=(count, len(corners))) @ values)
 
@@ -132,7 +140,7 @@ def _bounding(tetrahedra: IntArray) -> IntArray:
 
 
 def _drawn(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
-    """Return a surface of at most so many triangles, which is near the origin and as large as a housing."""
+    """Return a surface of at most `maximum` triangles; it is near the origin and as large as a housing."""
     used, facets = np.unique(facets, return_inverse=True)
     points, facets = points[used], facets.reshape(-1, 3)
     if not len(facets):

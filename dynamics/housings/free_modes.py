@@ -70,7 +70,7 @@ def _nested_dissection(matrix: sp.csr_array) -> IntArray:
 
 
 class ModeStatus(IntEnum):
-    """How the search for modes and deflections ended."""
+    """Outcome of the search for modes and deflections."""
 
     CONVERGED = 0
     ITERATION_LIMIT = 1  # fewer modes than requested; those found are exact

@@ -19,14 +19,14 @@ NEAR = 5e-3
 INWARD = 0.7
 """Least cosine between the normal of a bore's wall and the direction to its axis."""
 COVERED = 0.5
-"""Least part of a bore's wall that must be there: a split seat has half of it."""
+"""Least part of a bore's wall that has to exist: a split seat has half of it."""
 
 
 class Face(Protocol):
     """Chooses triangles of a surface."""
 
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
-        """Return those of `mesh.surface` that are on the face, (t, 6).
+        """Return the triangles of `mesh.surface` that are on the face, (t, 6).
 
         Raises `InputError`: there are none.
         """

@@ -25,12 +25,12 @@ MIN_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
 SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
-UNITS = {"m": 1.0, "mm": 1e-3}
+UNITS = {"m": 1.0, "mm": 1e-3}  # meters per unit of coordinates
 _MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
-_MESH_SECONDS = 60.0
-LINEAR_NODES = 4
+_MESH_SECONDS = 60.0  # most seconds in which the child process reads a file
+LINEAR_NODES = 4  # nodes of a linear tetrahedron
 TEXTS = ("Abaqus", "Nastran")
-CORNERS = 3
+CORNERS = 3  # corners of a triangle
 
 
 def element_shape(mesh: TetrahedralMesh) -> FloatArray:
@@ -70,7 +70,7 @@ def _check_quality(mesh: TetrahedralMesh) -> None:
 
 
 class _Content(NamedTuple):
-    """What a file holds: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
+    """Content of a mesh file: points, nodes of its tetrahedra, nodes of the named parts of its surface."""
 
     points: FloatArray
     tetrahedra: IntArray
@@ -91,14 +91,14 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
         ``.msh`` (gmsh), ``.inp`` (Abaqus, CalculiX), ``.bdf``, ``.nas``, ``.fem`` (Nastran), ``.vtu``,
         ``.vtk``.
     unit : str
-        Of its coordinates, "m" or "mm": files do not say it.
+        Unit of the coordinates, "m" or "mm": files do not state it.
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
     return _checked(_content(Path(path)), scale)
 
 
 def _content(file: Path) -> _Content:
-    """Return what a confined child reads from a file: its format is by the suffix, and never another."""
+    """Return the content that a confined child reads from a file; the suffix alone decides the format."""
     title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
     if not file.is_file():
         raise InputError(FIELD, file.name, "a file that exists")

@@ -16,9 +16,11 @@ Fitted to a thin-walled cast box of 9 500 to 221 000 freedoms and 20 to 80 modes
 ASSEMBLY, FACTOR, SOLVE = 2.9, 6.8, 0.074
 """CPU seconds: matrices and their ordering, factor, one step of Lanczos' method or one deflection."""
 ORTHOGONALIZATION, PROJECTION = 2.7e-4, 1.6e-4
-"""CPU seconds: of a step against a vector of Lanczos' basis, of a pair of vectors in Galerkin's matrices."""
+"""CPU seconds of one step against one vector of Lanczos' basis, and of one pair of vectors in Galerkin's
+matrices.
+"""
 FIRST_STEPS, STEPS_PER_MODE = 36.0, 1.8
-"""Of Lanczos' method, its restarts among them."""
+"""Steps of Lanczos' method, restarts included: those without any mode, and those per mode."""
 REFINED = 2.0
 """Solutions for a deflection: one, and its refinement."""
 FILL = 0.935e9
@@ -26,7 +28,7 @@ FILL = 0.935e9
 
 
 class CostLimit(NamedTuple):
-    """What a reduction may cost: CPU seconds and bytes."""
+    """Limits of CPU time (s) and memory (bytes) of a reduction."""
 
     seconds: float = 600.0
     bytes: float = MAX_BYTES
@@ -40,9 +42,9 @@ def reduction_cost(freedoms: int, modes: int, motions: int) -> Cost:
     Parameters
     ----------
     freedoms : int
-        Of the mesh.
+        Freedoms of the mesh.
     motions : int
-        Of all seats.
+        Motions of all seats.
     """
     size = freedoms / REFERENCE
     steps, basis = FIRST_STEPS + STEPS_PER_MODE * modes, basis_vectors(modes)

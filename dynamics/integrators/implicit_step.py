@@ -31,7 +31,7 @@ from dynamics.motion.local_accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
 from dynamics.types import FloatArray
 
-STAGE_COUNT = 6
+STAGE_COUNT = 6  # stages of the method, the first explicit
 
 
 @routine
@@ -50,7 +50,7 @@ def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: 
         if iterations < 0:
             return False
         work.counts[Count.NEWTON_TOTAL] += iterations
-        work.counts[Count.NEWTON_MOST] = max(work.counts[Count.NEWTON_MOST], iterations)
+        work.counts[Count.MAX_NEWTON] = max(work.counts[Count.MAX_NEWTON], iterations)
         if audit and (IMPLICIT_WEIGHTS[stage] != 0.0 or stage == STAGE_COUNT - 1):
             write_powers(system, work, stage, work.time[0] + IMPLICIT_NODES[stage] * step)
     for i in range(work.q.size):

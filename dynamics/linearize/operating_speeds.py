@@ -1,4 +1,7 @@
-"""Speeds of all laws by that of the first that turns, and the exact common period of meshes and loads."""
+"""Speeds of all laws by that of the first that turns, and the exact common period of meshes and loads.
+
+A law is a drive, or the free rotation of a train without a drive. The leading law is the first that turns.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +16,8 @@ from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import proportional_speeds
 from dynamics.types import FloatArray
 
-MAX_SPEEDS = 100_000
-LARGEST_DENOMINATOR = 10_000
+MAX_SPEEDS = 100_000  # most speeds of a response
+LARGEST_DENOMINATOR = 10_000  # largest integer in a proportion of speeds
 
 
 def leading_law(system: System) -> int:

@@ -1,4 +1,8 @@
-"""Harmonic response of a system whose mesh stiffnesses vary over the cycle."""
+"""Harmonic response of a system whose mesh stiffnesses vary over the cycle.
+
+The leading law is the first drive or free rotation that turns. Harmonics are multiples of the frequency of
+the common period, after which all meshes and loads are in phase again.
+"""
 
 from __future__ import annotations
 
@@ -27,11 +31,11 @@ def parametric_response(
     Parameters
     ----------
     speed, rate : (S,) arrays
-        Of the leading law, rad/s, and how fast it changes, rad/s^2.
+        Speed of the leading law, rad/s, and its rate of change, rad/s^2.
     orders : int
         Harmonics of each mesh.
     gyroscopic : bool
-        With gyroscopic and frame terms.
+        Whether gyroscopic and frame terms count.
     varying : bool
         False: with mean tangents, whose errors have the static means.
     """

@@ -1,4 +1,8 @@
-"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing."""
+"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing.
+
+A strain is a relative displacement or rotation of two parts. A seat (`Seats`) is a bearing that is more than
+three springs: it has tilt stiffness or a matrix, or sits in a housing without mass.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,7 @@ class Seats:
 
     name: tuple[str, ...]
     support: IntArray
-    """Of each among the supports. Shape (s,)."""
+    """Index of each bearing among the supports. Shape (s,)."""
     frame: tuple[int | None, ...]
     """Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
     on planet bearings, whose pins stay in the carrier's.
@@ -40,10 +44,11 @@ class Seats:
     """
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: Of bearing and housing in series. Shape (5 s, 5 s) each."""
+    """`stiffness`, `damping`: Stiffness and damping of bearing and housing in series. Shape (5 s, 5 s) each.
+    """
     preload: FloatArray
-    """On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts. Shape
-    (5 s,).
+    """Preload on the shaft at d = 0, N and N m. On a planet it includes the force of a pin off its nominal
+    position. Shape (5 s,).
     """
 
     @property
@@ -56,7 +61,7 @@ class Seats:
 def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to what holds them.
 
-    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    Bearings in a housing without mass, or with neglected mass, have the housing's matrix in series.
     """
     housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
     full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
@@ -80,11 +85,11 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     for seat, name in enumerate(order):
         index, part = supports[name]
         rows = slice(SEAT * seat, SEAT * seat + SEAT)
-        motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
-        stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
-        damping[rows, rows] = turn.T @ part.seat_damping @ turn
+        motion[rows], axes = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
+        stiffness[rows, rows] = axes.T @ part.seat_stiffness @ axes
+        damping[rows, rows] = axes.T @ part.seat_damping @ axes
         seat_preload = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
-        preload[rows] = turn.T @ seat_preload + stiffness[rows, rows] @ seat_error(rotors, index, part)
+        preload[rows] = axes.T @ seat_preload + stiffness[rows, rows] @ seat_error(rotors, index, part)
     first, groups = 0, []
     for housing in condensed:
         rows = slice(first, first + SEAT * len(housing.bushings))
@@ -147,7 +152,7 @@ def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Connections:
-    """What joins rotors to the ground and to each other linearly."""
+    """Linear connections of rotors to the ground and to each other."""
 
     supports: Supports
     """Bushings, then planet bearings."""

@@ -1,4 +1,9 @@
-"""Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time."""
+"""Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time.
+
+The kinematic motion turns all shafts by exact ratios to k laws; freedoms q are the deviations from it. A free
+train, which no drive turns, has a rotation in q. Whole quanta of it, small parts of a revolution, move into
+the kinematic motion.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +20,8 @@ from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
 # Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
-FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
-MOTION_COLUMNS = 4
+FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3  # columns of the motion of a law
+MOTION_COLUMNS = 4  # number of these columns
 QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""
@@ -79,7 +84,7 @@ def set_phases(
 
 @inner
 def set_drift(elements: Elements, time: float, motion: FloatArray, local: LocalState) -> None:
-    """Write the time, what the kinematic motion adds to local rates, and the speeds of rotation."""
+    """Write the time, the local rates of the kinematic motion, and the speeds of rotation."""
     local.clock[0] = time
     for r in range(elements.carried, local.drift.size):
         local.drift[r] = 0.0
@@ -118,13 +123,13 @@ def add_body_motion(
     coordinate: FloatArray,
     rate: FloatArray,
 ) -> None:
-    """Do what `add_motion` does without modal freedoms, which `q` and `v` need not have."""
-    bodies, turn = system.sparse.bodies, system.sparse.turn
+    """Add motion as `add_motion` does, without the modal freedoms, which `q` and `v` may lack."""
+    bodies, position_gradient = system.sparse.bodies, system.sparse.position_gradient
     for r in range(coordinate.size):
         displacement, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
         coordinate[r], rate[r] = system.elements.offset[r] + displacement, moving
     for m in range(position.size):
-        position[m] += row_product(turn, turn.weight, m, q)
+        position[m] += row_product(position_gradient, position_gradient.weight, m, q)
 
 
 @inner

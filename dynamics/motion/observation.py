@@ -1,4 +1,8 @@
-"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds."""
+"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds.
+
+A law is a drive, or the free rotation of a train without a drive; quanta are the parts of a revolution by
+which the rotation of a free train moved into the kinematic motion.
+"""
 
 from __future__ import annotations
 
@@ -50,12 +54,12 @@ def observe(
     quanta: IntArray | None = None,
     carried: FloatArray | None = None,
 ) -> Observed:
-    """Return what the elements do at T states.
+    """Return coordinates and forces of the elements at T states.
 
     `time` (T,), `q` and `v` (T, n); `quanta` (T, k) counts those of free trains moved into the reference.
     Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).
     """
-    local = make_local(system.elements, system.turn.shape[0])
+    local = make_local(system.elements, system.position_gradient.shape[0])
     return _look(system, local, time, quanta, q, v, carried)
 
 
@@ -63,7 +67,7 @@ def local_state(
     system: SystemArrays, time: float, q: FloatArray, v: FloatArray, quanta: IntArray | None = None
 ) -> LocalState:
     """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
-    local = make_local(system.elements, system.turn.shape[0])
+    local = make_local(system.elements, system.position_gradient.shape[0])
     counted = None if quanta is None else quanta[np.newaxis]
     _look(system, local, np.array([time]), counted, q[np.newaxis], v[np.newaxis])
     return local
@@ -79,7 +83,8 @@ def _look(
     carried: FloatArray | None = None,
 ) -> Observed:
     """Observe T states, and leave the last one in `local`."""
-    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+    rows, laws = system.direction.shape[0], system.inertial.shape[0]
+    meshes = system.position_gradient.shape[0]
     seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if quanta is None else quanta
     seats = np.empty((time.size, 0)) if carried is None else carried

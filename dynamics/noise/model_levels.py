@@ -22,21 +22,23 @@ from dynamics.work_cost import Cost, on_this_host
 
 @dataclass(frozen=True)
 class ModelLevels:
-    """What the radiation models say of a housing where it is loudest; mappings are by name of the model."""
+    """Results of the radiation models where a housing is loudest; mappings are by name of the model."""
 
     order: float
     speed: float
-    """rad/s."""
+    """Speed of the leading drive, rad/s."""
     level: Mapping[str, float]
     """Sound power level of the models that are computed, from coarse to fine, dB."""
     efficiency: Mapping[str, float]
     """Radiation efficiency by the panel models."""
     seconds: Mapping[str, float]
     """CPU time of the models that are computed."""
-    left_out: Mapping[str, str]
-    """Why others are not."""
+    omitted: Mapping[str, str]
+    """Reasons why the other models are not computed."""
     error_band: Mapping[str, tuple[float, float]]
-    """From and to where the level of each model may be off, computed or not, dB; below 0: too quiet."""
+    """Bounds of the error of the level of each model, computed or not, dB: lower and upper; a negative error
+    is a level that is too low.
+    """
     predicted: Mapping[str, Cost]
     """Cost of each model on this host, computed or not."""
     replaced: FloatArray | None = None
@@ -88,7 +90,7 @@ def model_levels(
         },
         efficiency={model: result.efficiency for model, result in results},
         seconds={**{model: result.cost.seconds for model, result in results}, **exact.seconds},
-        left_out={**panels.left_out, **exact.left_out},
+        omitted={**panels.omitted, **exact.omitted},
         error_band={**panels.error_band, **estimate.error_band, name: (-EXACT, EXACT)},
         predicted={**panels.predicted, **estimate.predicted, **exact.predicted},
         replaced=estimate.replaced,
@@ -98,7 +100,7 @@ def model_levels(
 
 @dataclass(frozen=True)
 class _Estimate:
-    """What the estimate without boundary elements adds to the models; nothing where there is none."""
+    """Columns that the estimate without boundary elements adds to the models; empty without an estimate."""
 
     level: Mapping[str, float]
     error_band: Mapping[str, tuple[float, float]]
@@ -124,10 +126,13 @@ def _estimate(
 
 @dataclass(frozen=True)
 class _ExactLines:
-    """What boundary elements add to the models: at the point nothing but their cost where no line is near."""
+    """Columns that boundary elements add to the models.
+
+    Where no line is near the loudest point, they hold the cost alone.
+    """
 
     predicted: Mapping[str, Cost]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     level: Mapping[str, float]
     seconds: Mapping[str, float]
 
@@ -139,9 +144,9 @@ def _exact_lines(
     predicted = {name: on_this_host(WORK.format(name), line_cost(housing.body, hertz), cache)}
     if corrected is None:
         return _ExactLines(predicted, {}, {}, {})
-    left_out = {name: "; ".join(corrected.left_out)} if corrected.left_out else {}
+    omitted = {name: "; ".join(corrected.omitted)} if corrected.omitted else {}
     near = [line for line in corrected.lines if max(line.frequency / hertz, hertz / line.frequency) <= FLAT]
     if not near:
-        return _ExactLines(predicted, left_out, {}, {})
+        return _ExactLines(predicted, omitted, {}, {})
     level = float(sound_power_level(sound.power[point.speed_index, point.order_index]))
-    return _ExactLines(predicted, left_out, {name: level}, {name: near[0].seconds})
+    return _ExactLines(predicted, omitted, {name: level}, {name: near[0].seconds})

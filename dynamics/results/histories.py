@@ -1,4 +1,8 @@
-"""Time series of a run from its trajectory: forces, transmission errors, speeds."""
+"""Time series of a run from its trajectory: forces, transmission errors, speeds.
+
+The trajectory holds deviations from the kinematic motion, in which all shafts turn by exact ratios. Quanta
+are the parts of a revolution by which the rotation of a train without a drive moved into that motion.
+"""
 
 from __future__ import annotations
 
@@ -66,7 +70,7 @@ class _Signals(NamedTuple):
     """`q`, `v`: Modal freedoms may be missing at their end. Shape (T, n) each."""
     coordinate: FloatArray
     force: FloatArray
-    """`coordinate`, `force`: Of the elements. Shape (R, T) each."""
+    """`coordinate`, `force`: Local coordinates and local forces of the elements. Shape (R, T) each."""
     static: FloatArray
     """Static transmission error, m. Shape (m, T)."""
 

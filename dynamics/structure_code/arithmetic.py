@@ -46,7 +46,7 @@ _COMPARE: dict[type, tuple[Callable[[Any, Any], Any], str]] = {
 
 
 class Unsupported(Exception):
-    """The function needs what is not written out for a structure."""
+    """A construct of the function has no written-out form for a structure."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Arithmetic:
         return value if value.ir.type == FLAG else self.pair(ast.NotEq(), value, 0)
 
     def flag(self, value: Any) -> Any:
-        """Return that as the operand of a branch."""
+        """Return the truth of a value as the operand of a branch."""
         value = self.truth(value)
         return value.ir if isinstance(value, Value) else FLAG(int(value))
 

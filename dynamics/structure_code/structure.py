@@ -1,4 +1,4 @@
-"""The structure of tuples by address: a name for all that code written out for them takes as known."""
+"""The structure of tuples by address: a key of all their content that code written out for them assumes."""
 
 from __future__ import annotations
 
@@ -16,27 +16,27 @@ import numpy as np
 from dynamics.structure_code.arrays import LONGEST, Known
 from dynamics.types import BoolArray, IntArray
 
-MAX_AXES = 3
+MAX_AXES = 3  # most axes of an array
 
 
 class _Layout(NamedTuple):
-    """Where the words of a tuple are what: A arrays, I numbers."""
+    """Layout of the words of a tuple: A arrays, I numbers."""
 
     address: IntArray
-    """Shape (A,)."""
+    """Word with the address of each array. Shape (A,)."""
     dimensions: IntArray
-    """-1: the array has no such axis. Shape (A, 3)."""
+    """Words with the dimensions of each array; -1: the array has no such axis. Shape (A, 3)."""
     bytes: IntArray
-    """Of an item. Shape (A,)."""
+    """Bytes of an item. Shape (A,)."""
     known: BoolArray
-    """Whether it holds integers that are part of a structure. Shape (A,)."""
+    """Whether each array holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
-    """Integers and flags. Shape (I,)."""
+    """Words with integers and flags. Shape (I,)."""
 
 
 @cache
 def _layout(kind: Any) -> _Layout:
-    arrays, numbers = _words(kind, 0)
+    arrays, numbers = _slots(kind, 0)
     axes = [[first + 1 + k if k < array.ndim else -1 for k in range(MAX_AXES)] for first, array, _ in arrays]
     return _Layout(
         np.array([first for first, _, _ in arrays], dtype=np.int64),
@@ -47,12 +47,12 @@ def _layout(kind: Any) -> _Layout:
     )
 
 
-def _words(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[int]]:
+def _slots(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[int]]:
     """Return the arrays of a tuple whose words begin at `origin`, with their first word, and its integers."""
     arrays, numbers = [], []
     for name, field, first in kind.fields:
         if hasattr(field, "fields"):
-            inner, more = _words(field, origin + first)
+            inner, more = _slots(field, origin + first)
             arrays += inner
             numbers += more
         elif hasattr(field, "ndim"):
@@ -65,7 +65,7 @@ def _words(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[in
 
 @cache
 def _of_sources() -> bytes:
-    """Return a digest of all that code depends on beside the structure."""
+    """Return a digest of all sources that code depends on apart from the structure."""
     digest = sha256()
     for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         digest.update(file.read_bytes())
@@ -75,22 +75,22 @@ def _of_sources() -> bytes:
 
 
 def structure_key(tuples: Mapping[Any, Known]) -> str | None:
-    """Return a name of what is known of `tuples`; None if arrays that are written overlap others.
+    """Return a key of the known part of `tuples`; None if arrays that are written overlap others.
 
     It holds the dimensions and items that are known, and which arrays are the same one.
     """
     digest, spans = sha256(_of_sources()), []
     for group, known in tuples.items():
-        layout, words = _layout(group._numba_type_), group._words
-        begin = words[layout.address]
-        lengths = np.append(words, 1)[layout.dimensions]
+        layout, slots = _layout(group._numba_type_), group._slots
+        begin = slots[layout.address]
+        lengths = np.append(slots, 1)[layout.dimensions]
         size = np.prod(lengths, axis=1)
         key_lengths = np.where(lengths <= LONGEST, lengths, -1)
         if known is Known.WIDTHS:
             key_lengths[:, 0] = -1
         digest.update(key_lengths.tobytes())
         if known is Known.ALL:
-            digest.update(words[layout.numbers].tobytes())
+            digest.update(slots[layout.numbers].tobytes())
             for k in np.flatnonzero(layout.known & (size <= LONGEST) & (size > 0)):
                 digest.update(string_at(int(begin[k]), int(size[k] * layout.bytes[k])))
         full = size > 0

@@ -29,7 +29,7 @@ def first_harmonics(teeth: int) -> list[int]:
 
 
 def least_passed(teeth: int) -> float:
-    """Return the share of the compliance that tells loads apart; more where all harmonics are solved."""
+    """Return the share of the compliance from which loads count as different; more with all harmonics."""
     return MIN_SIGNIFICANT if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
 
 
@@ -115,7 +115,7 @@ def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatAr
 def _residual_energy(
     ring: TurningLoads, basis: FloatArray, solutions: list[ComplexArray], modes: FloatArray
 ) -> FloatArray:
-    """Return the energy of what is unbalanced under unit load, by harmonic and flank node or other load.
+    """Return the energy of the unbalanced forces under unit load, by harmonic and flank node or other load.
 
     That is told by the squares of `SKETCH` sums of all forces with random signs.
     """
@@ -124,8 +124,8 @@ def _residual_energy(
     within, behind, ahead = signs @ basis, signs @ ring.across @ basis, signs @ ring.across.T @ basis
     rank, residuals = modes.shape[1], []
     for number, (x, weight) in enumerate(zip(solutions, weights(ring.teeth), strict=True)):
-        turn = np.exp(2j * np.pi * number / ring.teeth)
-        out = left + turn * right - (within + turn.conj() * behind + turn * ahead) @ x
+        phase_factor = np.exp(2j * np.pi * number / ring.teeth)
+        out = left + phase_factor * right - (within + phase_factor.conj() * behind + phase_factor * ahead) @ x
         if number == 0 and ring.spring is not None:
             out -= (signs @ ring.spring) @ (ring.spring.T @ basis @ x)
         out = np.concatenate([out[:, :rank] @ modes.T, out[:, rank:]], axis=1)

@@ -19,7 +19,7 @@ class Field:
     """Displacement of the whole mesh under a flank load on one tooth, per unit face width."""
 
     displacement: FloatArray
-    """m per N/m of load. Shape (N, 2)."""
+    """Displacement of the nodes, m per N/m of load. Shape (N, 2)."""
     load: FloatArray
     internal: FloatArray
     """`load`, `internal`: Applied nodal forces and K u, N/m. Shape (N, 2) each."""
@@ -30,9 +30,9 @@ class _FlankLoad:
     """Inward normal forces on the involute of one tooth."""
 
     forces: FloatArray
-    """At the flank's nodes, N/m. Shape (k,)."""
+    """Inward normal forces at the flank's nodes, N/m. Shape (k,)."""
     moment: float
-    """Their moment about the gear's axis, N: every normal of an involute touches the base circle."""
+    """Moment of the forces about the gear's axis, N. Every normal of an involute touches the base circle."""
 
     def work(self, matrix: FloatArray) -> float:
         """Return q' S q with S the middle diagonal block of a flank compliance."""
@@ -70,10 +70,10 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
     load, internal = np.zeros_like(u), np.zeros_like(u)
     forces_in = sector.matrix @ local
     for i, j in enumerate(mesh.teeth):
-        turn, nodes = rotation(j * mesh.pitch_angle).T, mesh.sector_nodes[i]
-        u[nodes] = local[:, i].reshape(-1, 2) @ turn
-        internal[nodes] += forces_in[:, i].reshape(-1, 2) @ turn
-        load[nodes] += local_load[:, i].reshape(-1, 2) @ turn
+        rotation_matrix, nodes = rotation(j * mesh.pitch_angle).T, mesh.sector_nodes[i]
+        u[nodes] = local[:, i].reshape(-1, 2) @ rotation_matrix
+        internal[nodes] += forces_in[:, i].reshape(-1, 2) @ rotation_matrix
+        load[nodes] += local_load[:, i].reshape(-1, 2) @ rotation_matrix
     if ring.hub_matrix is not None:
         internal[mesh.hub_nodes] += (ring.hub_matrix @ u[mesh.hub_nodes].ravel()).reshape(-1, 2)
     return Field(u, load, internal)

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.contact.free_end import ENDLESS, FreeEnds, end_softness
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
-from fe_contact.contact.plain_touch import FLAT, Touch, conjugate_touch, flank_coordinate
+from fe_contact.contact.plain_touch import FLAT, Touch, conjugate_touch
 from fe_contact.contact.problem import Candidates, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import modified_touch
@@ -26,7 +26,7 @@ Line loads that vary within a slice are felt that far: waves of a slice and shor
 of two slices, the shortest ones that the bodies carry, move them as patches of 0.72 slices would.
 """
 LONGEST_LAW = 0.5
-"""The same at most, in modules: about half the thickness of a tooth."""
+"""Largest reference length of the local law in modules: about half the thickness of a tooth."""
 
 _FLUSH = 1e-6
 """Faces that stand apart by less than this part of their width end together."""
@@ -175,8 +175,8 @@ def _loaded_slices(
     slices: Slices,
 ) -> LoadedSlices:
     """Lay load patches where the points of the slices of all pairs touch; `middle` is that of the slices."""
-    tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
-    tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
+    tip_1 = float(pair.pinion.flank_coordinate(pair.pinion.tip_roll_length))
+    tip_2 = float(pair.wheel.flank_coordinate(pair.wheel.tip_roll_length))
     radius = touch.radius / math.cos(pair.base_helix_angle)
     shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, radius, rule)
     shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, radius, rule)
@@ -270,7 +270,7 @@ def _tip_inclination(gear: Toothing) -> float:
 
 
 def corner_softness(gear: Toothing) -> float:
-    """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
+    """Return the softness of the corner at a tip edge over that of a half plane; see `wedge_softness`.
 
     Flank and tip circle meet at a right angle and the pressure angle at the tip.
     """

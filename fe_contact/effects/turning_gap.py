@@ -1,4 +1,4 @@
-"""Gap by what turns with a gear: run-out and wobble of its axis, waves and flanks of its single teeth."""
+"""Gap by deviations that turn with a gear: run-out and wobble, waves, flanks of single teeth."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ _TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) 
 
 @dataclass(frozen=True)
 class TurningGap:
-    """Gap along the line of action by what turns with one gear, m."""
+    """Gap along the line of action by the deviations that turn with one gear, m."""
 
     gear: int
     """0 is the pinion, 1 the wheel."""
     teeth: int
-    """Of that gear."""
+    """Number of teeth of the gear."""
     base_radius: float
-    """Of that gear, m."""
+    """Base radius of the gear, m."""
     period: int
-    """Base pitches after which it is taken to repeat."""
-    turn: float
+    """Base pitches after which the gap repeats."""
+    roll_angle: float
     """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
     waves: tuple[Wave, ...]
@@ -48,7 +48,7 @@ class TurningGap:
 
     @classmethod
     def of(cls, index: int, gear: Toothing, period: int) -> TurningGap:
-        """Return that of a gear, 0 the pinion."""
+        """Return the gap of a gear, 0 the pinion, 1 the wheel."""
         flanks = gear.tooth_flanks
         waves = sum(wave.amplitude for wave in gear.waves)
         deviation = max((flank.largest for flank in flanks), default=0.0)
@@ -57,7 +57,7 @@ class TurningGap:
             teeth=gear.teeth,
             base_radius=gear.base_radius,
             period=period,
-            turn=abs(gear.tip_roll_length - gear.form_roll_length) / gear.base_radius,
+            roll_angle=abs(gear.tip_roll_length - gear.form_roll_length) / gear.base_radius,
             run_out=gear.run_out,
             waves=gear.waves,
             flanks=flanks,
@@ -83,7 +83,7 @@ class TurningGap:
 
     @cached_property
     def extents(self) -> Extent:
-        """Bounds of what turns with the gear, and of the flanks of its teeth, arrays (T,)."""
+        """Bounds of the gaps that turn with the gear, and of the flanks of its teeth, arrays (T,)."""
         out, radius = self.run_out.eccentricity + 0.5 * self.run_out.wobble, self.base_radius
         waves = sum(wave.amplitude for wave in self.waves)
         amplitude, along, order = self._harmonics[:, :3].T
@@ -93,9 +93,9 @@ class TurningGap:
             low=-out - waves,
             high=out + waves,
             slope=steep / radius,
-            spread=float(height @ np.minimum(order * self.turn, 2.0)),
+            spread=float(height @ np.minimum(order * self.roll_angle, 2.0)),
             bend=float(height @ order**2) / radius**2,
-            turn=steep * radius,
+            rotation_bound=steep * radius,
         )
         count = 0 if self.surfaces is None else len(self.surfaces.amounts)
         flanks = Extent() if self.surfaces is None else self.surfaces.extents
@@ -111,7 +111,7 @@ class TurningGap:
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths of the gear in m, between two of which its profile turns back once at most."""
         gear = self._toothing(pair)
-        waves = float(self._harmonics[:, 2].max(initial=0.0)) * self.turn / (2.0 * math.pi)
+        waves = float(self._harmonics[:, 2].max(initial=0.0)) * self.roll_angle / (2.0 * math.pi)
         ends = sorted((gear.form_roll_length, gear.tip_roll_length))
         nodes = np.linspace(ends[0], ends[1], math.ceil(_IN_WAVE * max(waves, 1.0)) + 1)
         if self.surfaces is None or tooth >= len(self.surfaces.nodes):
@@ -156,22 +156,22 @@ class TurningGap:
 
 
 class Turning(NamedTuple):
-    """How a gear turns, in revolutions, from where a tooth touches at the pitch point in mid-face."""
+    """Turn of a gear in revolutions, counted from the contact of a tooth at the pitch point in mid-face."""
 
     period: int
     teeth: int
-    """`period`, `teeth`: Base pitches after which its teeth repeat, and their number."""
+    """`period`, `teeth`: Base pitches after which the teeth of the gear repeat, and their number."""
     pitch_point: float
-    """Roll length there, m."""
+    """Roll length at the pitch point, m."""
     per_roll: float
     """`per_roll`, `per_face`: Revolutions over roll length, and over distance from the pinion's mid-face;
     1/m.
     """
     axial_offset: float
-    """Of its mid-face from the pinion's, m."""
+    """Distance of the gear's mid-face from the pinion's, m."""
     per_face: float
     face_width: float
-    """m."""
+    """Face width of the gear, m."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -197,17 +197,17 @@ def _take_harmonics(
 ) -> None:
     """Take harmonics (H, 6) of the turn of a gear off a gap at points (k,); `face` from its mid-face, m."""
     inclined = turning.per_face * turning.face_width
-    turn, along = np.empty(gap.size), np.empty(gap.size)
+    revolutions, along = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         along[k] = face[k] / turning.face_width
         tooth = float(meeting[k] % turning.period) / turning.teeth
         rolled = (roll[k] - turning.pitch_point) * turning.per_roll
-        turn[k] = tooth + rolled + (face[k] + turning.axial_offset) * turning.per_face
+        revolutions[k] = tooth + rolled + (face[k] + turning.axial_offset) * turning.per_face
     for h in range(len(harmonics)):
         amplitude, over_face, order, waves, inclination, phase = harmonics[h]
         advance, late = waves + inclination * order * inclined, phase / (2.0 * math.pi)
         for k in range(gap.size):
-            angle = order * turn[k] + advance * along[k] - late
+            angle = order * revolutions[k] + advance * along[k] - late
             gap[k] -= (amplitude + over_face * along[k]) * _cosine(angle)
 
 

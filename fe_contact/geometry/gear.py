@@ -90,7 +90,7 @@ class Gear(Toothing):
 
     @cached_property
     def form_point(self) -> FormPoint:
-        """Where involute and fillet meet."""
+        """Point at which involute and fillet meet."""
         sine = math.sin(self.transverse_pressure_angle)
         flank_end = float(self.trochoid.height(np.array(self.normal_pressure_angle)))
         tangent_roll_length = self.reference_radius * sine + flank_end / sine
@@ -104,7 +104,7 @@ class Gear(Toothing):
 
     @cached_property
     def web(self) -> Web | None:
-        """Where the body is narrower than the face; None for a solid gear."""
+        """Web between rim and hub, where the body is narrower than the face; None for a solid gear."""
         if self.blank is None:
             return None
         return self.blank.web(self.face_width, self.root_radius, self.bore_diameter)
@@ -112,9 +112,9 @@ class Gear(Toothing):
     def with_parts(self, parts: Collection[str]) -> Gear:
         """Return the gear without the optional parts of its body that are not among `parts`."""
         plain = {"blank": None, "seat": CLAMPED}
-        left_out = {name: value for name, value in plain.items() if name not in parts}
-        same = all(getattr(self, name) == value for name, value in left_out.items())
-        return self if same else replace(self, **left_out)  # type: ignore[arg-type]
+        plain_values = {name: value for name, value in plain.items() if name not in parts}
+        same = all(getattr(self, name) == value for name, value in plain_values.items())
+        return self if same else replace(self, **plain_values)  # type: ignore[arg-type]
 
     def right_handed(self) -> Gear:
         """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""

@@ -28,7 +28,7 @@ _SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "b
 """Fields that are lengths of elements."""
 
 WOUND = 0.1
-"""Overlap ratio below which the teeth of a helical gear are meshed as those of a spur gear."""
+"""Overlap ratio below which helical gears have the meshes of spur gears at their teeth."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class SectorRecipe:
     """
     depth_limit: float
     body_size: float
-    """Size below the root, towards the bore, m; it grows with `body_growth` to `body_limit`. From a depth of
-    four times the limit on, an element is a quarter of its depth.
+    """Element size below the root, towards the bore, m; it grows with `body_growth` to `body_limit`. From a
+    depth of four times the limit on, an element is a quarter of its depth.
     """
     body_limit: float
     layers: int
@@ -137,6 +137,15 @@ class SectorRecipe:
             body_limit=1.5 * m,
             layers=_layers(gear, minimum=16 if wound(gear) else 12, thickest=1.0, limit=24),
         )
+
+    @classmethod
+    def medium(cls, gear: Toothing) -> SectorRecipe:
+        """Return the recipe between draft and standard: flank elements of 0.17 modules, about 12 layers."""
+        draft, standard = cls.draft(gear), cls.standard(gear)
+        lengths: Json = {name: math.sqrt(getattr(draft, name) * getattr(standard, name)) for name in _SIZES}
+        layers = 2 * math.ceil((draft.layers + standard.layers) / 4)
+        growth = math.sqrt(draft.body_growth * standard.body_growth)
+        return replace(standard, layers=layers, body_growth=growth, **lengths)
 
     @classmethod
     def fine(cls, gear: Toothing) -> SectorRecipe:

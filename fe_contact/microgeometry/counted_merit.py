@@ -25,8 +25,7 @@ class Cancelled(Exception):
 class Budget:
     """Designs that one search may evaluate, of whatever cost.
 
-    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
-    reported.
+    Before every design `cancel` is called; after it the used part of the budget is reported.
     """
 
     def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
@@ -42,7 +41,7 @@ class Budget:
         self.used += 1
 
     def tell(self) -> None:
-        """Report what is used."""
+        """Report the used part of the budget."""
         self._report(self.used / self.total)
 
 
@@ -52,16 +51,16 @@ class CountedMerit:
     Parameters
     ----------
     maximum : int
-        It raises `BudgetUsed` when so many designs of the budget are used.
+        Number of used designs of the budget at which it raises `BudgetUsed`.
     workers : Workers
-        Who assesses designs, and walks, that do not wait for each other.
+        Workers that assess independent designs, and follow independent walks.
 
     Attributes
     ----------
     designs : list of (Assessed, ndarray)
-        In their order.
+        Evaluated designs in their order.
     ends : list of (Assessed, ndarray)
-        Those of them at which walks ended.
+        Designs at which walks ended.
     """
 
     def __init__(
@@ -82,7 +81,7 @@ class CountedMerit:
         return self._counted(self.problem.assess(point), point)
 
     def linearize(self, point: FloatArray) -> tuple[float, Merit]:
-        """Assess a design, and return its merit with what is known about it to first order."""
+        """Assess a design, and return its merit to first order."""
         self._budget.take(self._maximum)
         began = spent(self.workers)
         assessed, merit = self.problem.linearize(point, self.workers if self.divides else InProcess())

@@ -12,42 +12,48 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.types import Json
 
-PLANE_REFINEMENT = {"draft": 0.6, "standard": 1.0, "fine": 2.0}
+PLANE_REFINEMENT = {"draft": 0.6, "medium": 0.8, "standard": 1.0, "fine": 2.0}
 
 
 SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
     "draft": SectorRecipe.draft,
+    "medium": SectorRecipe.medium,
     "standard": SectorRecipe.standard,
     "fine": SectorRecipe.fine,
 }
 
 
 SLICES = 15
-"""Of the face; false orders of helical pairs are then about 1 nm."""
+"""Slices of the face. False orders of helical pairs are then about 1 nm."""
 
 
 FINER_SLICES = (23, 31)
-"""What a tolerance may ask for beside them."""
+"""Further numbers of slices that a tolerance may need."""
 
 
 SLICE_ORDER = 2.3
-"""Of STE in the number of slices: measured 2.2 to 2.9 on helical pairs between 7 and 15."""
+"""Order of convergence of STE in the number of slices. Measured: 2.2 to 2.9 on helical pairs between 7 and 15
+slices.
+"""
 
 
 SLICE_OVER_PATCH = 1.0
-"""Least width of a slice over the half-width of the load patches: of narrower ones the bodies less what is in
-the local law lose definiteness, and heavy loads have no unique solution."""
+"""Least width of a slice over the half-width of the load patches. With narrower slices the compliance of the
+bodies less that of the local law is not positive definite, and heavy loads have no unique solution.
+"""
 
 
 COARSER = 1.5
-"""Elements of the coarse mesh of a solid over those of its own."""
+"""Element size of the coarse mesh of a solid over that of its fine mesh."""
 
 PLANE_RESOLVED, FACE_RESOLVED = 3.0, 1.5
-"""Elements in the half-width of a load patch at least. A wider one spreads a load over more of the flank than
-its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With less the
-mesh errs by more: in the plane 0.1 % of the mean of drafts at one and a half (docs/lab/index.md)."""
+"""Least number of elements in the half-width of a load patch. A wider patch spreads a load over more of the
+flank than its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With
+fewer elements the error of the mesh grows: in the plane to 0.1 % of the mean for drafts at one and a half
+(docs/lab/index.md).
+"""
 PLANE_EDGE, FACE_EDGE = 1.5, 2.0
-"""Elements in the length of a patch at a tip edge at least."""
+"""Least number of elements in the length of a patch at a tip edge."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +67,8 @@ class PlaneDiscretization:
     discretization error. Shape (MeshRecipe, MeshRecipe) each.
     """
     finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
-    """Solids of half the face that give what a finite width adds; None: the plane alone. Shape (SectorRecipe,
-    SectorRecipe).
+    """Recipes of solids of half the face, which give the correction for the finite width; None: the plane
+    alone. Shape (SectorRecipe, SectorRecipe).
     """
 
     slices = 1
@@ -95,10 +101,10 @@ class FaceDiscretization:
     Shape (SectorRecipe, SectorRecipe) each.
     """
     slices: int
-    """Of the common face width."""
-    most_slices: int
-    """Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
-    of `SLICE_OVER_PATCH`.
+    """Number of slices of the common face width."""
+    max_slices: int
+    """Largest useful number of slices, by two limits. Slices narrower than two thirds of a layer of either
+    gear move the same freedoms of the bodies; `SLICE_OVER_PATCH` is the other limit.
     """
 
     corrected = False
@@ -115,8 +121,8 @@ class FaceDiscretization:
         return 1.0 / (ratio**2 - 1.0)
 
     def in_slices(self, count: int) -> FaceDiscretization:
-        """Return the same meshes in another number of slices, or in `most_slices`."""
-        return replace(self, slices=min(count, self.most_slices))
+        """Return the same meshes in another number of slices, or in `max_slices`."""
+        return replace(self, slices=min(count, self.max_slices))
 
     @property
     def coarse_slices(self) -> int:
@@ -158,12 +164,12 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    largest = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    largest = min(_max_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
     return FaceDiscretization((first, second), coarse, min(slices or SLICES, largest), largest)
 
 
-def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
-    """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
+def _max_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
+    """Return the largest number of slices that a mesh resolves, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
     patches = pair.face_width / (FACE_RESOLVED * recipe.flank_size)
     return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)

@@ -1,4 +1,4 @@
-"""``loa cache``: what is kept to be quicker the next time."""
+"""``loa cache``: size and removal of the caches that make later work quicker."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ KINDS = {
     "studies": "tasks of studies",
     "tables": "STE tables of the meshes of scenes",
 }
-"""Folders of the cache, and what they hold."""
+"""Folders of the cache, with words for their contents."""
 _DAY = 86_400.0
 _GB = 1e9
 
 
 def run_list(*, as_json: bool) -> None:
-    """Print what the cache holds."""
+    """Print the contents of the cache."""
     by_kind = {kind: files_in(cache_home() / kind) for kind in KINDS}
     if as_json:
         kinds = {
@@ -51,7 +51,7 @@ def run_list(*, as_json: bool) -> None:
 
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
-    """Remove what was not used for longest until the rest fits."""
+    """Remove the longest unused files until the rest fits."""
     maximum = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
     removed = evict(cache_home(), maximum)
     _tell(removed, as_json=as_json)
@@ -75,7 +75,7 @@ def keep_small() -> None:
 
 
 def _limit_bytes() -> int:
-    """Return what the cache may hold: 2 GB, or what the environment says.
+    """Return the largest size of the cache in bytes: 2 GB, or the value of the environment.
 
     Raises `BadInput`: it says something else than a number of bytes.
     """

@@ -1,4 +1,4 @@
-"""``loa compare``: pages of two results, designs or flanks beside each other."""
+"""``loa compare``: pages that compare two results, designs or flanks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from lineofaction.report.run.view import RunView
 
 @dataclass(frozen=True)
 class FlankQuestion:
-    """What ``loa compare BEFORE AFTER --scene SCENE`` was called with, as typed."""
+    """Arguments of ``loa compare BEFORE AFTER --scene SCENE`` as the caller typed them."""
 
     scene: Path
     mesh: str | None
@@ -75,7 +75,7 @@ def run_compare(
     *,
     as_json: bool,
 ) -> None:
-    """Write the page; print what differs and what is not shown to; `of` are the torque and the recording."""
+    """Write the page; print differences above their errors; `of` are the torque and the recording."""
     check_writable(output)
     page = compare(files, view, *of)
     write_page(page, output)

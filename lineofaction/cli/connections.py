@@ -22,8 +22,8 @@ MAX_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0
 _STOPPING_S = 2
 _KEEP_ALIVE_S = 75
-"""How long an idle connection is kept: longer than by clients (5 s) and proxies (60 s). If the server closed
-first, a request that is on its way just then would be answered with a reset."""
+"""Seconds for which an idle connection stays open, longer than clients (5 s) and proxies (60 s) keep one. A
+server that closed first would answer a request that is on its way at that moment with a reset."""
 
 logger = structlog.get_logger(__name__)
 
@@ -59,7 +59,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         self._await_head()
 
     def data_received(self, data: bytes) -> None:
-        """Read on; close what is too long."""
+        """Read on; close the connection when its head is too long."""
         before = self.cycle
         if self._timer is None and (before is None or before.response_complete):
             self._await_head()
@@ -83,7 +83,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         super().connection_lost(exc)
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse what is no HTTP, in place of the server's plain text."""
+        """Refuse bytes that are no HTTP, in place of the server's plain text."""
         self._refuse(Malformed(msg))
 
     def _close_longest_idle(self) -> None:
@@ -138,12 +138,12 @@ def http_server(app: FastAPI) -> Server:
 
 
 class Server(uvicorn.Server):
-    """Tells those who wait for a live answer at once that the service stops; the rest have time to end.
+    """HTTP server that, as it stops, ends waits for live answers at once and other requests in time.
 
     Attributes
     ----------
     vitals : Vitals
-        Of the process that it serves in.
+        Signs of life of the process that the server runs in.
     metrics : callable
         Returns its figures as text.
     """
@@ -159,6 +159,6 @@ class Server(uvicorn.Server):
         await super().startup(sockets)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End the workers that somebody waits for, then what uvicorn ends."""
+        """End the workers of waiting callers, then end the server as uvicorn does."""
         await asyncio.to_thread(self._context.stop_waiting)
         await super().shutdown(sockets)

@@ -10,9 +10,10 @@ from bounds import engineering
 from dynamics.acoustics import SoundFigures
 from dynamics.results import RunResult
 from host.directories import cache_home
+from lineofaction.cli.costs import announce_cost, listening_cost
 from lineofaction.cli.output import progress_bar
 from lineofaction.cli.run_sounds import RunSound
-from lineofaction.cli.subjects import announce_cost, assessed_scene, listening_cost
+from lineofaction.cli.subjects import assessed_scene
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
@@ -30,7 +31,7 @@ from lineofaction.report.run.view import RunView
 
 
 def receiver_of(scene: Path | None, point: str, microphone: str) -> Receiver | None:
-    """Return where runs are heard by the options of the verb; None: as what the runs hold.
+    """Return the receiver that the options name; None: runs sound by their forces and motions.
 
     Without both it is the microphone of the scene's complaint. Raises `BadInput`: both, one of these without
     a scene, or no position.
@@ -57,7 +58,7 @@ def _position(text: str) -> tuple[float, ...]:
 def housing_sounds(
     runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView, *, announced: bool
 ) -> tuple[list[RunSound], str]:
-    """Return runs through the housings of a scene, and what to say of all."""
+    """Return runs through the housings of a scene, and a remark on all of them."""
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)
@@ -100,7 +101,7 @@ def _require_no_view(view: RunView, receiver: Receiver) -> None:
 
 
 def _cells(figures: SoundFigures) -> dict[str, str]:
-    """Return what the ear makes of a sound pressure, as printed."""
+    """Return the hearing figures of a sound pressure as printed cells."""
     loudness = "without extra" if figures.loudness is None else engineering(figures.loudness, 3)
     sharpness = "" if figures.sharpness is None else engineering(figures.sharpness, 3)
     tones = ", ".join(number(hertz, 4) for hertz, _ in figures.tones)

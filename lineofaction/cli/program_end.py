@@ -13,12 +13,12 @@ from service.management.vitals import Vitals
 from service.settings import Settings
 
 Work = Callable[[], None]
-"""What a process does; pickled on the way to it."""
+"""Function that a process runs; it is pickled on the way to the process."""
 
 
 @contextmanager
 def managed(settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]) -> Iterator[Callable[[], None]]:
-    """Answer on the management port while the context lasts; yields what prints its URL, if there is one.
+    """Answer on the management port in the context; yields a function that prints its URL, if it has one.
 
     Raises `BadInput`: the port is taken.
     """

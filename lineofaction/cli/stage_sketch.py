@@ -20,11 +20,11 @@ from lineofaction.gearbox.units import DEGREE
 PLANETS = 3
 
 _MIN_TEETH = 18
-"""Of a planet: with fewer, teeth without profile shift are undercut."""
+"""Least number of teeth of a planet: with fewer, teeth without profile shift are undercut."""
 
 
 def planetary_stage(wanted: PairWishes) -> StageSketch:
-    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
+    """Return a stage of three planets; its ring has the teeth of the sun plus twice the planet's.
 
     Raises `BadInput`: no planets fit a ratio that small.
     """

@@ -16,7 +16,7 @@ Json = dict[str, Any]
 _current: ContextVar[_Warned] = ContextVar("warned")
 
 _UNIT = re.compile(r"(?: |\b)(?:N|kg|CPU) [ms](?![a-z])")
-"""A unit of two words, and what is before it: lines break neither."""
+"""Pattern of a unit of two words with the word before it; lines break neither."""
 
 
 @dataclass
@@ -28,7 +28,7 @@ class _Warned:
 
 
 def begin_warnings(form: str) -> _Warned:
-    """Begin a verb that prints "text", "csv" or "json"; return what its warnings gather in."""
+    """Begin a verb that prints "text", "csv" or "json"; return the list that gathers its warnings."""
     warned = _Warned(form)
     _current.set(warned)
     return warned
@@ -45,7 +45,7 @@ def in_lines(text: str, room: IO[str] | int) -> str:
 
 
 def warn(warnings: Iterable[Json]) -> None:
-    """Gather warnings, and print those that are new: where people read, not into JSON or CSV."""
+    """Gather warnings, and print the new ones if people read the output, not into JSON or CSV."""
     warned = _current.get(None) or begin_warnings("text")
     for warning in warnings:
         if warning["message"] in warned.messages:
@@ -58,11 +58,11 @@ def warn(warnings: Iterable[Json]) -> None:
 
 
 def messages() -> list[str]:
-    """Return what the verb has gathered, in words."""
+    """Return the messages of the warnings that the verb has gathered."""
     return [warning["message"] for warning in warnings_so_far()]
 
 
 def warnings_so_far() -> list[Json]:
-    """Return what the verb has gathered."""
+    """Return the warnings that the verb has gathered."""
     warned = _current.get(None)
     return [] if warned is None else list(warned.messages.values())

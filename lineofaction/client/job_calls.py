@@ -1,4 +1,4 @@
-"""The jobs of a service: submit, look, wait, list, dismiss; whatever the processes compute."""
+"""Calls on the jobs of a service, for any process: submit, look, wait, list, dismiss."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _PAGE = 100
 
 _LONGEST_PAUSE_S = 2.0
 _REFERENCES = {"response": "document", "transmissionMode": "reference"}
-"""Whatever form a job was submitted with: say where its result is."""
+"""Members of an execution by which the service answers with the address of the result."""
 
 
 def pages(
@@ -55,11 +55,11 @@ def pages(
     Parameters
     ----------
     path, entries : str
-        Of the list; the name of the entries in its pages.
+        Path of the list; name of the entries in its pages.
     reader : callable
         JSON of an entry to the entry.
     parameters : mapping
-        Of the first page.
+        Query parameters of the first page.
     """
 
     def read(page: dict[str, Any]) -> tuple[list[T], str | None]:
@@ -85,7 +85,7 @@ def pace_of_known(session: Session, timeout: float | None = None, interval: floa
 
 
 def end_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[JobState]:
-    """Wait until a job has ended, in whatever way; raises `StillRunning`, `Unreachable`."""
+    """Wait until a job has ended with any status; raises `StillRunning`, `Unreachable`."""
     watch = progress or surface.session.progress
 
     def look() -> Steps[JobState]:
@@ -110,7 +110,7 @@ class JobCalls(Surface):
     def submit(
         self, process: str, inputs: dict[str, Any], *, idempotency_key: str | None = None
     ) -> Steps[JobState]:
-        """Enter a job; equal work is done once, whoever asks for it.
+        """Enter a job; equal work of several callers is done once.
 
         However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``. Raises
         `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`, `ServiceError`.
@@ -118,7 +118,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         inputs : dict
-            As JSON.
+            Inputs as JSON.
         idempotency_key : str, optional
             Name of this submission: a later one of the same name is the same job. Default: a new name.
         """
@@ -264,7 +264,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         job : str
-            Its identifier.
+            Identifier of the job.
         progress : callable, optional
             Called with every state seen; default: that of the client.
         timeout : float, optional
@@ -286,13 +286,13 @@ class JobCalls(Surface):
 
     @operation
     def result(self, job: str) -> Steps[Result]:
-        """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
+        """Return the reference to the result of a job; raises as `wait`, or `ResultNotReady`."""
         path = f"/v1/jobs/{job}/results"
         return self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES)
 
     @operation
     def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:
-        """Return where the result of inputs is, computed if need be: submit, wait.
+        """Return the reference to the result of inputs, computed if need be: submit, wait.
 
         When the service cannot be reached, the result that it gave for the same inputs before is taken, if
         its file is in the cache; an `OfflineWarning` says so. Raises as `submit` and `wait`.

@@ -23,7 +23,7 @@ JSON = "application/json"
 SUFFIX = ".nc"
 """Ending of the files of results, which are netCDF."""
 RESULTS = "/v1/results"
-"""Where results are on the service, before their hash."""
+"""Path of the results on the service, before the hash of a result."""
 
 __all__ = [
     "ablate",
@@ -53,7 +53,7 @@ F_co = TypeVar("F_co", bound="Figures", covariant=True)
 
 
 class _Work(Protocol[Q, T_co, F_co]):
-    """A `Computation`, by what the types of its study follow from."""
+    """A `Computation` by the members that determine the types of its study."""
 
     @property
     def inputs(self) -> Callable[Q, object]: ...
@@ -76,7 +76,7 @@ def _either(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[CaseLike | 
 
 
 def _as(call: Callable[P, None], work: Callable[[], _Work[Q, T, F]]) -> Takes[P, Q, T, F]:
-    """Take what a function takes: what is studied, by its name, and the file of what is varied."""
+    """Bind the arguments of a function: the subject by its name, and the file of the inputs."""
     subject, file = signature(call).parameters.values()
     name = subject.name.replace("_", " ")
     return Takes(name, work, from_file=True, bare=file.default is not Parameter.empty)
@@ -358,9 +358,9 @@ study = Studies.study.function
 STUDIES: dict[str, StudyOf[..., ..., Any, Any]] = {
     row.name: row for row in vars(Studies).values() if isinstance(row, StudyOf)
 }
-"""By name."""
+"""Studies by their names."""
 FUNCTIONS = {row.package: row.function for row in STUDIES.values()}
-"""By name; those that an editor knows are listed above."""
+"""Functions of the studies by the names of their packages; the list above tells editors the same names."""
 
 RESULT_KINDS = ("database", "run", *(study.kind for study in STUDIES.values()))
 """Kinds of results, by their names in the store and in the results of a job."""
@@ -377,7 +377,7 @@ def studies_of(subject: str) -> tuple[str, ...]:
 
 
 def figures_model(kind: str) -> type[Figures]:
-    """Return the model of the figures of a kind; those of an unknown one are not declared."""
+    """Return the model of the figures of a kind; the figures of an unknown kind are not declared."""
     from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures  # noqa: PLC0415 (start-up time)
 
     study = study_of(kind)

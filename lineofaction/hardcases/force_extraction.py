@@ -119,7 +119,7 @@ def _lift_off() -> Sequence[Measured]:
     "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
 )
 def _queries_outside() -> Sequence[Measured]:
-    """Ask beyond every end of the table, far away, and for what is no number."""
+    """Query beyond every end of the table, far away, and with NaN."""
     position = even_positions(32)
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
     table = table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))
@@ -200,7 +200,7 @@ def _nearly_parallel() -> Sequence[Measured]:
 
 
 def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
-    """Return how well force and STE are inverse to each other between zero and the highest load."""
+    """Return figures on force and STE as inverse functions between zero and the highest load."""
     rng = np.random.default_rng(_SEED)
     force = rng.uniform(0.0, float(table.force[-1]), x.size)
     deflection = table.ste(x, force)
@@ -213,7 +213,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
 
 
 def _slope_error(table: SteDatabase) -> Measured:
-    """Return how far the stated stiffness is from the difference of forces."""
+    """Return the difference of the stated stiffness from the difference quotient of forces."""
     rng = np.random.default_rng(_SEED)
     x, force = rng.uniform(0.0, 1.0, 500), rng.uniform(100.0, 4900.0, 500)
     deflection = table.ste(x, force)

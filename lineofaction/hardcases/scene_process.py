@@ -1,4 +1,4 @@
-"""Scenes one after the other in a process of their own: a crash or a hang ends one scene, not the suite."""
+"""Scenes one after the other in a child process: a crash or a hang ends one scene, not the suite."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _START_LIMIT = 120.0  # seconds for a new process to import what it needs
 
 
 def run_scenes(scenes: Sequence[HardScene]) -> Iterator[Outcome]:
-    """Yield the outcome of each scene, whatever becomes of it.
+    """Yield the outcome of each scene, also of a scene that crashes or hangs.
 
     One process serves them all, so that what is imported and compiled stays so; a scene that ends it, or that
     does not end, gets another one started for its followers.
@@ -37,7 +37,7 @@ def run_scenes(scenes: Sequence[HardScene]) -> Iterator[Outcome]:
 
 
 class _Worker:
-    """The process, and the pipe to it."""
+    """The child process, and its pipe."""
 
     def __init__(self) -> None:
         context = multiprocessing.get_context("spawn")

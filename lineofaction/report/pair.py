@@ -1,4 +1,4 @@
-"""A pair: its name, what speaks against it, its drawing and its data sheet."""
+"""A pair in a report: its name, its warnings, its drawing and its data sheet."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolera
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.plausibility import mesh_findings
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from fe_contact.types import IntArray, Json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.outline import pair_outline
@@ -72,7 +72,7 @@ _SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
 _HEIGHT = 3.4
 """Modules drawn above and below the pitch point."""
 _WIDTH = 3.4
-"""Width of the drawing over its height, nearly that of a panel."""
+"""Width of the drawing over its height, nearly the ratio of a panel."""
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
 _DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
 _SYMBOLS = {"um": "µm", "deg": "°"}
@@ -133,13 +133,13 @@ def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
     return kind(**_fields(content))
 
 
-def pair_title(geometry: PairFacts) -> str:
+def pair_title(geometry: PairGeometry) -> str:
     """Name a pair by its teeth."""
     one, other = geometry.teeth
     return f"Gear pair {one}/{other}, internal" if geometry.internal else f"Gear pair {one}/{other}"
 
 
-def pair_lead(geometry: PairFacts) -> str:
+def pair_lead(geometry: PairGeometry) -> str:
     """Say the dimensions of a pair."""
     return (
         f"center distance {1e3 * geometry.center_distance:.6g} mm, "
@@ -240,7 +240,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
 
 
 def _near(gear: Json, across: float) -> IntArray:
-    """Return the numbers of the teeth near the mesh: as far to either side as twice what is drawn, or all."""
+    """Return the numbers of the teeth near the mesh, to either side twice the drawn distance, or all."""
     count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
     reach_teeth = math.ceil(reach * count / (2.0 * math.pi)) + 1
     return np.arange(count) if reach >= 1.0 else np.arange(-reach_teeth, reach_teeth + 1)
@@ -252,7 +252,7 @@ def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_
 
 
 def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Panel:
-    """Draw the K-chart of a gear: what is removed over its roll angle; at three places of a twisted flank."""
+    """Draw the K-chart of a gear: removed material over roll angle, at three places of a twisted flank."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
     faces: tuple[tuple[str, float, Dash], ...] = (
@@ -337,7 +337,7 @@ class Entry:
 
     @property
     def name(self) -> str:
-        """Its name in JSON, with the unit."""
+        """The name of the quantity in JSON, with the unit."""
         label = self.term.replace(" ", "_").replace("-", "_")
         return f"{label}_{self.unit}" if self.unit else label
 
@@ -456,7 +456,7 @@ def _point_row(name: str, point: Json) -> tuple[str, ...]:
 
 
 def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -> Section:
-    """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
+    """Return the sheet as a section: the warnings, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
     text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
     figures = (pair_drawing(pair, tolerance_class), *teeth_as_made(pair))
@@ -482,5 +482,5 @@ def _text(value: float, unit: str) -> str:
 
 
 def _ratio(value: float) -> str:
-    """Write a ratio of speeds; what is zero but for rounding is zero."""
+    """Return a ratio of speeds as text; rounding about zero is zero."""
     return f"{round(value, 3) + 0.0:.3f}"

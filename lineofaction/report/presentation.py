@@ -1,4 +1,4 @@
-"""How a study shows its result: its figure, its page, its text, each in the file of its name."""
+"""Presentation of a study's result: its figure, its page, its text, each in the file of its name."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
 from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
@@ -42,7 +43,7 @@ class Presentation:
 
 
 def presentation_of(study: Study) -> Presentation:
-    """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
+    """Return the presentation of a study; its file, in the folder of its subject, is loaded on demand."""
     files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
     with LOADING:
         presentation: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
@@ -50,7 +51,7 @@ def presentation_of(study: Study) -> Presentation:
 
 
 def _of_its_unit(presentation: Presentation) -> Presentation:
-    """Return a presentation with what a result says of its unit.
+    """Return a presentation with the picture of the result's unit and the marks of its complaint.
 
     The page begins with its picture; what is complained of is marked in all plots.
     """
@@ -62,7 +63,7 @@ def _of_its_unit(presentation: Presentation) -> Presentation:
     def page(result: Any) -> Page:
         marks, plain = marks_of(result), presentation.page(result)
         complete = plain if marks is None else marked_page(plain, marks)
-        return with_picture(complete, getattr(result, "facts", {}).get(UNIT))
+        return with_picture(complete, metadata_of(result).get(UNIT))
 
     return replace(presentation, figure=figure, page=page)
 
@@ -73,21 +74,21 @@ def dynamics_presentation(
     headlines: Callable[[Any], tuple[Headline, ...]],
     text: Callable[[Any], Iterable[Table | str]],
 ) -> Presentation:
-    """Return how a study of a scene shows its result, whose `facts` say what its model neglects."""
+    """Return the presentation of a study of a scene, whose metadata name neglected effects."""
 
     def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)
-        yield from model_text(result.facts)
+        yield from model_text(result.metadata)
 
     return Presentation(
         lambda result: figures(result)[0],
-        lambda result: dynamics_page(title, figures(result), headlines(result), result.facts),
+        lambda result: dynamics_page(title, figures(result), headlines(result), result.metadata),
         complete_text,
     )
 
 
 def model_text(metadata: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield the cost of the housings of a scene, and what its model neglects; nothing where there is none."""
+    """Yield the cost of the housings of a scene, and the neglected effects; empty: none."""
     yield from cost_tables(metadata)
     if metadata["effect_ledger"] is None:
         return
@@ -96,7 +97,7 @@ def model_text(metadata: Mapping[str, Any]) -> Iterator[Table | str]:
 
 
 def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield the decisions on the effects of a scene as a table, and a line on those that change nothing."""
+    """Yield the decisions on the effects of a scene as a table, and a line on negligible effects."""
     columns, rows, trifles = scene_table(ledger)
     if rows:
         yield Table("Effects: change without each", tuple(columns), tuple(map(tuple, rows)))
@@ -109,7 +110,7 @@ def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
 def dynamics_page(
     title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], metadata: Mapping[str, Any]
 ) -> Page:
-    """Return the page of a study of a scene: its figures, effects, cost of its housings, what does not hold.
+    """Return the page of a study of a scene: figures, effects, cost of its housings, failed assumptions.
 
     `metadata` hold `effect_ledger`, None of what has no model of its dynamics.
     """

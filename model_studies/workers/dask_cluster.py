@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from host.extras import require
-from model_studies.workers.executor import MAX_SHARED, Packed, RunCost, WorkersLost, do_task
+from model_studies.workers.in_process import WorkersLost
+from model_studies.workers.remote_task import MAX_SHARED, Packed, do_task
+from model_studies.workers.run_cost import RunCost
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -24,16 +26,17 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 PATIENCE_S = 60.0
-"""How long a cluster may be without any worker: those of a nanny come back within seconds."""
+"""Longest time of a cluster without any worker, s. Workers of a nanny come back within seconds."""
 _LOOK_S = 1.0
-"""How often it is looked whether there are any."""
+"""Interval at which the workers of a cluster are counted, s."""
 _AT_ONCE = 256
-"""Results that are fetched by one message, at most."""
+"""Largest number of results that one message fetches."""
 MAX_RESULTS = 64
-"""Results of `cluster_cached` tasks that stay in a cluster: a gear over its face has up to 100 MB."""
+"""Number of results of `cluster_cached` tasks that stay in a cluster. A gear over its face has up to 100 MB.
+"""
 _PREFIX = "kept-"
 CONNECT_S = 10.0
-"""How long a scheduler may take to answer."""
+"""Longest wait for the answer of a scheduler, s."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +52,7 @@ class ByDask:
     _sent: dict[int, tuple[object, str, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit everything, yield in order; what is not yielded any more is left.
+        """Submit all tasks and yield their results in order; unread results are left.
 
         A task is named by its content: what several callers want at the same time is done once, and what is
         `cluster_cached` is done once while the cluster lasts.
@@ -67,7 +70,7 @@ class ByDask:
         return self._in_order(futures, keep=getattr(function, "cluster_cached", False))
 
     def _send(self, shared: object) -> tuple[str, Any]:
-        """Return digest and future of what is shared, sent unless it was before."""
+        """Return digest and future of the shared input, which is sent unless it was sent before."""
         known = self._sent.get(id(shared))
         if known is None or known[2].status == "cancelled":
             self._sent.pop(id(shared), None)
@@ -113,7 +116,7 @@ class ByDask:
             self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - MAX_RESULTS)])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
-        """Wait for a result as long as there is somebody to make it; return it with those ready after it."""
+        """Wait for a result as long as a worker exists; return it with those ready after it."""
         from asyncio import CancelledError as Cancelled  # noqa: PLC0415 (start-up time)
 
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
@@ -145,7 +148,7 @@ class ByDask:
         return results
 
     def _ended(self, future: Any) -> bool:
-        """Whether a task ended while it was looked at."""
+        """Whether a task ended within one interval of waiting."""
         from distributed import wait  # noqa: PLC0415 (an extra)
 
         try:

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from model_studies.workers.content_digest import content_digest
-from model_studies.workers.executor import RunCost, Workers
+from model_studies.workers.in_process import Workers
+from model_studies.workers.run_cost import RunCost
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -22,7 +23,7 @@ _CHECKSUM = 32
 
 @dataclass(frozen=True)
 class Remembering:
-    """Workers with a folder for what they did.
+    """Workers with a folder that stores their results.
 
     The folder is of this study alone, as its files are unpickled, and the caller's to remove. Results of
     another `version` of what computes are not taken.
@@ -39,7 +40,7 @@ class Remembering:
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield what is kept, and what the others find; that is kept."""
+        """Yield stored results and new ones; the new ones are stored."""
         files = self._files(function, shared, items)
         if files is None:
             yield from self.others.run(function, shared, items)
@@ -58,7 +59,7 @@ class Remembering:
     def _files(
         self, function: Callable[..., Any], shared: object, items: Sequence[object]
     ) -> list[Path] | None:
-        """Return where the results of tasks are kept; None if nobody knows what tells the tasks apart."""
+        """Return the files of the results of tasks; None if the content of the tasks cannot be identified."""
         try:
             known = self._digests.get(id(shared))
             if known is None:

@@ -1,4 +1,4 @@
-"""Answers that are kept: they depend on stored results and on this program only."""
+"""Cache of answers that depend on stored results and on this program only."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ MAX_BYTES = 200_000_000
 
 
 class KeptAnswers:
-    """Bodies of answers in a folder, by tag; what was not used for longest goes first.
+    """Bodies of answers in a folder, by tag; the longest unused go first.
 
     Parameters
     ----------
     folder : Path
         Made with the first answer. Several processes may use it at once.
     most_bytes : int
-        What it holds at most.
+        Largest size of the folder in bytes.
     """
 
-    def __init__(self, folder: Path, most_bytes: int = MAX_BYTES) -> None:
-        self._folder, self._most_bytes = folder, most_bytes
+    def __init__(self, folder: Path, max_bytes: int = MAX_BYTES) -> None:
+        self._folder, self._max_bytes = folder, max_bytes
 
     def find(self, tag: str) -> bytes | None:
         """Return the body of a tag, None if it is not kept."""
@@ -50,7 +50,7 @@ class KeptAnswers:
             self._folder.mkdir(parents=True, exist_ok=True)
             draft.write_bytes(body)
             draft.replace(path)
-            evict(self._folder, self._most_bytes)
+            evict(self._folder, self._max_bytes)
         except OSError as error:
             with contextlib.suppress(OSError):
                 draft.unlink()

@@ -1,4 +1,4 @@
-"""The files of the pages: their own, the player of reports, plotly.js, Swagger UI."""
+"""The files of the pages: the service's, the player of reports, plotly.js, Swagger UI."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FROM_PACKAGES = {
 
 @dataclass(frozen=True)
 class PageFile:
-    """One file in memory."""
+    """A file in memory."""
 
     content: bytes
     media_type: str
@@ -60,5 +60,5 @@ def page_file(name: str) -> PageFile | None:
 
 @lru_cache(maxsize=1)
 def _packaged() -> dict[str, Path]:
-    """Return the files of this package by name: only those can be requested."""
+    """Return the files of this package by name; no other file can be requested."""
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}

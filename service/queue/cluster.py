@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _LOOK_S = 1.0
-"""Between two looks at the connection and at who works."""
+"""Seconds between two looks at the connection and at the workers."""
 _STOPPING_S = 2.0
-"""How long a stop waits for a connection that is being made."""
+"""Seconds for which a stop waits for a connection that is being made."""
 logger = structlog.get_logger(__name__)
 
 
 class Task:
-    """A job that was handed to Dask, as `service.worker.worker.Worker` is one in a child of this machine."""
+    """A job that was handed to Dask; it offers the same as `service.worker.worker.Worker` of this machine."""
 
     channel: int | None = None
-    """It wakes the scheduler by itself."""
+    """Descriptor that wakes the scheduler; None: a task of Dask wakes the scheduler by itself."""
 
     def __init__(self, name: str, order: WorkOrder, log: Path, drop: Callable[[str], None]) -> None:
         self.name, self.order, self._log, self._drop = name, order, log, drop
@@ -57,12 +57,12 @@ class Task:
 
     @property
     def log_fields(self) -> dict[str, Any]:
-        """What names it in the log."""
+        """The fields that name the task in the log."""
         return {"task": self.name}
 
     @property
     def begun(self) -> bool:
-        """Whether a worker has said that it began it."""
+        """Whether a worker has reported that it began the task."""
         return self._begin != ""
 
     @property
@@ -91,7 +91,7 @@ class Task:
         return {key: file.read_bytes() for key, file in self.order.stored.items()}
 
     def take(self, done: Done) -> None:
-        """Take what a worker has done; its files are put where a child of this machine leaves them."""
+        """Take the products of a worker; its files go where a child of this machine leaves them."""
         products = []
         for number, (product, content) in enumerate(zip(done.outcome.products, done.contents, strict=True)):
             file = self.order.workspace / f"{number}_{product.file.name}"
@@ -103,7 +103,7 @@ class Task:
         self.end(replace(done.outcome, products=tuple(products)))
 
     def end(self, outcome: Outcome) -> None:
-        """Take how it ended; what comes later is of no interest."""
+        """Take the outcome of the task; later reports are ignored."""
         self._outcome = self._outcome or outcome
 
     @property
@@ -117,7 +117,7 @@ class Task:
         return [self._steps.popleft() for _ in range(len(self._steps))], ended
 
     def finish(self) -> Outcome:
-        """Return how it ended; what Dask keeps of it is there until it is killed."""
+        """Return the outcome of the task, which Dask keeps until the task is killed."""
         assert self._outcome is not None
         return self._outcome
 
@@ -129,7 +129,7 @@ class Task:
 
 
 class Cluster:
-    """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
+    """The tasks of a server on a shared Dask scheduler; a `deployment` distinguishes the servers.
 
     `maximum` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """
@@ -166,7 +166,7 @@ class Cluster:
             )
 
     async def _fault(self, client: Client) -> tuple[str, str]:
-        """Return why no work is sent, and what to do; empty: it is. Counts the threads that work."""
+        """Return why no work is sent, with a remedy; empty: it is sent. Counts the working threads."""
         threads = await client.nthreads()  # type: ignore[no-untyped-call]
         self._known &= threads.keys()
         start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
@@ -231,7 +231,7 @@ class Cluster:
             self.maximum = 0
 
     async def _serve(self, client: Client) -> None:
-        """Submit what is wanted, cancel what is not; end when the connection is lost."""
+        """Submit wanted tasks, cancel others; end when the connection is lost."""
         following: dict[Task, asyncio.Task[None]] = {}
         names = map(str, await client.list_datasets())  # type: ignore[no-untyped-call]
         left = {name for name in names if name.startswith(self._name)}
@@ -270,7 +270,7 @@ class Cluster:
         await client.unpublish_dataset(name)
 
     async def _follow(self, client: Client, task: Task) -> None:
-        """Let a task be done, and take what comes of it."""
+        """Let a task be done, and take its products."""
         task.await_anew()
         try:
             done = await self._done(client, task, await asyncio.to_thread(task.contents))
@@ -284,7 +284,7 @@ class Cluster:
         self._notify()
 
     async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | Outcome | None:
-        """Submit a task, or join the one there is; return what was done, why nothing was, None: try anew."""
+        """Submit a task, or join the present one; return its products, or the reason; None: try anew."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
         arguments = (task.order.line(), files, self._name, program())
@@ -316,7 +316,7 @@ class Cluster:
             task.hear(report)
 
     def _say(self, fault: str) -> None:
-        """Log what keeps jobs waiting, once; and that it is over."""
+        """Log once the fault that keeps jobs waiting, and its end."""
         if fault != self._away:
             (logger.warning if fault else logger.info)(
                 "cluster away" if fault else "cluster back", reason=fault

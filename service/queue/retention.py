@@ -1,4 +1,4 @@
-"""Ended jobs that nobody asks for, and what computations leave on disk."""
+"""Retention: removal of ended jobs without requests, and of files that computations leave on disk."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from service.store.retries import retried
 logger = structlog.get_logger(__name__)
 
 _AT_ONCE = 500
-_IDENTIFIER = 36  # of a computation: other logs are not ours to remove
+_IDENTIFIER = 36  # characters of a computation's identifier: other logs are not this program's
 FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Retention:
-    """Removes what a service needs no more; safe beside one that runs.
+    """Removes results, jobs and files that a service needs no more, also while the service runs.
 
     It looks at workspaces and logs of the data directory too; a file that is removed from the store can be
     had back for so many days.
@@ -49,12 +49,12 @@ class Retention:
         self._quarantine = Quarantine(store.files, Deployment(engine, store), quarantine_days)
 
     def collect(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove, or only tell, what is left over: files and lines without each other, and what expired."""
+        """Remove, or only list, leftovers: files and lines without each other, and expired items."""
         yield from collect_orphans(self._store, self._quarantine, dry_run=dry_run)
         yield from self.expire(older_than_days, dry_run=dry_run)
 
     def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove what is dated and old: results, jobs, workspaces, logs, and what was in quarantine.
+        """Remove old items with a date: results, jobs, workspaces, logs, and quarantined files.
 
         Raises `BadInput`: the files of the store are another deployment's by now.
         """
@@ -91,7 +91,7 @@ class Retention:
         return names
 
     def _of_computations(self, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove workspaces and logs of what does not live; logs of what failed are referred to."""
+        """Remove workspaces and logs of ended computations; logs of failed ones are referred to."""
         live = self._states("accepted", "running")
         for path in self._old("work"):
             if path.name not in live:
@@ -120,7 +120,7 @@ class Retention:
 
 
 class Housekeeper:
-    """Collects beside the scheduler what nobody asks for since so many days."""
+    """Thread that runs the retention of results without requests for a number of days."""
 
     def __init__(self, retention: Retention, days: float) -> None:
         self._retention, self._days = retention, days
@@ -134,7 +134,7 @@ class Housekeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """End, after what is being removed just now."""
+        """End after the removal in progress."""
         self._stopping.set()
         if self._thread is not None:
             self._thread.join()

@@ -1,4 +1,4 @@
-"""What the workers of one scheduler did: metrics by the process they worked for."""
+"""Metrics of the workers of one scheduler, labelled by the process that they worked for."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ALARMING = ("died", "defect")
 
 
 class WorkerFigures(Collector):
-    """Counts of starts, ends and resources; what follows from them is for who reads them."""
+    """Counts of starts, ends and resources, from which readers derive rates and means."""
 
     def __init__(self) -> None:
         def counter(name: str, text: str, *labels: str) -> Counter:
@@ -37,14 +37,14 @@ class WorkerFigures(Collector):
             self._reads.labels(outcome)
 
     def started(self, process: str) -> None:
-        """Count a worker that was started; what alerts are about counts from 0, not from its first time."""
+        """Count a started worker; counts of alerts exist from 0 on, not from their first event."""
         self._starts.labels(process).inc()
         self._warnings.labels(process)
         for outcome in _ALARMING:
             self._ends.labels(process, outcome)
 
     def ended(self, process: str, outcome: str, worker: Run) -> None:
-        """Count a worker that ended, and what it took if it was reaped."""
+        """Count an ended worker, and its use of resources if it was reaped."""
         self._ends.labels(process, outcome).inc()
         self._warnings.labels(process).inc(len(worker.warnings))
         self._reads.labels("hit").inc(worker.compliance_reads.hits)

@@ -22,7 +22,7 @@ from service.live.order import LiveOrder
 from service.worker.usage import begin_work
 
 LONGEST_S = 30
-"""Time after which it ends, whatever it waits for."""
+"""Seconds after which the reader ends, whatever it waits for."""
 MAX_ANSWER_BYTES = 100_000_000
 FIELD = "reading"
 """Kind of a message whose body is the field of the file that is read next."""
@@ -30,11 +30,11 @@ _NICENESS = 5
 
 
 warm_up = prepare_confinement
-"""What a process does from which children are forked."""
+"""Preparation of the process from which children are forked."""
 
 
 def work(descriptor: int) -> None:
-    """Read what the order says; the answer goes to the descriptor."""
+    """Read the files of the order; the answer goes to the descriptor."""
     begin_work()
     end_after(LONGEST_S)
     lower_priority(_NICENESS)

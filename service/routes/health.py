@@ -1,4 +1,4 @@
-"""Is it alive, can it work, what are its figures."""
+"""Health, readiness and figures of the service."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Readiness(BaseModel):
     )
     missing_protections: tuple[str, ...] | None = Field(
         None,
-        description="What the system lacks to confine readers of files; left out where nothing is missing",
+        description="Protections for readers of files that the system lacks; left out where none is missing",
     )
 
 
@@ -67,7 +67,7 @@ async def health() -> Health:
 )
 @needs(OPEN_TO_ALL)
 def ready(request: Request, context: Ctx) -> Readiness:
-    """Answer that database and place of results take what is written, and that the scheduler runs.
+    """Answer that database and place of results are writable, and that the scheduler runs.
 
     The numbers of computations are left out where keys are needed: this is answered to everybody. Readers of
     files that the system cannot confine do not make it unready: what is missing is stated.

@@ -72,7 +72,7 @@ async def list_databases(
 
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
-    """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
+    """Return the list's entry of a database, which does not count as a use; for a damaged file its name."""
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))
     except (FileNotFoundError, WrongContent):
@@ -107,7 +107,7 @@ def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) 
 )
 @needs(Scope.READ)
 def result_file(key: Key, request: Request, context: Ctx) -> Response:
-    """Return the file whatever the request accepts, for browsers and generated clients; never changes."""
+    """Return the file for any accepted type, for browsers and generated clients; it never changes."""
     return file_response(known_result(context, key), request)
 
 

@@ -23,11 +23,11 @@ from service.store.shortages import out_of_files, shortage
 from service.store.writers import writers_of
 
 CHANNEL = "loa_jobs"
-"""What PostgreSQL notifies on when a job changed; the triggers of schema 0011 do."""
+"""Channel on which PostgreSQL notifies of a changed job, by the triggers of schema 0011."""
 _POLL_S = 0.05
 _SLICE_S = 0.25
 PATIENCE_MS = 10_000
-"""How long a transaction waits for others that write, if it says nothing else."""
+"""Milliseconds for which a transaction waits for others that write, unless it states another patience."""
 _PRAGMAS = (
     f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
     "PRAGMA journal_mode=WAL",
@@ -35,8 +35,8 @@ _PRAGMAS = (
     "PRAGMA foreign_keys=ON",
 )
 DEADLINE_S = 15.0
-"""A statement that works for longer is ended: longer than the patience of those who wait for a lock. By the
-option `deadline_s` of an engine another one, of an upgrade for example none."""
+"""Seconds after which a statement is ended, longer than the patience of transactions that wait for a lock.
+The option `deadline_s` of an engine sets another limit; for an upgrade there is none."""
 _LOOK_EVERY = 20_000
 """Instructions of SQLite's machine between two looks at the clock: some milliseconds."""
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
@@ -83,12 +83,12 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "53100": ROOM,  # disk full
     "58030": _DISK,  # I/O error
 }
-_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
-_LOCKED = "55P03"  # by others, for longer than lock_timeout
+_CANCELED = "57014"  # state of PostgreSQL: the statement exceeded its deadline, the only cause here
+_LOCKED = "55P03"  # state of PostgreSQL: others held the lock for longer than lock_timeout
 
 
 class _Commits(Protocol):
-    """A connection of its own that hears of commits; of the thread that made it alone."""
+    """A connection that hears of commits, for the thread that made it."""
 
     def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""
@@ -148,18 +148,18 @@ class _Dialect(Protocol):
         """Return an engine; `pooled` keeps connections for the next transaction where that pays."""
 
     def insert(self, table: Table) -> sqlite.Insert | postgresql.Insert:
-        """Return an insert that can say what happens on a conflict."""
+        """Return an insert that can state its action on a conflict."""
 
     def turn(
         self, engine: Engine, patience_ms: int | None, *, ahead: bool
     ) -> AbstractContextManager[int | None]:
-        """Wait until this process may begin to write; enter to what is left of the patience, ms.
+        """Wait until this process may begin to write; enters with the rest of the patience, ms.
 
         With `ahead` it is the next one of this process. Raises `TurnTimeout`: the patience has ended.
         """
 
     def take_turn(self, connection: Connection) -> None:
-        """Let this transaction be the only one of those that take turns, until it ends."""
+        """Let this transaction be the only one that takes a turn, until it ends."""
 
     def clock(self, connection: Connection) -> float:
         """Return the seconds since 1970 on the one clock that all users of the database read."""
@@ -168,7 +168,7 @@ class _Dialect(Protocol):
         """Return a connection that hears of commits."""
 
     def busy(self, error: DBAPIError) -> bool:
-        """Whether others held what is needed for too long."""
+        """Whether others held a needed lock for too long."""
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
@@ -177,13 +177,13 @@ class _Dialect(Protocol):
         """Whether the statement was ended by its deadline."""
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Return what a person has to do before any attempt can succeed; None if it is not that."""
+        """Return the action of a person without which no attempt can succeed; None: none is needed."""
 
     def folder(self, url: URL) -> Path | None:
         """Return the folder of this machine that it writes to; None: it is elsewhere."""
 
     def check(self, connection: Connection) -> str | None:
-        """Look through the whole database where that is cheap; return what is damaged, None if nothing is."""
+        """Check the whole database if that is cheap; return the damage, None: none."""
 
 
 class _SQLite:
@@ -375,7 +375,7 @@ _DIALECTS: Mapping[str, _Dialect] = {"sqlite": _SQLite(), "postgresql": _Postgre
 
 
 def dialect_of(database: Engine | Connection | URL) -> _Dialect:
-    """Return what is particular to the database."""
+    """Return the dialect of the database."""
     if isinstance(database, URL):
         return _DIALECTS[database.get_backend_name()]
     return _DIALECTS[database.dialect.name]

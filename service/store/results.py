@@ -74,12 +74,12 @@ Index("result_by_project", results.c.project, results.c.kind, results.c.created)
 
 @dataclass(frozen=True)
 class IndexLine:
-    """One line of the index."""
+    """A line of the index: one result."""
 
     key: str
     """Hash of the input: the resource's name."""
     kind: str
-    """One of `lineofaction.gearbox.registry`."""
+    """Kind of the result, one of `lineofaction.gearbox.registry`."""
     sha256: str
     """Digest of the file's bytes, hexadecimal."""
     size: int
@@ -87,13 +87,13 @@ class IndexLine:
     file: str
     """Name of the file in its place."""
     used: str
-    """When it was last requested, within an hour."""
+    """Time of the last request for the result, exact to an hour."""
     reindexed: str | None = None
-    """When the line was rebuilt from its file: the result is as old as that, or older."""
+    """Time at which the line was rebuilt from its file: the result is as old as that, or older."""
     project: str = COMMON
-    """Whose result it is."""
+    """Project of the result."""
     headline: str = ""
-    """What a list of jobs shows of it, JSON; empty: nothing."""
+    """Headline of the result in a list of jobs, JSON; empty: none."""
 
     @property
     def address(self) -> str:
@@ -109,13 +109,13 @@ class StoredResult:
     kind: str
     sha256: str
     size: int
-    """`key`, `kind`, `sha256`, `size`: As in the index."""
+    """`key`, `kind`, `sha256`, `size`: Fields of the line in the index."""
     path: Path
     """The file on this machine."""
 
 
 class ResultStore:
-    """Write once, read verified: the first result of a key stays, whoever computes it again.
+    """Store of results, written once and verified on reading: the first result of a key stays.
 
     Parameters
     ----------
@@ -124,13 +124,13 @@ class ResultStore:
     files : ResultFiles
         Place of the files.
     project : str
-        Whose results are put, found, read and listed here: there are no others. Upkeep (`lines`, `enter`,
-        `strike`, `set_aside`) is of all projects.
+        Project whose results are put, found, read and listed here. Upkeep (`lines`, `enter`, `strike`,
+        `set_aside`) covers all projects.
 
     Attributes
     ----------
     lookups : CacheReads
-        How often a result was looked for with `find`, as by submissions, and was there.
+        Number of results that `find` sought, as for submissions, and number found.
     """
 
     def __init__(self, engine: Engine, files: ResultFiles, project: str = COMMON) -> None:
@@ -139,7 +139,7 @@ class ResultStore:
         self.lookups = CacheReads()
 
     def within(self, project: str) -> ResultStore:
-        """Return the same for another project."""
+        """Return the store of another project."""
         if project == self.project:
             return self
         other = ResultStore(self._engine, self.files, project)
@@ -170,7 +170,7 @@ class ResultStore:
 
     @retried
     def enter(self, line: IndexLine, *, made: str | None = None) -> IndexLine:
-        """Enter a result, unless there is one whose file is there; return the one there is now.
+        """Enter a result unless one with a file is stored; return the stored one.
 
         With `made`, the date of its file, it is marked as entered anew: by `service.store.maintenance`.
         """
@@ -196,7 +196,7 @@ class ResultStore:
         return line
 
     def holds(self, key: str, kind: str) -> bool:
-        """Return whether a result is there; nobody has asked for it."""
+        """Return whether a result is stored; the look is no use of the result."""
         return self._intact(key, kind) is not None
 
     def _intact(self, key: str, kind: str) -> IndexLine | None:
@@ -211,7 +211,7 @@ class ResultStore:
 
     @retried
     def page(self, kind: str, limit: int, after: Mark | None = None) -> list[tuple[Mark, IndexLine]]:
-        """Return up to `limit` lines of a kind with their places, the newest first, those behind `after`."""
+        """Return up to `limit` lines of a kind behind `after` with their places, the newest first."""
         statement = select(results).where(results.c.project == self.project, results.c.kind == kind)
         if after is not None:
             last = Mark(after.created, address_of(self.project, after.name))
@@ -277,7 +277,7 @@ class ResultStore:
 
     @optional
     def note_headline(self, key: str, kind: str, headline: Mapping[str, Any]) -> None:
-        """Note what a list shows of a result that was stored without; empty: there is nothing."""
+        """Store the headline of a result that was stored without; empty: it has none."""
         mine = results.c.key == address_of(self.project, key), results.c.kind == kind
         step = update(results).where(*mine, results.c.headline == "").values(headline=json.dumps(headline))
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:

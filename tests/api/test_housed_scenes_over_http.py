@@ -16,7 +16,7 @@ from study_service import empty_service
 
 from dynamics.housings import ReducedHousing
 from dynamics.linearize import ModalAnalysis
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import Means
@@ -69,7 +69,7 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     assert [each.name[:4] for each in kept] == ["hous", "mesh"]
     cost = ReducedHousing.from_netcdf(kept[0]).cost
     assert cost is not None
-    own = found.facts["reduction_cost"]["case"]
+    own = found.metadata["reduction_cost"]["case"]
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 
 

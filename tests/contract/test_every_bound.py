@@ -30,9 +30,9 @@ from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Integration, Outputs
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.shafts import Shaft as TurningShaft
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput, Fault
@@ -97,7 +97,7 @@ DEPEND_ON_OTHERS = (
         "root_radius_coefficient",
     ),
     *("thickness_allowance_um", "tip_rounding_mm", "tip_chamfer_mm", "pitches", "tolerance", "time_budget_s"),
-    *(figure.field for figure in (*figures(FlankModification, Kind.LENGTH), *figures(StatedStarts))),
+    *(figure.field for figure in (*figures(FlankModification, Kind.LENGTH), *figures(DrawingStarts))),
     *("position_mm", "diameter_mm"),
     *("rim_thickness_mm", "web_thickness_mm", "hub_diameter_mm", "web_offset_mm", "width_mm", "offset_mm"),
     *("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient", "center_distance_change_mm"),
@@ -180,8 +180,8 @@ TABLES: dict[str, Table] = {
 
 
 @cache
-def pair_facts(case: str) -> PairFacts:
-    return PairFacts.of(check_case(Case.model_validate_json(case)))
+def pair_facts(case: str) -> PairGeometry:
+    return PairGeometry.of(check_case(Case.model_validate_json(case)))
 
 
 def check(given: Case | SceneInput) -> None:

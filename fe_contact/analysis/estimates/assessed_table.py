@@ -1,4 +1,4 @@
-"""The assessed table: its errors by source, and what is known of them."""
+"""The assessed table: its errors by source, and the loads inserted for its accuracy."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 from fe_contact.analysis.cycle.derived_pitches import DerivedCycle
 from fe_contact.analysis.estimates.curve_errors import curve_errors, load_arm_errors
 from fe_contact.analysis.estimates.error_sources import estimate_errors, largest_known
-from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.estimates.position_errors import position_errors
+from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, mesh_bias
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
+from fe_contact.analysis.estimates.validation_axes import AxisError, validation_axes
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.planning.plan import Plan
@@ -49,7 +50,7 @@ def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tu
 
 
 def _summary(errors: FloatArray) -> Json:
-    """Return the largest over the alignments of each source by load, m, and what was not estimated.
+    """Return the largest error over the alignments by source and load, m, and the sources not estimated.
 
     A source is not estimated if it is unknown anywhere.
     """
@@ -67,23 +68,29 @@ class AssessedTable:
     """Errors of a table."""
 
     band: FloatArray
-    """Of every point, m; NaN where not estimated. Shape (P, F, M, D)."""
+    """Error of the transmission error at every point, m; NaN where not estimated. Shape (P, F, M, D)."""
     curve_error: FloatArray
-    """Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M,
+    D).
+    """
     load_arm_error: FloatArray
-    """The same of the load arm. Shape (3, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics of the load arm by source, m. Shape (3, 23, F, M, D)."""
     interval_error: FloatArray
-    """Of points between the nodes of an axis, at the lower one, m. Shape (3, F, M, D)."""
+    """Error of points between the nodes of an axis, stored at the lower node, m. Shape (3, F, M, D)."""
     inserted: SupportLoads | None
-    """Loads with which the table has these errors between its loads."""
+    """Solutions at inserted loads. With these nodes the table has the stated errors between its loads."""
     by_source: Json
-    held_out: Json
-    """`by_source`, `held_out`: The largest by source; what was measured between the nodes of each axis."""
+    validation: Json
+    """`by_source`, `validation`: The largest errors by source; the errors measured between the nodes of each
+    axis.
+    """
     bias: PlaneBias | None
-    """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
+    """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
+    mesh_bias: FloatArray | None = None
+    """How much higher the mean lies on exact meshes, where its sign is known; in the errors, m. (F,)"""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
-        """Return the table with them, and with the metadata that state them."""
+        """Return the table with these errors and with the metadata that state them."""
         with_errors = replace(
             table,
             error_estimate=self.band,
@@ -95,7 +102,7 @@ class AssessedTable:
         return with_errors if self.inserted is None else with_support_loads(with_errors, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
-        """Return them with what derivatives miss, if any base pitch of the table is by them."""
+        """Return the errors with those of derivatives, if any base pitch of the table follows from them."""
         if derived is None or not derived.tables:
             return self
         errors = [table.errors[:3] for table in derived.tables]
@@ -109,10 +116,11 @@ class AssessedTable:
         )
 
     def to_json(self) -> Json:
-        """Return what the receipt says of the errors."""
-        sources = {"error_by_source": self.by_source, "held_out": self.held_out}
+        """Return the receipt's fields of the errors as plain JSON."""
+        sources = {"error_by_source": self.by_source, "held_out": self.validation}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
-        return sources | bias | _summary(self.curve_error)
+        signed = {} if self.mesh_bias is None else {"mesh_bias": {"mean_m": self.mesh_bias.tolist()}}
+        return sources | bias | signed | _summary(self.curve_error)
 
 
 def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
@@ -151,18 +159,19 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
         return interval_goal(refined, at_nodes, request, bias)
 
     refined = request.options.tolerance is not None and not request.nodes_alone
-    held_out = held_out_axes(made, goal_of if refined else None)
-    made = held_out.made
-    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), held_out.axes)
+    validation = validation_axes(made, goal_of if refined else None)
+    made = validation.made
+    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), validation.axes)
     assessed = AssessedTable(
         _at_inserted(sources.total, made.table),
         np.concatenate([_at_inserted(errors, made.table), of_curves]),
         _at_inserted(load_arm_errors(fine, table, arms, plan), made.table),
         of_points,
-        held_out.loads,
+        validation.loads,
         sources.to_json(),
-        {name: error.to_json() for name, error in held_out.axes.items()},
+        {name: error.to_json() for name, error in validation.axes.items()},
         table_bias(made.table, fine, plan),
+        mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
     )
     return assessed, made
 
@@ -176,7 +185,7 @@ def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
-    """Return the errors of a table of which none was estimated, but for what is known in closed form."""
+    """Return the errors of a table without estimates, with the errors known in closed form."""
     bias = table_bias(table, points, plan)
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
@@ -185,7 +194,7 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
 
 
 def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
-    """Return what the plane leaves out of the curves of a table."""
+    """Return the bias of the plane model in the curves of a table."""
     pair, ste = points.nominal.pair, table.static_transmission_error
     bias = plane_bias(pair, plan.discretization)
     mean = mean_of_curves(table.position, ste, table.period)

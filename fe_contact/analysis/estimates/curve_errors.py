@@ -1,8 +1,8 @@
 """Errors of mean, peak-to-peak and harmonics, by source.
 
-Each quantity is computed from nested discretizations, the run's own and a rougher one, and the change between
-the two is carried on to the error that is left by the order known, as the point bands are (`error_estimate`).
-Errors common to all positions so count in the mean alone, and what bends the curve in peak-to-peak and
+Each quantity is computed on two discretizations, that of the run and a rougher one. The known order of
+convergence carries their change on to the error that is left, as for the bands of points (`error_estimate`).
+Errors common to all positions count in the mean alone, errors that bend the curve in peak-to-peak and
 harmonics. Between the nodes of an axis the changes at held-out points count.
 """
 
@@ -15,6 +15,7 @@ import numpy as np
 from fe_contact.analysis.estimates.error_sources import CORRECTION_ERROR, contact_error
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.analysis.estimates.position_errors import PositionErrors
+from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, with_signed_errors
 from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, rough_flank_errors
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
@@ -44,25 +45,34 @@ LEFT_BY_MESH = {
     "thin": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
     "helical": {"draft": (1.1, 2.0, 2.0), "standard": (0.7, 1.3, 1.8)},
 }
-"""Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
-elements half as large; over the face of a spur pair of solid gears, what second order leaves of elements of
-two thirds; of one with a thin rim, more; of a helical pair, over what second order leaves of that change
-(`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in which errors fall with a power of
-the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
-pairs of docs/lab/index.md ("Constants"); the level fine has the parts of standard."""
+"""Errors left in mean, peak-to-peak and harmonics over the change to the coarse mesh, by model and level.
+
+"plane": the coarse mesh has elements twice as large. "spur": a spur pair of solid gears over the face, over
+the error that second order leaves of elements one and a half times as large (`FaceDiscretization.remaining`).
+"thin": the same with a thin rim. "helical": the same for a helical pair. On coarse meshes errors do not fall
+with a power of the size yet: a draft in the plane leaves less of its change than a finer mesh, one over the
+face more. The values were set on the pairs of docs/lab/index.md ("Constants"). The level fine has the values
+of standard.
+"""
+
+COARSER_THAN_STANDARD = ("draft", "medium")
 
 HARMONIC_SHARE = 0.3
-"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
-slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
+"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k. Half the
+slices and coarse meshes have errors in other harmonics than the table, whose harmonics may hardly change.
+"""
 
 LEFT_OF_ARM = (1.75, 1.0, 1.25)
-"""What meshes leave of mean, peak-to-peak and harmonics of the load arm, over the same parts of the
-transmission error: where the load lies follows from differences of compliance along the face."""
+"""Errors that meshes leave in mean, peak-to-peak and harmonics of the load arm, over the same errors of the
+transmission error. They differ because the load arm follows from differences of compliance along the face.
+"""
 
 BALANCE = 0.5
-"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
-face against the other, so that the change of its mean may cross zero by accident. Both were set on the pairs
-over the face of docs/lab/index.md, three loads on two meshes, against 31 slices on the mesh fine."""
+"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the face
+against the other, so that the change of its mean may cross zero by accident. `LEFT_OF_ARM` and `BALANCE` were
+set on the pairs over the face of docs/lab/index.md, three loads on two meshes, against 31 slices on the mesh
+fine.
+"""
 
 
 def curve_errors(
@@ -79,7 +89,12 @@ def curve_errors(
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
-    deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    if has_signed_errors(pair, made):
+        deflection, *changes, by_slices, free_ends = _measured(points, nested, plan, second_order=True)
+        added = _added_by_load(solutions, sample)
+        by_mesh, by_patches = with_signed_errors(np.stack(changes), nested, added, plan)
+    else:
+        deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
         deflection[OFF_MESH] = _off_mesh_by_load(points, solutions, sample)
     by_source = {
@@ -116,16 +131,27 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
     return np.stack([by_source[name] for name in OF_LOAD_ARM])
 
 
-def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
-    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 23, F, M, D) in m.
+def _measured(
+    points: OperatingPoints,
+    nested: Nested,
+    plan: Plan,
+    balance: float = 0.0,
+    *,
+    second_order: bool = False,
+) -> FloatArray:
+    """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
-    `balance` is the least change of a mean over the mean size of the change about it.
+    `balance` is the least change of a mean over the mean size of the change about it. With `second_order`
+    meshes leave what second order does of their change over the face, without the constants of pairs.
     """
     made, pair = plan.discretization, points.nominal.pair
     helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
-    parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
+    by_mesh = _left_by_mesh(pair, plan, helical)
+    if second_order:
+        by_mesh = np.full(QUANTITIES, made.remaining)
+    parts = 1.0, by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
     return _changes(
         nested.sample,
         (nested.table, nested.patched, nested.plane, nested.table, nested.table),
@@ -157,10 +183,17 @@ def _changes(
     return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
 
 
+def _added_by_load(solutions: Sequence[ContactSolution], sample: TableSample) -> FloatArray:
+    """Return what the load adds to the mean at the loads and alignments of a sample, (f, m, d) in m."""
+    places = [solutions[k] for k in sample.places]
+    added = [place.deflection[:, sample.nodes[0]] - place.no_load[:, None] for place in places]
+    return sample.shaped([np.nanmean(deflection, axis=0) for deflection in added])
+
+
 def _off_mesh_by_load(
     points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
 ) -> FloatArray:
-    """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
+    """Return the largest contribution of load to an order that is no mesh order, (F, M, D) in m.
 
     What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
     """
@@ -188,7 +221,7 @@ def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
     """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
-    level = "draft" if plan.level == "draft" else "standard"
+    level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
     if isinstance(made, FaceDiscretization):
         spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
         mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound

@@ -14,7 +14,7 @@ from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import Estimate, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 
@@ -22,7 +22,7 @@ GEARS = "pinion", "wheel"
 _RIPPLE = np.linspace(0.0, 2.0, 49)
 """Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
 _NOTHING = 1e-12
-"""m: what rounding leaves."""
+"""Length in m below which a value is rounding."""
 
 
 def curve_json(
@@ -80,7 +80,7 @@ def curve_json(
 
 
 def _bands(curve: Curve) -> Json:
-    """Return the error of every point, and what interpolation between the nodes has of it; if estimated."""
+    """Return the error of every point, and its share by interpolation between nodes, if estimated."""
     bands = {"error_um": (curve.error / UM).tolist(), "interval_error_um": curve.interval_error / UM}
     return {name: band for name, band in bands.items() if np.isfinite(band).all()}
 
@@ -130,7 +130,7 @@ def _tooth_loads(loads: ToothLoads) -> Json:
 
 
 def _figures(curve: Curve) -> Json:
-    """Mean, peak-to-peak and harmonics with their errors; without those if they were not estimated."""
+    """Return mean, peak-to-peak and harmonics with their errors, or without errors if not estimated."""
     figures = {
         "mean_um": curve.mean.value / UM,
         "mean_error_um": curve.mean.error / UM,
@@ -149,7 +149,7 @@ def _figures(curve: Curve) -> Json:
 
 
 def headline_json(table: SteDatabase) -> Json:
-    """Return what a list shows of a table at its middle load: ripple over two pitches, its main figures.
+    """Return the headline of a table at its middle load: ripple over two pitches, main figures.
 
     The ripple is in um less its mean; an error that was not estimated is None.
     """
@@ -166,7 +166,7 @@ def headline_json(table: SteDatabase) -> Json:
 
 
 def summary_json(database: SteDatabase) -> Json:
-    """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
+    """Return the summary of `loa analyze`: figures for every load, effect ledger, receipt, failed points."""
     with boundary_errors():
         curves = [database.curve(force=float(force), allow_failed=True) for force in database.force]
     loads = [
@@ -188,7 +188,7 @@ def summary_json(database: SteDatabase) -> Json:
 
 
 def metadata_json(database: SteDatabase) -> Json:
-    """Return what a database says about itself, with its axes, and the loads of teeth that differ."""
+    """Return the metadata of a database with its axes, and the loads of teeth that differ."""
     teeth = _tooth_loads_by_load(database)
     return {
         "schema_version": database.metadata.schema_version,
@@ -220,7 +220,7 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
-    """Return what each source states of mean, peak-to-peak and first harmonic at a load, m."""
+    """Return the errors of mean, peak-to-peak and first harmonic at a load by source, m."""
     rows = [
         (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
         for name, parts in receipt.get("curve_error", {}).items()
@@ -229,7 +229,7 @@ def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:
-    """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
+    """Return mean and peak-to-peak with errors at the highest load, and the next refinement."""
     curve = table.curve(force=float(table.force[-1]), allow_failed=True)
     mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
     return f"draft: mean {mean} µm, p-p {ripple} µm at {curve.torque:.6g} N m (refining {refining})"

@@ -21,8 +21,8 @@ from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
 from dynamics.temperatures import Temperatures
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.flank.modification import FlankModification
-from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import Gear, GearPair, RingGear
 from fe_contact.geometry.toothing import MATING
 from fe_contact.material import Material
@@ -48,7 +48,7 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
     "on_violation": "accuracy.on_violation",
 }
 _OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
-"""What declares fields whose names mean something else in other tables."""
+"""Dataclasses that declare fields whose names mean something else in other tables, by their table."""
 _SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
@@ -59,14 +59,14 @@ def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
 
 
 _ANYWHERE = (
-    *(FlankModification, StatedStarts, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
+    *(FlankModification, DrawingStarts, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),
     *(SeatWall, HousingMaterial, ReductionSettings),
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine, RingFits),
 )
-"""What declares its fields, by names that mean the same in every table."""
+"""Dataclasses that declare fields whose names mean the same in every table."""
 DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
 

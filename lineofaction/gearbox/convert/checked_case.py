@@ -1,4 +1,4 @@
-"""Cases that can be computed: what a schema cannot check and a request can afford."""
+"""Cases with the checks that a schema cannot do: feasibility and predicted cost."""
 
 from __future__ import annotations
 
@@ -14,14 +14,8 @@ from bounds.types import Json
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.plausibility import pair_findings
-from lineofaction.gearbox.convert.case import (
-    THICK,
-    analysis_options,
-    boundary_errors,
-    case_json,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import THICK, analysis_options, case_json, gear_pair, table_axes
 from lineofaction.gearbox.schemas.case import Case
 
 if TYPE_CHECKING:
@@ -44,27 +38,27 @@ class CheckedCase:
 
     @cached_property
     def pair(self) -> ParallelAxes:
-        """As `gear_pair`."""
+        """The gear pair of the case, as `gear_pair` returns it."""
         return gear_pair(self.case)
 
     @cached_property
     def axes(self) -> TableAxes:
-        """As `table_axes`."""
+        """The axes of the case's table, as `table_axes` returns them."""
         return table_axes(self.case)
 
     @cached_property
     def options(self) -> AnalysisOptions:
-        """As `analysis_options`."""
+        """The analysis options of the case, as `analysis_options` returns them."""
         return analysis_options(self.case)
 
     @property
     def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
-        """All three, as the library takes them."""
+        """Pair, axes and options, as the library takes them."""
         return self.pair, self.axes, self.options
 
     @cached_property
     def feasible(self) -> Checked:
-        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        """The request with all its effects; refusals on submission come from here. Raises `BadInput`."""
         return self._checked(neglect=False)
 
     @cached_property
@@ -90,7 +84,7 @@ class CheckedCase:
             return check_request(*converted, check_size=check_size, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
-        """Return what a study requests of the library: made once, for its check and for its work.
+        """Return the request of a study to the library, made once for its check and for its work.
 
         Raises `BadInput`.
         """
@@ -141,7 +135,7 @@ def check_case(case: Case) -> ParallelAxes:
 
 
 def check_plain_case(case: Case) -> ParallelAxes:
-    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+    """Return the pair of a case of loads alone, as `check_case` does, without modules that compute.
 
     A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
     a disc that is too thin; whether one may be is decided here.

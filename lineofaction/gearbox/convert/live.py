@@ -25,8 +25,9 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
+from lineofaction.gearbox.convert.case import gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
@@ -95,7 +96,7 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
 
 
 def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
-    """Return what one pair of teeth meets on its way through the mesh; `separation` (P, N, K) in m.
+    """Return load and separation of a pair of teeth through the mesh; `separation` (P, N, K) in m.
 
     The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
     where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
@@ -129,7 +130,7 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
 
 
 def interpolated_columns(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Return what `numpy.interp` does of every column of `values`, (knots, ...), at once: (x, ...)."""
+    """Return `numpy.interp` of every column of `values`, (knots, ...), at once: (x, ...)."""
     if knots.size == 1:
         return np.repeat(values, x.size, axis=0)
     left = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 2)
@@ -148,11 +149,11 @@ def _short(values: FloatArray) -> Any:
 
 @dataclass(frozen=True)
 class CondensedCase:
-    """A case whose gears have their compliance, and what its questions have in common."""
+    """A case with condensed gears, and state that its questions share."""
 
     case: Case
     pair: ParallelAxes
-    """As the case states it."""
+    """Gear pair with the flanks that the case states."""
     bodies: CondensedPair
     drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
     """Pairs solved within tolerances, by question: every answer adds some."""
@@ -252,7 +253,7 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
 
 
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
-    """Return the curves, and of each what else the question is about, with its cost."""
+    """Return the curves, each with the further answers that the question requests, and the cost."""
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
     table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)

@@ -10,7 +10,8 @@ from bounds.types import Json
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.units import DEGREE, MM
@@ -27,7 +28,7 @@ def outline_json(case: Case) -> Json:
 
 
 def pair_outline(pair: ParallelAxes) -> Json:
-    """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z; mm.
+    """Return the outline of the pair at position 0; x to the right, y upwards, seen from +z; mm.
 
     Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
     on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring

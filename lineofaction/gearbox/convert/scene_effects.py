@@ -11,7 +11,7 @@ from model_studies.ablation import TRIFLE
 
 
 def effect_size(ledger: Json, effect: str) -> str:
-    """Return what a scene loses without an effect in all its parts, in words: the one size that is shown.
+    """Return the influence of an effect in all parts of a scene, in words: the one size that is shown.
 
     As the ledger of a run or a study estimates it; where it does not, how far flanks move at rest. Empty:
     nothing.
@@ -36,7 +36,7 @@ class SceneEffect(NamedTuple):
 
 
 def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
-    """Return the decisions on the effects of a scene, and apart those on what changes next to nothing."""
+    """Return the decisions on the effects of a scene, and separately on effects of negligible size."""
     estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
@@ -52,7 +52,7 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
 
 
 def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
-    """Return columns and a row for each effect of a scene, on or off, and what is said of the trifles.
+    """Return columns and a row for each effect of a scene, on or off, and a line on negligible effects.
 
     Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
     """
@@ -78,7 +78,7 @@ def beyond_lines(ledger: Json) -> Iterator[str]:
 
 
 def assumed_lines(ledger: Json) -> Iterator[str]:
-    """Yield what the phases of the meshes assume, part by part."""
+    """Yield lines on the assumed phases of the meshes, part by part."""
     for row in ledger.get("assumed", ()):
         yield f"Assumed of {row['part']}: {row['words']}"
 

@@ -48,7 +48,7 @@ class Part:
 
     @property
     def location(self) -> str:
-        """Where the component stands in the file."""
+        """The place of the component in the file."""
         return self.unit.account.location(self.component)
 
     @property
@@ -132,7 +132,7 @@ class Part:
         return None if (attribute := self.attribute(item)) is None else attribute.value
 
     def say(self, item: str, fate: Fate, text: str) -> None:
-        """State what becomes of an attribute that the component has or lacks; "" is the component."""
+        """State the fate of an attribute that the component has or lacks; "" is the component."""
         self.unit.account.say(self.component, item, fate, text)
 
     def related(self, relation: str, role: str, other: str) -> tuple[Part, ...]:
@@ -183,12 +183,12 @@ class GearUnit:
     Parameters
     ----------
     model : Model
-        Of the newest version, its references checked.
+        Model in the newest version, with checked references.
 
     Attributes
     ----------
     account : Account
-        What becomes of its values.
+        Fates of the model's values.
     """
 
     def __init__(self, model: Model) -> None:
@@ -209,7 +209,7 @@ class GearUnit:
         return (relation for relation in self.model.relations if relation.type in types)
 
     def load_cases(self) -> tuple[tuple[Part, ...], ...]:
-        """Return what each load case of the first spectrum sets, empty without a spectrum."""
+        """Return the components of each load case of the first spectrum, empty without a spectrum."""
         spectra = self.model.spectra[:1]
         return tuple(
             tuple(Part(part, self) for part in case.components)
@@ -234,7 +234,7 @@ class GearUnit:
 
     @cached_property
     def planetary_sets(self) -> tuple[PlanetarySet, ...]:
-        """The planetary sets that have a carrier and planets; the account says what the others lack."""
+        """The planetary sets with a carrier and planets; the account names missing parts of others."""
         return tuple(_planetary_sets(self))
 
     def say(self, item: str, fate: Fate, text: str) -> None:
@@ -313,11 +313,12 @@ class GearStage:
     stage: Part
     gears: tuple[Part, Part]
     shafts: tuple[Part, Part]
-    """`gears`, `shafts`: Gear 1 and gear 2 of the file, and what carries them. Shape (Part, Part) each."""
+    """`gears`, `shafts`: Gear 1 and gear 2 of the file, and the shaft or carrier of each. Shape (Part, Part)
+    each."""
     teeth: tuple[int, int]
-    """Their numbers of teeth, positive."""
+    """Numbers of teeth of both gears, positive."""
     internal: bool
-    """One of them is a ring gear."""
+    """Whether one of the gears is a ring gear."""
 
     @property
     def is_cylindrical(self) -> bool:

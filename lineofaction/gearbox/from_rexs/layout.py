@@ -1,4 +1,4 @@
-"""The layout of a gear unit: where its shafts stand, as the file says, else by its stages and couplings."""
+"""The layout of a gear unit: positions of its shafts by the file, else by its stages and couplings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ANGLE = "rotating_angle_around_neg_u_axis"
 
 @dataclass(frozen=True)
 class Layout:
-    """Where everything is."""
+    """Axes, shafts, rotors and stages of a gear unit in the frame of its scene."""
 
     unit: GearUnit
     axes: SceneAxes
@@ -28,7 +28,7 @@ class Layout:
     shafts: Mapping[int, PlacedShaft]
     """The shafts parallel to z, by id."""
     rotors: Rotors
-    """What turns together."""
+    """Bodies that turn as one."""
     stages: tuple[GearStage, ...]
     """All stages with two gears."""
 
@@ -59,9 +59,9 @@ class Layout:
         """Return +1 or -1 for u along z or against it; +1 of shafts that are not parallel."""
         return self.shafts[shaft].sense if shaft in self.shafts else 1
 
-    def turn(self, part: Part, rotor_side: Part) -> FloatArray:
+    def rotation(self, part: Part, rotor_side: Part) -> FloatArray:
         """Return the matrix that takes u, v, w of a part on a shaft to x, y, z."""
-        return self.axes.turn(Placement.of(part) or self.shafts[rotor_side.id].placement)
+        return self.axes.rotation(Placement.of(part) or self.shafts[rotor_side.id].placement)
 
     def rotor(self, shaft: int) -> int:
         """Return the rotor of a shaft."""
@@ -108,7 +108,7 @@ class Layout:
 def _shaft_places(
     unit: GearUnit, stages: Sequence[GearStage], sets: Sequence[PlanetarySet]
 ) -> dict[int, Placement]:
-    """Return the places of the shafts by their ids; those that nothing places are left out.
+    """Return the places of the shafts by their ids, without shafts that nothing places.
 
     A shaft without a place of its own follows from a placed one: in a stage at the center distance, in the
     direction w turned about -u by the stage's angle, the gears face to face; or along a coupling. If none is

@@ -1,4 +1,4 @@
-"""How two gears of a stage turn and mesh, and which of them drives."""
+"""Senses of rotation and hands of two gears in mesh, and which gear drives."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
 _DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
 
 _Sense = tuple[float, str]
-"""Sense of a gear or shaft about its own u axis, 1 or -1, and the shaft whose speed it follows from."""
+"""Sense of a gear or shaft about its u axis, 1 or -1, and the shaft whose speed determines it."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Meshing:
         driver : int, optional
             Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
         torques : tuple of float, optional
-            On the driving gear about its u axis, N m; their sign is its sense of rotation.
+            Torques on the driving gear about its u axis, N m; their sign is the gear's sense of rotation.
         """
         gears = _stage_gears(stage)
         if gears is None or all(gear.type == "ring_gear" for gear in gears):
@@ -110,7 +110,7 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
 
 
 def _sense_of_speed(shaft: Part) -> float | None:
-    """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
+    """Return the sign of a shaft's stated speed, else of its speed in a load case; None: no speed."""
     cases = shaft.unit.load_cases()
     for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
         speed = part.number("rotational_speed", "sense in which the gears turn")

@@ -41,7 +41,8 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 
 _DIGITS = 9
-"""Of torques: those of equal planets agree to the rounding of the statics."""
+"""Significant digits to which torques are compared: the torques of equal planets differ by rounding of the
+statics."""
 
 
 @brief
@@ -50,23 +51,23 @@ class OpenedUnit:
     """A gear unit as cases and a scene."""
 
     cases: tuple[StageCase, ...]
-    """The cylindrical stages; of equal ones the first."""
+    """Cases of the cylindrical stages, of equal stages the first."""
     scene: SceneInput | None
-    """The whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None where the file has not
-    what a scene needs: the account says why.
+    """Scene of the whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None: the file lacks
+    what a scene needs, and the account says why.
     """
     load_cases: tuple[LoadCase, ...]
-    """Of the scene's driving shaft; one without a spectrum."""
+    """Load cases, with torque and speed of the scene's driving shaft; one if the file has no spectrum."""
     lines: tuple[Line, ...]
-    """What became of each component and value."""
+    """Fate of each component and value."""
     changes: tuple[Change, ...]
-    """What the upgrade to the newest version of REXS changed."""
+    """Changes by the upgrade to the newest version of REXS."""
     parts: SceneParts = field(default_factory=SceneParts)
     """The components that the parts of the scene are; none without a scene."""
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
+    def omitted(self) -> tuple[str, ...]:
+        """The parts of the file that the scene lacks, one sentence for each reason."""
         return refusal_texts(self.lines)
 
     @property
@@ -118,7 +119,7 @@ class OpenedUnit:
         Parameters
         ----------
         document : Document
-            Of any version of REXS.
+            Document in any version of REXS.
         assumptions : iterable of Assumption
             Values over those of the file.
         """
@@ -145,7 +146,7 @@ class OpenedUnit:
 
 
 def _flows(layout: Layout) -> list[PowerFlow]:
-    """Return the flows of power of the load cases, that of the largest share first."""
+    """Return the flows of power of the load cases, the flow of the largest share first."""
     train = Train.of(layout)
     flows = []
     points = OperatingPoint.all_of(layout.unit)
@@ -183,10 +184,10 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
-    """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
-    left_out = refusal_texts(layout.unit.account.lines())
+    """Return the validated scene with its omissions; None: it lacks parts, named in the account."""
+    omitted = refusal_texts(layout.unit.account.lines())
     try:
-        return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
+        return validated(SceneInput, table.table | ({"left_out": list(omitted)} if omitted else {}))
     except BadInput as error:
         layout.unit.say("scene", "refused", str(error))
         return None

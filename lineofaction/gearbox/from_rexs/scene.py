@@ -23,19 +23,19 @@ from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 
 STANDARD_GRAVITY = 9.80665
-"""m/s^2."""
+"""Standard gravity, m/s^2."""
 PERIODS = 10
-"""Of the slowest mesh in the run of the scene."""
+"""Number of periods of the slowest mesh in the run of the scene."""
 
 
 @dataclass(frozen=True)
 class SceneTable:
-    """A scene as its file says it."""
+    """A scene as the tables of its file."""
 
     table: dict[str, Any]
     """Tables of a scene file; meshes name their case files."""
     leader: AppliedTorque | None
-    """What drives it first."""
+    """Torque that drives the scene and is named first."""
     forces: tuple[SceneForce, ...]
     """The external loads that its forces are."""
     parts: SceneParts
@@ -91,7 +91,7 @@ def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
 def _say_without_mesh(
     layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
-    """State which stages have a case but no mesh in the scene, but for those of equal planets."""
+    """State the stages with a case but without a mesh in the scene, except stages of equal planets."""
     meshed = {stage.stage.id for stage in shafts.stages}
     meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}
@@ -126,13 +126,13 @@ def _gravity(layout: Layout) -> list[float]:
             part.say("account_for_gravity", "refused", "the file gives gravity no direction")
             break
         placement = Placement.of(part) or FIXED
-        turned = layout.axes.turn(placement) @ vector / length * (size or STANDARD_GRAVITY)
+        turned = layout.axes.rotation(placement) @ vector / length * (size or STANDARD_GRAVITY)
         return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]
 
 
 def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
-    """Return how often the first planet of each set is there, and at which angles."""
+    """Return the number of planets of each set, which copy the first, and their angles."""
     tables = []
     for planets in layout.rotors.sets:
         first = planets.planets[0]

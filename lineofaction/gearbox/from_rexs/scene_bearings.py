@@ -1,4 +1,4 @@
-"""What holds the shafts of the scene: bearings, and couplings between shafts."""
+"""Supports of the scene's shafts: bearings, and couplings between shafts."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
-"""N/m, and N m/rad, of a coupling that does not yield."""
+"""Stiffness, N/m and N m/rad, of a coupling that does not yield."""
 _CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
 
 
 class SceneBearings:
-    """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
+    """Tables of bearings and couplings as a scene file has them; the account says what is left out and why.
 
     `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
     """
@@ -51,7 +51,7 @@ class SceneBearings:
         self.housings = list(elastic_housings(layout, self.seats))
 
     def _enter(self, entry: Connection) -> None:
-        """Enter a bearing, or a coupling on the ground, by what it joins."""
+        """Enter a bearing, or a coupling on the ground, by the parts that it joins."""
         ends = [self._rotor(side) for side in (entry.inner, entry.outer)]
         planets = {planets.planets[0].id: planets for planets in self._layout.rotors.sets}
         planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)
@@ -92,7 +92,7 @@ class SceneBearings:
         return rotor if rotor in self._shafts.by_rotor else None
 
     def _rolling_bearing(self, entry: Connection) -> Table | str:
-        """Return what a scene file states of a bearing by its geometry, or why it is a bushing."""
+        """Return the table of a bearing by its geometry, or the reason why the bearing is a bushing."""
         part = entry.part
         if part.id in self._loose:
             return "the matrix of the casing is singular, and only linear bearings sit in it"
@@ -105,7 +105,7 @@ class SceneBearings:
         geometry = BearingGeometry.of(part)
         if isinstance(geometry, str):
             return geometry
-        sense = 1 if float(self._layout.turn(part, entry.rotor_side)[2, 0]) > 0.0 else -1
+        sense = 1 if float(self._layout.rotation(part, entry.rotor_side)[2, 0]) > 0.0 else -1
         located = located_row(part, geometry, sense)
         return located if isinstance(located, str) else located | further_fields(part)
 
@@ -127,7 +127,7 @@ class SceneBearings:
         full = np.zeros((6, 6))
         rows = np.array([0, 1, 2, 4, 5])
         full[np.ix_(rows, rows)] = matrix
-        both = np.kron(np.eye(2), self._layout.turn(part, rotor_side))
+        both = np.kron(np.eye(2), self._layout.rotation(part, rotor_side))
         return np.asarray((both @ full @ both.T)[:5, :5])
 
     def _z(self, part: Part, rotor_side: Part, side: str) -> float:

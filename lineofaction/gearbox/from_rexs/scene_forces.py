@@ -1,4 +1,4 @@
-"""Forces of the scene: what acts on shafts from outside across and along their axes, by load case."""
+"""Forces and moments on shafts from outside, across and along the shafts' axes, by load case."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import MM
 
 ROUNDING = 1e-12
-"""Of the largest component of a vector: less is that of the turn of its axes."""
+"""Share of a vector's largest component below which a component is rounding of the rotation of its axes."""
 
 
 @dataclass(frozen=True)
@@ -29,27 +29,28 @@ class SceneForce:
     shaft: str
     """`name`, `shaft`: Its own and its shaft's name in the scene."""
     position_mm: float
-    """Where it acts, from the left end of that shaft."""
+    """Position of the force from the left end of that shaft."""
     load: int
-    """The external load that it is."""
-    turn: FloatArray
-    """Takes components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
+    """Id of the external load of the file."""
+    rotation: FloatArray
+    """Rotation from components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
     lever: float
-    """Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft."""
+    """Distance along z from the force in the scene to the load in the file, m; 0 unless the load is beyond
+    the shaft's end."""
 
     def entry(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return what an entry of a load case's forces says at an operating point.
+        """Return the entry of a load case's forces at an operating point.
 
         The moment about the axis is not in it: torques drive and load the train.
         """
         wrench = np.array(point.forces.get(self.load, (0.0,) * len(FORCES)))
-        force, moment = self.turn @ wrench[:3], self.turn @ wrench[3:]
+        force, moment = self.rotation @ wrench[:3], self.rotation @ wrench[3:]
         moment[:2] += self.lever * np.array([-force[1], force[0]])
         moment[2] = 0.0
         return {"name": self.name, "force_n": _digits(force), "moment_n_m": _digits(moment)}
 
     def table(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return its table in a scene that runs at an operating point."""
+        """Return the table of the force in a scene that runs at an operating point."""
         return {**self.entry(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 
@@ -72,7 +73,7 @@ def scene_forces(
         shaft, z = shafts.by_rotor[layout.rotor(placed.part.id)], layout.z_on(placed, part)
         position = shaft.position_mm(z)
         lever = z - shaft.begin - position * MM
-        turn = layout.axes.turn(placed.placement)
+        rotation = layout.axes.rotation(placed.placement)
         part.say("", "taken", f"acts on shaft {shaft.name}")
         if part.number("width_of_external_load", "width of a line load, mm"):
             text = "a line load is not spread: its force acts at u_coordinate_on_shaft"
@@ -84,7 +85,7 @@ def scene_forces(
                 f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
             )
             part.say("u_coordinate_on_shaft", "derived", text)
-        yield SceneForce(names.of(part), shaft.name, position, part.id, turn, lever)
+        yield SceneForce(names.of(part), shaft.name, position, part.id, rotation, lever)
 
 
 def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:
@@ -104,7 +105,7 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
 
 
 def _refuse(layout: Layout, load: Part, reason: str) -> None:
-    """State of a load's forces and moments, its own and those of load cases, that they are left out."""
+    """State that a load's forces and moments are left out, also those of load cases."""
     cases = (part for case in layout.unit.load_cases() for part in case if part.id == load.id)
     for part in (load, *cases):
         for item in FORCES:

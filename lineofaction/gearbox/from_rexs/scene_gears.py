@@ -17,7 +17,8 @@ from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.units import MM
 
 SAME = 1e-6
-"""Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
+"""Relative difference between the distance of two axes and the center distance of their mesh from which a
+scene is refused."""
 
 INTEGRAL = 0.95
 """Share of the pitch diameter from which a shaft's section is the gear's own body."""
@@ -100,7 +101,7 @@ def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict
 
 
 def _ring(gear: Part, pitch: float, module: float, is_shaft_massless: bool) -> Inertia:
-    """Return the inertia of a ring gear: none if its shaft's sections have it, else that of a rim."""
+    """Return the inertia of a ring gear: none if its shaft's sections include it, else of a rim."""
     width = gear.number("face_width", "width of the ring, mm") or 0.0
     if not is_shaft_massless or pitch <= 0.0 or width <= 0.0:
         gear.say("inertia", "derived", "0: the ring is a section of its shaft")

@@ -20,8 +20,8 @@ class ShaftPart:
     """A shaft."""
 
     component: int
-    turn: FloatArray
-    """Takes components along u, v, w to x, y, z. Shape (3, 3)."""
+    rotation: FloatArray
+    """Rotation from components along u, v, w to x, y, z. Shape (3, 3)."""
     sense: int
     """+1 where u is along z, -1 where it is against it."""
     zero: float
@@ -33,8 +33,8 @@ class BearingPart:
     """A bearing, or a coupling, on the ground."""
 
     component: int
-    turn: FloatArray
-    """Takes components along its u, v, w to x, y, z. Shape (3, 3)."""
+    rotation: FloatArray
+    """Rotation from components along the bearing's u, v, w to x, y, z. Shape (3, 3)."""
     shaft_inside: bool
     """Whether the shaft is on the inner side."""
 
@@ -82,18 +82,19 @@ def scene_parts(
     of_shafts = {}
     for rotor, shaft in shafts.by_rotor.items():
         if (placed := layout.shafts.get(rotor)) is not None:
-            turn, zero = layout.axes.turn(placed.placement), float(placed.start[2]) - shaft.begin
-            of_shafts[shaft.name] = ShaftPart(rotor, turn, placed.sense, zero)
+            rotation, zero = layout.axes.rotation(placed.placement), float(placed.start[2]) - shaft.begin
+            of_shafts[shaft.name] = ShaftPart(rotor, rotation, placed.sense, zero)
     of_bearings = {}
     for entry in (*layout.unit.bearings, *layout.unit.couplings):
         if entry.part.id in seats and entry.rotor_side.id in layout.shafts:
-            turn, inside = layout.turn(entry.part, entry.rotor_side), entry.rotor_side.id == entry.inner.id
-            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, turn, inside)
+            rotation = layout.rotation(entry.part, entry.rotor_side)
+            inside = entry.rotor_side.id == entry.inner.id
+            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, rotation, inside)
     return SceneParts(of_shafts, of_bearings, of_meshes)
 
 
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
-    """Return how the face positions of the case count along u of gear 1's shaft.
+    """Return the sense of the case's face positions along u of gear 1's shaft, 1 or -1.
 
     They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
     pushed back by it.

@@ -1,4 +1,4 @@
-"""An opened gear unit as the answer of the service; a process of its own reads the file."""
+"""An opened gear unit as the answer of the service; a confined process reads the file."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def unit_json(unit: OpenedUnit) -> Json:
         for c in unit.cases
     ]
     return {
-        "left_out": list(unit.left_out),
+        "left_out": list(unit.omitted),
         "cases": cases,
         "scene": None if unit.scene is None else _with_cases(unit.scene, cases),
         "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],

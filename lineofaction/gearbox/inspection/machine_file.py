@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.geometry import Toothing
-from lineofaction.gearbox.inspection.sheet import LARGEST_UM, LEFT_OUT, MAX_POINTS, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.sheet import LARGEST_UM, MAX_POINTS, OMITTED, Flank, Point, Sheet
 from lineofaction.gearbox.units import MM, UM
 
 _FIRST = re.compile(r"HEADER\s+KS\.MK\.FILE")
@@ -33,14 +33,14 @@ _TRACE = re.compile(
 _PITCHES = re.compile(r"(?P<flank>linke|rechte) Zahnflanke")
 _ROW = re.compile(r"\s*(?P<tooth>\d{1,4})((?:\s+[-+]?\d*\.?\d+){3})\s*")
 _UNDEFINED = -2e6
-"""What is below is a point that the machine did not measure."""
+"""Value below which the machine marks a point as not measured."""
 _FLANKS: dict[str, Flank] = {"links": "left", "rechts": "right", "linke": "left", "rechte": "right"}
 _KINDS = {"Profil": "profile", "Flankenlinie": "helix"}
 _ENDS = {"profile": ("da", "de"), "helix": ("ba", "be")}
 """Symbols of begin and end of a trace in the heading, mm: diameters, and places along the face."""
-OTHER_TRACE = f"{LEFT_OUT}a trace of twist or topography"
-UNMEASURED = f"{LEFT_OUT}not measured by the machine"
-UNKNOWN = f"{LEFT_OUT}a line that is not understood"
+OTHER_TRACE = f"{OMITTED}a trace of twist or topography"
+UNMEASURED = f"{OMITTED}not measured by the machine"
+UNKNOWN = f"{OMITTED}a line that is not understood"
 _OTHER = "other table or heading"
 
 

@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from lineofaction.gearbox.problems import BadInput
 
 MAX_BYTES = 64_000_000
-"""Of a file, and of an archive's files together."""
+"""Largest size in bytes of a file, and of all files of an archive together."""
 
 _MAX_FILES = 1_000
 
 _MAX_RATIO = 200
-"""Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
+"""Largest ratio of the bytes of an archive's files to the bytes of the archive; models compress 20 to 50
+times."""
 
 _MODEL_NAME = "rexs-model.rexs"
 
@@ -25,7 +26,7 @@ _MODEL_ENDINGS = (".rexs", ".rexsj")
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 
 _UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, OSError)
-"""What the reader of archives raises for one that is damaged or locked, or for what it does not know."""
+"""Errors of the ZIP reader for an archive that is damaged, locked or of an unknown kind."""
 
 
 def read_archive(data: bytes) -> tuple[bytes, dict[str, bytes]]:
@@ -70,7 +71,7 @@ def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limit: int) -> bytes:
-    """Return a file of an archive, of at most so many bytes, whatever the archive says."""
+    """Return a file of an archive up to a limit in bytes; the size that the archive states is not trusted."""
     with archive.open(entry) as stream:
         data = stream.read(limit + 1)
     if len(data) > limit:

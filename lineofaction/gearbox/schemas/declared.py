@@ -31,7 +31,7 @@ class Figure:
     """The field of the library."""
     what: Declared
     default: Any
-    """In SI; `MISSING` where one has to be given, None where it may be left out."""
+    """Default in SI; `MISSING`: a value is required; None: the field may be left out."""
     marked: bool = True
     """Whether its schema says kind and direction."""
 
@@ -103,7 +103,7 @@ class Figure:
 
 
 def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
-    """Return the declared numbers and names of a dataclass, those of some kinds if any are given."""
+    """Return the declared numbers and names of a dataclass, of some kinds if any are named."""
     defaults = {entry.name: entry.default for entry in fields(kind)}
     return tuple(
         Figure(name, fact, defaults[name])
@@ -113,7 +113,7 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
 
 
 def declared_in(kind: type[Any], *, required: bool = False, marked: bool = True) -> Fields:
-    """Return the declared fields of a dataclass as those of a model; `required`: numbers have no default."""
+    """Return the declared fields of a dataclass as fields of a model; `required`: without defaults."""
     declared = (replace(figure, marked=marked) for figure in figures(kind))
     declared = (replace(figure, default=MISSING) if required else figure for figure in declared)
     return {**as_fields(declared), **parts_in(parts_of(kind))}

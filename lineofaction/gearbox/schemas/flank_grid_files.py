@@ -1,4 +1,4 @@
-"""Free-form flanks as CSV files beside a case file: read and written out in the case."""
+"""Free-form flanks as CSV files that a case file names: read and written out in the case."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def flank_grid(text: str, field: str, name: str) -> Table:
 
 
 def _nodes(text: str) -> Nodes:
-    """Material removed by roll length and face position; `ValueError` says what the file must hold."""
+    """Return the removed material by roll length and face position; `ValueError`: the required content."""
     file = csv_rows(text, _MAX_NODES)
     if sorted(file.heading) != sorted(COLUMNS):
         raise ValueError(

@@ -1,4 +1,4 @@
-"""What studies take and vary: a case or a scene, speeds, orders."""
+"""The subjects and variables of studies: a case or a scene, speeds, orders."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import HASH, BoundaryModel, Row, refuse, refuse_unsorted
-from lineofaction.gearbox.schemas.rules import all_of, both, exactly_one_of, left_out, required
+from lineofaction.gearbox.schemas.rules import absent, all_of, both, exactly_one_of, required
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import Spelling
 
@@ -18,9 +18,7 @@ TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
 Orders = Annotated[int, Field(ge=1, le=100)]
 RunHash = Annotated[str, Field(pattern=HASH)]
 _OF_RUN = both(required("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
-_OVER_SPEEDS = both(
-    left_out("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}}
-)
+_OVER_SPEEDS = both(absent("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}})
 Factor = Annotated[float, Field(ge=0.05, le=20.0)]
 Factors = Row[Factor]
 RANGES = (
@@ -30,7 +28,8 @@ RANGES = (
     "bearing_stiffness",
     "mesh_damping",
 )
-"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
+"""Copy of the names in `dynamics.noise.GUESSES`. Importing that module takes longer than a service takes to
+start."""
 
 
 class OverSpeeds(BoundaryModel):
@@ -89,7 +88,7 @@ class OverSpeedsOrRun(OverOrders):
 
 
 class CaseOrScene(BoundaryModel):
-    """A case or a scene, one of both."""
+    """A case or a scene, exactly one."""
 
     model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("case", "scene")))
 

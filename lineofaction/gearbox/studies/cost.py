@@ -1,4 +1,4 @@
-"""What a study is predicted to cost before it begins, and how large a scene is that is not computed yet."""
+"""Predicted cost of a study before it begins, and the size of a scene whose tables are not computed yet."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 _SMALL = 0.02
 """Share of the whole below which a part is not named."""
 LONG = 3600.0
-"""CPU seconds from which on a cost is said in hours too, and comes with advice."""
+"""CPU seconds from which on a cost is written in hours too, and with advice."""
 
 _PANELS = 6.0
-"""CPU seconds of the panels of a gear case, measured 5 to 60 of cases and 0.3 of a block; they are kept."""
+"""CPU seconds of the panels of a gear case, measured 5 to 60 for cases and 0.3 for a block; the cache keeps
+the panels."""
 
 
 class Work(NamedTuple):
@@ -34,7 +35,7 @@ class Work(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Say the work: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
+        """Return the work as text: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
         piece_seconds = engineering(self.piece_seconds, 2)
         return (
             f"{self.name} {piece_seconds} s"
@@ -61,7 +62,7 @@ class StudyCost:
 
     @property
     def text(self) -> str:
-        """Say the cost: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
+        """Return the cost as text: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
         total = self.seconds
         memory = f", {engineering(self.bytes / 2**30, 2)} GiB" if self.bytes else ""
         parts = ", ".join(part.text for part in self._by_name if part.seconds > _SMALL * total)
@@ -72,7 +73,7 @@ class StudyCost:
 
     @property
     def _by_name(self) -> Iterator[Work]:
-        """The parts, those of one name as one with their mean."""
+        """The parts, with parts of one name joined to one with their mean."""
         for name in dict.fromkeys(part.name for part in self.parts):
             same = [part for part in self.parts if part.name == name]
             count = sum(part.pieces for part in same)
@@ -85,5 +86,5 @@ class StudyCost:
 
 
 def panels_work(housings: int) -> Work:
-    """Return what panels of so many housings usually take: their meshes are not made before."""
+    """Return the usual work of the panels of housings, whose meshes are not made before."""
     return Work("panels", _PANELS, housings)

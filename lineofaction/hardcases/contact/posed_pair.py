@@ -17,10 +17,11 @@ from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 
 NOMINAL_TORQUE = 100.0
-"""N m on the driving gear of the nominal pair: 0.5 GPa of Hertz pressure."""
+"""Torque on the driving gear of the nominal pair, N m: 0.5 GPa of Hertz pressure."""
 
 CYCLIC = 2e-5
-"""How much STE may differ from tooth to tooth in the plane: the mesh of the body is not the same for all."""
+"""Relative difference of the STE from tooth to tooth in the plane: the mesh of the body differs between
+teeth."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ class Posed:
     def solve(
         self, position: FloatArray, load: FloatArray | None = None, pitch: IntArray | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: those of the plan."""
+        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: the forces of the plan."""
         return self.contact.solve(self.model, position, self.plan.load if load is None else load, pitch)
 
     def ste(self, position: FloatArray) -> FloatArray:

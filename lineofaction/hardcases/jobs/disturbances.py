@@ -14,7 +14,7 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("service")
 
 MEMORY_MB = 384
-"""Half-way, in proportion, between what the small job needs and what the large one does."""
+"""Memory limit in MB, between the needs of the small and of the large job."""
 
 AFTER = (
     "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
@@ -46,7 +46,7 @@ def _out_of_memory() -> Sequence[Measured]:
     f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
 )
 def _past_the_deadline() -> Sequence[Measured]:
-    """Run the large job with a deadline of a few times what the small one takes."""
+    """Run the large job with a deadline of a few times the duration of the small one."""
     allowed = []
 
     def settle(seconds: float) -> dict[str, float]:

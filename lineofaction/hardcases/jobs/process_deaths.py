@@ -30,18 +30,18 @@ from service.queue.job import Job
 SCENES = Scenes("service")
 
 MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
-"""What their commands hold; a worker is started anew or forked."""
+"""Texts in the commands of mesher and worker; a worker is started anew or forked."""
 
 _HANGING = """
 import time
 time.sleep(3600.0)
 """
-"""A mesher that is met, however short its mesh."""
+"""Program of a mesher that never ends, so that it runs when it is killed, however fast the mesh."""
 
 
 @contextmanager
 def replaced_mesher(does: str) -> Iterator[Path]:
-    """Put what the mesher loads first on the path of the workers, which hand it on; undone once unlinked."""
+    """Replace the module that the mesher loads first, on the path of the workers; undone once unlinked."""
     undisturbed()
     before = os.environ.get("PYTHONPATH")
     with tempfile.TemporaryDirectory(prefix="loa-hard-mesher-") as name:

@@ -43,13 +43,13 @@ _TORQUE_ROUNDING = 1e-9
 """Relative rounding by which the ends of two torque ranges may differ."""
 
 Named = dict[str, SteDatabase]
-"""One or two tables by the names they are shown under, in the order given."""
+"""One or two tables by the names of their curves, in the sequence of the call."""
 
 
 def compare_tables(
     tables: Named, measured: MeasuredCurve | MeasuredOrders | None, torque: float | None = None
 ) -> Page:
-    """Return the page that compares two tables with each other, or one with what was measured.
+    """Return the page that compares two tables with each other, or one with a measurement.
 
     Ripples and harmonics are drawn at `torque` on the driving gear, N m; None takes the middle one of the
     torques that all tables cover. Raises `BadInput` if the tables have no torque in common, if one does not
@@ -79,12 +79,12 @@ def compare_tables(
         for difference in differences
         if difference.name == "peak to peak"
     )
-    titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
+    titles = dict.fromkeys(pair_title(table.geometry) for table in tables.values())
     return Page(f"{' and '.join(tables)} compared", "; ".join(titles), headlines, tuple(sections))
 
 
 def _common(tables: Sequence[SteDatabase]) -> list[float]:
-    """Return those torques of the first table that all tables cover, moved into the range by rounding."""
+    """Return the torques of the first table that all tables cover, moved into the range by rounding."""
     low, high = _limits(tables)
     lowest, highest = low * (1 - _TORQUE_ROUNDING), high * (1 + _TORQUE_ROUNDING)
     torques = [float(torque) for torque in tables[0].torque if lowest <= torque <= highest]

@@ -13,7 +13,7 @@ from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, meas
 from lineofaction.report.comparison.measured import MeasuredCurve, MeasuredOrders, averaged
 
 _SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
-"""Quantity of a unit of the page, and what one SI unit is in it."""
+"""Quantity of a unit of the page, and value of one SI unit in that unit."""
 _FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
 _AXIS_REMEDY = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
 
@@ -24,7 +24,7 @@ def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measure
 
 
 def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one function of a file that can be compared; `teeth` are those of the driving gear.
+    """Return the one comparable function of a file; `teeth` are the driving gear's.
 
     `unit` is "µm", "N" or "m/s²": of what it is compared with. Complex values count by their amplitude.
     """

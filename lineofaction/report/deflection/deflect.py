@@ -22,7 +22,7 @@ from lineofaction.report.presentation import Presentation
 CAUSE_LABELS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
 COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
-LOADED = 1e-3  # of the largest pressure: less is blank
+LOADED = 1e-3  # share of the largest pressure below which a pattern is blank
 
 
 def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -48,7 +48,7 @@ def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
 
 
 def _mesh_table(result: GearboxDeflection) -> Table:
-    """List every mesh under every load case, the worst mesh first; of the causes those that act."""
+    """List every mesh under every load case, the worst mesh first, with the causes that act."""
     acting = np.any([mesh.causes for case in result.deflection.cases for mesh in case.meshes], axis=0)
     flanks = {(flanks.mesh, flanks.case): flanks for flanks in result.flanks}
     head = (
@@ -265,7 +265,7 @@ def _page(result: GearboxDeflection) -> Page:
 
 
 def agreement(result: GearboxDeflection) -> str:
-    """Say how well mesh loads and deflections agree."""
+    """Return a sentence on the agreement of mesh loads and deflections."""
     if not mesh_names(result):
         return "Nothing meshes."
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):

@@ -1,4 +1,4 @@
-"""A sweep as people see it: maps, curves, the least values with what is as low within the errors."""
+"""Page of a sweep: maps, curves, and least values with the points that are as low within the errors."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _series(result: SweepResult) -> Table:
 
 
 def _headlines(result: SweepResult) -> tuple[Headline, ...]:
-    """Return the best of the first quantity with what is as low within the errors, and its largest."""
+    """Return the best value of the first quantity with points as low within the errors, and the largest."""
     if not result.sweep.usable:
         return ()
     quantity = result.quantities[0]

@@ -22,7 +22,7 @@ BLANK = 0.01
 DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 _SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
-_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
+_SHORT = 12  # most characters of a line's label in a panel of half the width
 _MAX_INTEGER = 30  # an axis of whole numbers up to here has no ticks between them
 _FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
@@ -40,7 +40,7 @@ class Axis:
     names: tuple[tuple[float, str], ...] = ()
 
     def __post_init__(self) -> None:
-        """Let the data decide where nothing lies between the limits, as those of a spectrum of zeros."""
+        """Drop limits that contain no data, as for a spectrum of zeros."""
         low, high = self.limits or (0.0, 0.0)
         if not (low < high and self.shows(low) and self.shows(high)):
             object.__setattr__(self, "limits", None)
@@ -61,7 +61,7 @@ class Axis:
         return bool(np.isfinite(value)) and (self.scale == "linear" or value > 0.0)
 
     def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
-        """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
+        """Return the place of values on an axis with these ends: 0 at the first, 1 at the last."""
         low, high = ends
         if self.scale == "log":
             values, low, high = np.log10(values), float(np.log10(low)), float(np.log10(high))
@@ -112,7 +112,7 @@ class Bars:
 
 @dataclass(frozen=True)
 class Reference:
-    """A straight line across a panel at one value, with a short label beside it.
+    """A straight line across a panel at one value, with a short label at its end.
 
     The label of a horizontal line is centered at the fraction `at` of the width, or ends there if it is above
     one half.
@@ -155,7 +155,7 @@ class HeatMap:
 
     @classmethod
     def spanning(cls, x: FloatArray, y: FloatArray, z: FloatArray, label: str) -> HeatMap:
-        """Return the map whose colors run from the least to the largest value, apart where all are alike."""
+        """Return the map whose colors run from the least to the largest value, widened if all are equal."""
         known = z[np.isfinite(z)]
         minimum, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
         return cls(x, y, z, label, largest if largest > minimum else minimum + 1.0, minimum)
@@ -209,7 +209,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Table:
-    """Numbers in words: what a screen reader, a printout or a spreadsheet takes instead of a plot."""
+    """A table of numbers as text, the alternative to a plot for screen readers, print and spreadsheets."""
 
     caption: str
     head: tuple[str, ...]
@@ -219,14 +219,14 @@ class Table:
     def of(
         cls, caption: str, entries: Iterable[_Entry], columns: Mapping[str, Callable[[_Entry], str]]
     ) -> Table:
-        """Write a row for each entry; columns by their heads say what they write of one."""
+        """Return a table with a row for each entry; a column is a head and the function of its cells."""
         rows = tuple(tuple(write(entry) for write in columns.values()) for entry in entries)
         return cls(caption, tuple(columns), rows)
 
 
 @dataclass(frozen=True)
 class Track:
-    """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
+    """A sound of a plot, with its place on the horizontal axis of the first panel as it plays.
 
     `time` (n,), s, increases; `along` (n,) are values on the axis. `query` names it to the service's path of
     the sound of a result. `mesh_frequency` (n,), Hz, is that of mesh order 1; None: no mesh is heard alone.
@@ -241,7 +241,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Sound:
-    """What a plot shows, to listen to: its quantity, and what it is not, in the caption.
+    """Sound of a plot: the caption names its quantity, and parts that the sound leaves out.
 
     `files` are WAV, one for each track, all of one full scale; none if they would be too large for a page.
     """
@@ -293,7 +293,7 @@ def ordered_lines(
     *,
     labeled: bool = True,
 ) -> tuple[Line, ...]:
-    """Draw curves (n,) over `x`, dark for the first, named at their ends; those with bands as points too."""
+    """Return curves (n,) over `x`, dark for the first, with names at their ends; with bands also points."""
     count, points = len(names), bands is not None
     sizes: Iterable[FloatArray | float] = [0.0] * count if bands is None else bands
     return tuple(
@@ -342,7 +342,7 @@ def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
 
 
 def legend_names(panels: Sequence[Panel]) -> list[str]:
-    """Return the names that a legend lists: of what neither labels nor notes nor axes of its panel name."""
+    """Return the names in a legend: names without a label, note or axis in their panel."""
     named = [
         {note.text for note in panel.notes}
         | {name for axis in (panel.x, panel.y) for _, name in axis.names}

@@ -1,4 +1,4 @@
-"""What is complained of, marked in every plot whose axes or orders have it."""
+"""Marks of a complaint in every plot whose axes or orders contain it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from bounds import engineering, order_name
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
@@ -28,13 +29,12 @@ DRIVER = "speed of the driving gear, rpm"
 TORQUE = "torque on the driving gear, N m"
 """Labels of axes of runs and tables."""
 BOLDER = 2.0
-"""Width of the line of the order, of what it is without a complaint."""
+"""Width of the complaint's order over the usual width of the line."""
 
 
 def marks_of(result: Any) -> Marks | None:
-    """Return what a result says of the complaint of its scene, None without one."""
-    metadata: Mapping[str, Any] = getattr(result, "facts", {})
-    return metadata.get(NAME)
+    """Return the marks by the complaint of a result's scene, None without a complaint."""
+    return metadata_of(result).get(NAME)
 
 
 def of_run(marks: Marks, mesh: str) -> Marks:
@@ -49,7 +49,7 @@ def of_run(marks: Marks, mesh: str) -> Marks:
 
 
 def order_label(order: float, metadata: Mapping[str, Any]) -> str:
-    """Return an order with what it is where that is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
+    """Return an order, with its name if it is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
     text, turning = f"{order:.4g}", metadata.get("turning")
     if turning is None or np.isclose(order, round(order), rtol=1e-6):
         return text
@@ -64,7 +64,7 @@ def drawn_orders(order: FloatArray, sizes: FloatArray, count: int, metadata: Map
 
 
 def marked_page(page: Page, marks: Marks) -> Page:
-    """Return a page with the marks in all its plots, and what they stand for in its lead."""
+    """Return a page with the marks in all its plots, and their meaning in its lead."""
     sections = marked_sections(page.sections, marks)
     lead = " ".join(text for text in (page.lead, f"Complaint: {marks['words']}.") if text)
     return replace(page, lead=lead, sections=sections)

@@ -30,7 +30,7 @@ FOLD = 40.0
 SIDE = 0.03
 """Least area of a side whose edges are drawn, over the area of the surface."""
 ALIKE = 80.0
-"""Angle, degrees, between the normals of neighbors from which on the smoothing leaves both alone."""
+"""Least angle, degrees, between the normals of neighbors that the smoothing leaves unchanged."""
 PASSES = 3
 """Passes of the smoothing of normals."""
 OUTLINE_MARGIN = 2
@@ -46,7 +46,7 @@ BEHIND = 3.0
 EYE = (1.0, 0.55, 0.65)
 """Direction to the eye; y points up in the picture."""
 SIDES = {"From the front": EYE, "From behind and below": (-EYE[0], -EYE[1], -EYE[2])}
-"""Two opposite directions to the eye, by the title: a facet that nothing hides is seen from one of them."""
+"""Two opposite directions to the eye, by the title: every facet that nothing hides faces one of them."""
 
 
 def surface_panels(
@@ -81,8 +81,8 @@ def surface_panels(
         one_number = [len(points), 1]  # turns the two nodes of an edge into one number
         inner = folds[~np.isin(folds @ one_number, outline @ one_number)]  # not drawn twice
         visible_folds = _in_sight(view, points[inner], depth_at_rest)
-        whole_outline = _in_sight(view, points[outline], depth_at_rest, np.inf)
-        edges = 1e3 * view.step * np.concatenate([visible_folds, whole_outline])
+        outline_folds = _in_sight(view, points[outline], depth_at_rest, np.inf)
+        edges = 1e3 * view.step * np.concatenate([visible_folds, outline_folds])
         line = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, minimum)

@@ -33,24 +33,26 @@ from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.ste.curves import POSITION_LABEL
-from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
+from lineofaction.report.ste.headlines import edge_text
+from lineofaction.report.ste.page import case_tables, contact_effects
 
 N_PER_MM = 1e3
-"""In N/m."""
+"""One N/mm in N/m."""
 
-MAX_LINES = 8  # positions
+MAX_LINES = 8  # most positions with a contact line in a plot
 Gear = Literal["pinion", "wheel"]
 GEARS: tuple[Gear, ...] = ("pinion", "wheel")
 PRESSURE = "Hertz pressure, MPa"
 _MAX_ISOLINES = 6
-_HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
+_HIGHEST_ISOLINE = 0.92  # share of the largest: curves about a ridge narrower than the positions break up
 _Map = tuple[FloatArray, FloatArray]
-"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
-MAX_CURVES = 4  # positions
+"""Roll lengths (R,) in mm and pressures (R, K) in MPa of a contact pattern."""
+MAX_CURVES = 4  # most positions with a curve in a plot
 _VISIBLE_GAP = 0.01
-"""um; a plot of less shows nothing."""
+"""Least gap that is drawn, um; a plot of a smaller gap shows nothing."""
 _ROUNDING = 1e-9
-"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+"""Share of the face width within which a load centroid counts as mid-face, the rounding of a symmetric load.
+"""
 
 
 def _face_axis(flanks: LoadDistribution) -> Axis:
@@ -59,7 +61,7 @@ def _face_axis(flanks: LoadDistribution) -> Axis:
 
 
 def contact_lines(flanks: LoadDistribution) -> Figure:
-    """Draw contact lines at positions spread over the cycle, and those of the largest pressure alone."""
+    """Draw contact lines at positions spread over the cycle, and separately at the largest pressure."""
     worst = int(flanks.pressure.max(axis=(1, 2)).argmax())
     step = max(flanks.position.size // MAX_LINES, 1)
     chosen = np.arange(0, flanks.position.size, step)
@@ -136,7 +138,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
     count = flanks.face_position.size
     drawn = _shaded if count > 1 else _curve
-    teeth = "/".join(map(str, flanks.scene.facts.teeth))
+    teeth = "/".join(map(str, flanks.scene.geometry.teeth))
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
@@ -160,7 +162,7 @@ def _roll_marks(
         "pitch point": scene.pitch_point[index],
         "tip": scene.tip[index],
     }
-    base = scene.facts.base_radius[index]
+    base = scene.geometry.base_radius[index]
     return tuple(
         Reference(f"{name}, d {2e3 * np.hypot(base, roll):.4g} mm", 1e3 * roll, direction, 0.99)
         for name, roll in marks.items()
@@ -190,7 +192,7 @@ def _isolines(largest: float) -> tuple[float, ...]:
 def _title(flanks: LoadDistribution, gear: Gear) -> str:
     if gear == "pinion":
         return "pinion (drives): root below, tip above"
-    ring = flanks.scene.facts.internal
+    ring = flanks.scene.geometry.internal
     return "ring gear: tip below, root above" if ring else "wheel: root below, tip above"
 
 
@@ -209,7 +211,7 @@ def _curve(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
 
 
 def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[float, float]:
-    """Return the range in mm from what is touched, or the start of the active profile, to the tip."""
+    """Return the range in mm from the touched flank, or the start of the active profile, to the tip."""
     scene, index = flanks.scene, GEARS.index(gear)
     ends = scene.start_of_active_profile[index], scene.tip[index]
     marks = [*(1e3 * end for end in ends), float(roll[0]), float(roll[-1])]
@@ -352,8 +354,8 @@ def error_text(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
 
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
-    """Return the page of flank results; beside their database, which has its own effects and case."""
-    pair = flanks.scene.facts
+    """Return the page of flank results, with their database if known, which has effects and case."""
+    pair = flanks.scene.geometry
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
     return Page(
         pair_title(pair), pair_lead(pair), tuple(_headlines(flanks)), sections, _alarms(flanks, database)
@@ -386,7 +388,7 @@ def _kink_text(flanks: LoadDistribution) -> str:
 
 
 def _edge_load(flanks: LoadDistribution) -> str:
-    """Name the line load at edges apart, a mean over a slice; nothing where none is reached."""
+    """Return text on the line load at edges, a mean over a slice; empty: no edge is reached."""
     load = flanks.edge_line_load
     if load.value <= 0.0:
         return ""
@@ -414,7 +416,7 @@ def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
 
 
 def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
-    """Show what the flank results cost; `alone`, without their database, also effects and case."""
+    """Show the cost of the flank results; `alone`, without their database, also effects and case."""
     metadata = flanks.metadata
     if not metadata.receipt:
         return ()
@@ -436,7 +438,7 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = flanks.scene.facts, database.facts
+    mine, theirs = flanks.scene.geometry, database.geometry
     same = mine.teeth == theirs.teeth and all(
         abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
         for name in ("base_pitch", "face_width")

@@ -1,4 +1,4 @@
-"""What excites a linear response, by mesh and harmonic, each amplitude with its error."""
+"""Excitations of a linear response, by mesh and harmonic, each amplitude with its error."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table,
 from lineofaction.report.drawing.marks import order_label
 
 MAX_HARMONIC = 6
-"""Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
+"""Highest harmonic of each mesh that is listed and drawn; orders between the harmonics are listed only."""
 _WIDTH = 0.8
-"""Of all bars of a harmonic together."""
+"""Width of all bars of a harmonic together."""
 
 
 class _Quantity(NamedTuple):
@@ -42,7 +42,7 @@ _QUANTITIES = (
 
 
 def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
-    """List what excites, of every mesh its first harmonics; None where it is not known, as of a run."""
+    """List the excitations, of every mesh its first harmonics; None: not known, as for a run."""
     rows = _low_harmonics(metadata)
     if not rows:
         return None
@@ -60,19 +60,19 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
 
 
-def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Say how much of a long table's excitation a response does not list; nothing where it lists all."""
-    if not (left_out := metadata.get("lines_left_out")):
+def omitted_orders(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+    """Return rows on the share of a long table's excitation that a response does not list; else empty."""
+    if not (omitted := metadata.get("lines_left_out")):
         return ()
-    share = engineering(100.0 * left_out["force"], 2)
+    share = engineering(100.0 * omitted["force"], 2)
     part = f"up to {share} % of the exciting force of a mesh order (rms)"
-    totals = "have" if left_out.get("in_totals") else "lack"
-    text = f"{left_out['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
+    totals = "have" if omitted.get("in_totals") else "lack"
+    text = f"{omitted['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
     return (("weaker orders of a long table", text),)
 
 
 def excitation_figures(metadata: Mapping[str, Any]) -> tuple[Figure, ...]:
-    """Draw what excites: a panel for each quantity that does, a color for each mesh."""
+    """Draw the excitations: a panel for each exciting quantity, a color for each mesh."""
     rows, table = _low_harmonics(metadata), excitation_table(metadata)
     if table is None:
         return ()

@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
-MIN_DISTANCE = 0.1  # of the axis: nearer folds share a label
+MIN_DISTANCE = 0.1  # share of the axis within which folds share a label
 MARKED = 80  # sweeps of more motions are drawn as lines
 _BEARING_HEAD = ("bearing", "state", "rms force, N")
 _MESH_HEAD = (
@@ -40,7 +40,7 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
     swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
-    x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends)
+    x = Axis(f"speed of {states.metadata['leading_shaft']}, rpm", limits=ends)
     quantities = _quantities(states, mesh)
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
     panels = tuple(
@@ -58,7 +58,7 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
 
 
 def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return what is shown by name, (P,) each; without meshes the bearing that feels most."""
+    """Return the shown quantities by name, (P,) each; without meshes the bearing with the largest force."""
     if not states.mesh:
         if not states.bearing:
             return []
@@ -80,7 +80,7 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
-    """Return the folds in rpm that lie apart: corners come in clusters, of which the outermost counts."""
+    """Return the distinct folds in rpm: of a cluster of corners the outermost counts."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     separate: list[float] = []
     if folds.size:

@@ -42,7 +42,7 @@ MAPPED, NAMED = 10, 5
 """Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 BLOCKS, ORDERS = 90, 8
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
-MIN_PITCHES = 64  # of a run whose orders are shown
+MIN_PITCHES = 64  # least base pitches of a run whose orders are shown
 
 
 def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
@@ -66,7 +66,7 @@ def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: f
 
 
 def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
-    """Return how many base pitches a mesh passes; 0 of a run without meshes."""
+    """Return the number of base pitches that a mesh passes; 0: the run has no meshes."""
     return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
 
 
@@ -155,7 +155,7 @@ def _table(
 
 
 def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
-    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
+    """Draw spectra over mesh orders side by side: a component that follows the mesh lies level."""
     valid = highest_valid_order(run, signal.mesh)
     last = max(min(MAPPED, valid), 1)
     amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
@@ -232,7 +232,7 @@ def _order_notes(made: Waterfall, along: FloatArray, top: float) -> Iterator[Not
 
 
 def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
-    """Name every mode where the run is slowest: what moves most, and its frequency there."""
+    """Return a note on every mode where the run is slowest: the part that moves most, and its frequency."""
     start = int(np.argmin(along))
     for mode in modes:
         at = float(mode.frequency[start])
@@ -301,7 +301,7 @@ def has_orders(run: RunResult, mesh: int = 0) -> bool:
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:
-    """Return where what is heard of a run is loudest; None of a run without orders.
+    """Return the time at which the signal of a run is loudest; None: the run has no orders.
 
     Raises `BadInput`: it does not vary.
     """

@@ -1,4 +1,4 @@
-"""What of a run is shown: its view, its signal along one direction, and its series."""
+"""View of a run in a report: the chosen series, its direction, and the scale of amplitudes."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.listen.run import DIRECTIONS, PRINCIPAL
 from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
-MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
+MONOTONE = 0.2  # least change of speed over the highest speed of a run for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
-"""Of an amplitude."""
+"""Factors from a peak amplitude to the amplitude of each scale."""
 
 PITCHES = 3
 STEADY = 0.1
-"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
-ROUNDING = 1e-12  # of the largest value: what varies less is constant
+"""Largest change of speed over a run, relative to the highest speed, at which the run counts as steady."""
+ROUNDING = 1e-12  # variation over the largest value below which a series is constant
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ QUANTITIES = {
 
 @dataclass(frozen=True)
 class RunView:
-    """What a reader wants to see of a run; what is left out, the run decides.
+    """Choices of a reader about the view of a run; the run supplies the fields that are left out.
 
     - `quantity`, one of `QUANTITIES`: the force on bearings, of a run without them that of the mesh
     - `bearing`: where the quantity varies most
@@ -82,7 +82,7 @@ class RunView:
 
 @dataclass(frozen=True)
 class Signal:
-    """What is shown of one run: a series, the row of its first axis, and how amplitudes are written.
+    """A series of one run as shown: the row of its first axis, and the scale of amplitudes.
 
     `part` names the bearing or the mesh, `mesh` is that whose orders are shown, `orders` are those named.
     """
@@ -98,7 +98,7 @@ class Signal:
 
     @property
     def name(self) -> str:
-        """What and where, and along which direction if that is named."""
+        """The quantity with its bearing or mesh, and the direction if one is named."""
         where = f"bearing {self.part}" if self.quantity.part == "bearing" else self.part
         along = {"": "", PRINCIPAL: " along its principal direction"}.get(
             self.direction, f" along {self.direction}"
@@ -121,7 +121,7 @@ class Signal:
         return f"{self.quantity.unit} {self.scale}"
 
     def components(self, run: RunResult) -> dict[str, FloatArray]:
-        """Return the components (n,) over time by name, in the unit; those that stay at zero are left out."""
+        """Return the components (n,) over time by name, in the unit, without components that stay at zero."""
         values = self.quantity.factor * getattr(run, self.quantity.series)[self.row]
         if values.ndim == 1:
             return {"": values}
@@ -139,7 +139,7 @@ class Signal:
 
 
 def selected_signal(run: RunResult, view: RunView) -> Signal:
-    """Find what the view names in a run.
+    """Return the signal of a run that the view names.
 
     Raises `BadInput`: the run has no such quantity, part or order, or the view no such window or scale.
     """
@@ -167,7 +167,7 @@ def selected_signal(run: RunResult, view: RunView) -> Signal:
 
 
 def same_view(view: RunView, signal: Signal) -> RunView:
-    """Return the view that shows of another run what `signal` shows of the first."""
+    """Return the view that shows the same signal of another run as `signal` of the first."""
     quantity = next(name for name, value in QUANTITIES.items() if value is signal.quantity)
     bearing = signal.part if signal.quantity.part == "bearing" else ""
     return replace(view, quantity=quantity, bearing=bearing)
@@ -195,7 +195,7 @@ def run_axis(run: RunResult, time: FloatArray, mesh: int = 0) -> tuple[Axis, Flo
 
 
 def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
-    """Return the axis of what is at speeds (rad/s) over time: the speed where it rises or falls all along."""
+    """Return the axis of values at speeds (rad/s) over time: the speed if it rises or falls all along."""
     speed = speed * 30.0 / np.pi
     steps = np.diff(speed)
     swept = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
@@ -211,7 +211,7 @@ def decibels(values: FloatArray, floor: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Travel:
-    """How the driving gear of a mesh moves over a run: speed (n,) without sign, position (n,) not wrapped.
+    """Motion of a mesh's driving gear over a run: speed (n,) without sign, position (n,) not wrapped.
 
     Positions are in base pitches, without gears of the shaft in turns.
     """
@@ -235,7 +235,7 @@ class Travel:
 
 
 def travel(run: RunResult, mesh: int = 0) -> Travel:
-    """Return the way of one mesh; of a run without meshes that of its leading shaft."""
+    """Return the travel of one mesh; of a run without meshes the travel of its leading shaft."""
     speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, mesh))]) * 30.0 / np.pi
     if run.mesh:
         return Travel(speed, np.abs(np.unwrap(run.position[mesh], period=1.0)))
@@ -250,7 +250,7 @@ def validity(valid_order: int, top: float, of: str = "mesh") -> str:
 
 
 def counted_by(run: RunResult) -> str:
-    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    """Return the base of a run's orders: "mesh", or "shaft" if the run has no mesh."""
     return "mesh" if run.mesh else "shaft"
 
 
@@ -290,7 +290,7 @@ def along_direction(run: RunResult, signal: Signal) -> RunResult:
 
 
 def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:
-    """Return what is shown of a run as a recording in the signal's unit; of bearings along one direction.
+    """Return the signal of a run as a recording in its unit, for bearings along one direction.
 
     Raises `BadInput`: it does not vary, or the run is shorter than 4 samples.
     """
@@ -311,7 +311,7 @@ def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_R
 
 
 def _axis(run: RunResult, signal: Signal) -> tuple[FloatArray, str]:
-    """Return the direction (3,) of a vector that is heard, and what to say of it beside the signal's name."""
+    """Return the direction (3,) of a vector signal, and the remark on it for the signal's name."""
     if signal.direction not in ("", PRINCIPAL):
         return np.eye(3)["xyz".index(signal.direction)], ""
     values = getattr(run, signal.quantity.series)[signal.row]

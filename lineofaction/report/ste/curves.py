@@ -27,21 +27,22 @@ from lineofaction.report.drawing.figure import (
 
 POINTS_PER_PITCH = 240
 POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
-MAX_PITCHES = 40  # of a long period
-MAX_LINES = 5  # of loads in one panel
+MAX_PITCHES = 40  # most base pitches of a long period in a plot
+MAX_LINES = 5  # most loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
-"""By load: figures of one page share them."""
+"""Curves of a database by load index: figures of one page share them."""
 _EQUAL = 1e-6
 MAX_CURVES = 8
-_MIN_SPACING = 1.1  # of what would let two neighbors touch
-_MIN = 0.15  # of the largest ripple, between neighbors that would not touch anyway
-_ROOM = 0.04  # of the height
+_MIN_SPACING = 1.1  # least distance of two curves over the distance at which they would touch
+_MIN = 0.15  # least distance of curves that would not touch anyway, over the largest ripple
+_ROOM = 0.04  # margin above and below the curves over the height
 _TONES = 3
 _MIN_ROOM, _MAX_ROOM = 0.08, 0.45
-"""Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
-_FLAT = 1e-3  # µm, the height of a curve without any ripple
+"""Least and largest room above and below the ripple, over the ripple. The error band fills the room up to the
+largest, so that the ripple takes at least half of the height."""
+_FLAT = 1e-3  # height of a curve without any ripple, µm
 
 
 def aligned_index(database: SteDatabase) -> tuple[int, int]:
@@ -62,7 +63,7 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
 
 
 def drawn_pitches(database: SteDatabase) -> int:
-    """Return how many base pitches plots show: two, or a longer period up to its first 40."""
+    """Return the number of base pitches in plots: two, or a longer period up to its first 40."""
     return 2 if database.period == 1 else min(database.period, MAX_PITCHES)
 
 
@@ -144,7 +145,7 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
 
 
 def few_loads(database: SteDatabase, maximum: int = MAX_LINES) -> tuple[int, ...]:
-    """Return the indices of the loads shown, at most `maximum`: those nearest to evenly spaced torques."""
+    """Return the indices of the shown loads, at most `maximum`, nearest to evenly spaced torques."""
     loads = np.array(drawn_loads(database))
     if loads.size <= maximum:
         return drawn_loads(database)
@@ -179,7 +180,7 @@ def headline_load(database: SteDatabase, force: float | None = None) -> int:
 
 
 def pair_count_text(database: SteDatabase, load: int) -> str:
-    """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
+    """Return text on the tooth pairs that carry one load of the aligned pair, as "2 to 4 tooth pairs"."""
     low, high = pair_range(database, load)
     if low == high:
         return f"{low} tooth {'pair carries' if low == 1 else 'pairs carry'} the load at every position"
@@ -197,7 +198,7 @@ def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
     """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
     counts = _counts(database, load)
     low, high = counts.min(), counts.max()
-    if low == high or database.facts.base_helix_angle != 0.0:
+    if low == high or database.geometry.base_helix_angle != 0.0:
         return False
     m, d = aligned_index(database)
     ste = database.static_transmission_error[:, load, m, d]
@@ -303,7 +304,7 @@ def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, 
 
 
 def _bands(ripple: Panel) -> str:
-    """Say what the bands are, where there are any, and which are cut."""
+    """Return a sentence on the error bands, if any, and on cut bands."""
     if not any(line.has_band for line in ripple.lines):
         return ""
     said = "Bands: half the error of peak-to-peak on either side"

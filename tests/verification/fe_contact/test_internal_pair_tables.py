@@ -47,9 +47,9 @@ def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() ->
         center_distance_changes=[-1e-4, 0.0, 2e-5],
     )
     assert np.abs(found.no_load_transmission_error).max() < 1e-15
-    assert found.facts.internal
-    assert found.facts.center_distance * math.cos(found.facts.working_pressure_angle) == pytest.approx(
-        found.facts.base_radius[1] - found.facts.base_radius[0], rel=1e-14
+    assert found.geometry.internal
+    assert found.geometry.center_distance * math.cos(found.geometry.working_pressure_angle) == pytest.approx(
+        found.geometry.base_radius[1] - found.geometry.base_radius[0], rel=1e-14
     )
 
 
@@ -144,7 +144,7 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
     recipe = SectorRecipe(
         **{name: part * MODULE for name, part in sizes.items()}, layers=6, merge_rows=(), land_elements=1
     )
-    made = FaceDiscretization((recipe, recipe), (recipe, recipe), slices=11, most_slices=11)
+    made = FaceDiscretization((recipe, recipe), (recipe, recipe), slices=11, max_slices=11)
     contact = pair_contact(pair, replace(plan, discretization=made), cache=None)
     problem, solution = contact.solve(model, np.array([0.3, 0.45, 0.6]), load)
     force, face = solution.force[:, 0], problem.candidates.face_position

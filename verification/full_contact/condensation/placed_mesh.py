@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.flank.involute import involute_normal
 from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.involute import involute_normal
 from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.quadratic_mesh import QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits
@@ -47,9 +47,9 @@ class PlacedBody:
     bore_nodes: IntArray
     """Nodes of the bore, or of the outside of a ring gear's rim. Shape (b,)."""
     center: FloatArray
-    """m. Shape (2,)."""
+    """Center of the gear, m. Shape (2,)."""
     strips: Mapping[int, Strip]
-    """By pair index."""
+    """Strips of the flanks by pair index."""
 
 
 def placed_bodies(

@@ -1,6 +1,8 @@
 """Sites where tooth pairs may touch at one position, and the element sizes on their flanks.
 
-Hertz' half-width decides element sizes and the length of the strips, and nothing else.
+The slave is the gear whose flank carries the pressure, the mate or master the other one. A strip is the
+stretch of a flank on which pressure may act. Hertz' half-width decides element sizes and the length of the
+strips, and nothing else.
 """
 
 from __future__ import annotations
@@ -19,9 +21,13 @@ from verification.full_contact.condensation.resolution import Resolution
 STRIP, MATE_STRIP = 2.0, 2.5
 """Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
 TOUCHING, MARGINS = 1.6, (0.4, 0.9)
-"""On the path: how far apart flanks are at the ends of strips, as such widths; what is added to either."""
+"""Strips on the path of contact, in half-widths of the whole load on one pair: half-width that closes the gap
+at the ends of a strip, and margins added to the strips of slave and master.
+"""
 SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
-"""Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
+"""Search of the closest point on the mate: half-widths on either side, number of samples, and step of the
+samples that carry an element size.
+"""
 NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
 """Half-widths from a tip edge within which its elements are fine, and their size over the distance to it."""
 
@@ -32,10 +38,10 @@ class SizedStrip:
 
     low: float
     high: float
-    """`low`, `high`: Flank coordinates of its ends, m."""
+    """`low`, `high`: Flank coordinates of the ends of the strip, m."""
     at: FloatArray
     size: FloatArray
-    """`at`, `size`: Flank coordinates and the element sizes wanted there, m. Shape (k,) each."""
+    """`at`, `size`: Flank coordinates of samples, and the element sizes there, m. Shape (k,) each."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +51,9 @@ class ContactSite:
     ahead: int
     """Index of the pair; 0 is the reference pair, +1 is ahead."""
     slave: int
-    """0 or 1: the gear whose flank carries the pressure; the other one has the nearer tip edge."""
+    """Number of the gear whose flank carries the pressure, 0 or 1; the other gear has the nearer tip edge."""
     strips: tuple[SizedStrip, SizedStrip]
-    """On gear 1 and gear 2. Shape (SizedStrip, SizedStrip)."""
+    """Strips on gear 1 and gear 2. Shape (SizedStrip, SizedStrip)."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +65,7 @@ class Range:
     lag: float
     """Largest lag of the driven gear, m."""
     longer: float = 1.0
-    """Strips are that many times as long as usual."""
+    """Length of the strips over the usual length."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,7 @@ def contact_sites(
     return tuple(sites)
 
 
-def least_gap_left_out(pair: ParallelAxes, position: float, sites: tuple[ContactSite, ...]) -> float:
+def least_omitted_gap(pair: ParallelAxes, position: float, sites: tuple[ContactSite, ...]) -> float:
     """Return the least gap of the rigid gears at a pair that is no site, m; infinite if there is none."""
     neighbors = np.array([sites[0].ahead - 1, sites[-1].ahead + 1])
     rolls = pair.roll_lengths(position, neighbors)[0]
@@ -125,7 +131,7 @@ def _corner(pair: ParallelAxes, roll: float) -> CornerContact:
 
 
 def _corner_gap(pair: ParallelAxes, roll: float) -> float:
-    """Return its gap, infinite where the edge meets no involute, less what a flank has too much of."""
+    """Return the gap of a tip edge, infinite where it meets no involute, less excess material."""
     gap = float(_corner(pair, roll).gap)
     if not math.isfinite(gap):
         return math.inf

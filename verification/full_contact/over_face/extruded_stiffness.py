@@ -28,7 +28,7 @@ class ExtrudedStiffness:
     """Stiffness of all unknowns of half the face."""
 
     matrix: sp.csc_array
-    """N/m. (m, m) sparse array."""
+    """Stiffness of the body, N/m. (m, m) sparse array."""
     node: IntArray
     component: IntArray
     function: IntArray
@@ -36,7 +36,7 @@ class ExtrudedStiffness:
     each unknown. Shape (m,) each.
     """
     layers: int
-    """Functions up to this number are hats, those beyond bubbles."""
+    """Number of functions that are hats; the later ones are bubbles."""
 
 
 def extruded_stiffness(

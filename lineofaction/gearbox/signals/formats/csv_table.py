@@ -18,7 +18,7 @@ _REMEDY = "For example: time_s,speed_rpm,torque_n_m."
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
-    """Yield the columns beside the time; raises `UnusableFile`: a line holds something else than numbers."""
+    """Yield the columns except the time; raises `UnusableFile`: a line holds something else than numbers."""
     try:
         with file.open(encoding="utf-8-sig", newline="") as stream:
             heading = [name.strip() for name in next(csv.reader(stream), [])]
@@ -34,7 +34,7 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
 
 
 def _scale(heading: Sequence[str]) -> float:
-    """Return what one of the times is in s."""
+    """Return the unit of the times in s."""
     scale = TIMES.get(heading[0]) if heading else None
     if scale is None or len(set(heading)) < len(heading):
         raise UnusableFile(f"a CSV file whose first column is {' or '.join(TIMES)}, each name once", _REMEDY)

@@ -1,4 +1,4 @@
-"""HDF5 files: vectors of numbers with a time or a sample rate beside them, by h5py."""
+"""HDF5 files: vectors of numbers with their times or sample rate, by h5py."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
 _UNIT_ATTRIBUTES = ("unit", "units")
 _DEPTH, _MAX_ENTRIES = 4, 4096
-_LONGEST = 256  # characters of an attribute
+_LONGEST = 256  # most characters of an attribute
 _REMEDY = "Store a dataset time_s beside the vectors, or an attribute sample_rate_hz."
 
 
@@ -37,7 +37,7 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
 
 
 class _Walk:
-    """Goes through the groups of a file, and counts what it meets."""
+    """A walk through the groups of a file that counts the objects in them."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names, self.budget, self.entries = names, SampleBudget(), 0

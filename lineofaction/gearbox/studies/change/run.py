@@ -1,4 +1,4 @@
-"""What a change of flanks brings in a scene, over one sample of tolerances."""
+"""Study of a change of flanks in a scene, over one sample of tolerances."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.tolerance_study import ToleranceRequest
 from fe_contact.types import FloatArray
 from host import cpu_seconds
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -47,9 +48,9 @@ from model_studies.progress import announce
 from model_studies.stage_clock import StageClock
 
 IN_A_TASK = 5
-"""Pairs of a task: some seconds. It does not depend on who does the tasks."""
+"""Number of pairs in a task, which takes some seconds. The number is the same for any executor."""
 MAX_PAIRS = 10_000
-"""Of a job: two contact solutions each."""
+"""Most pairs of a job: each takes two contact solutions."""
 _TABLE = 0.08
 """CPU seconds of errors and forces of the table of a pair, measured 0.11 at 12 loads and 192 positions."""
 GEARS = ("pinion", "wheel")
@@ -59,7 +60,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
     inputs, answer, file = Inputs, ChangeFigures, record_file(("change", FlankChange))
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
+        """Refuse another pair than the scene's, impossible tolerances, and a quantity that it lacks."""
         if inputs.tolerances.samples > MAX_PAIRS:
             raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MAX_PAIRS}")
         check_receiver(scene, inputs.heard)
@@ -69,7 +70,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             _designs(mesh.case, inputs)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what transfer functions and pairs take; gears are condensed with the scene's table."""
+        """Return the cost of transfer functions and pairs; gears are condensed with the scene's table."""
         mesh = flank_mesh(scene, inputs.mesh)
         if mesh.case is None:
             return None
@@ -158,7 +159,7 @@ def _quantiles(nominal: float, band: FloatArray) -> Json:
 
 
 def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceRequest]:
-    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy those of a case.
+    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy of a case.
 
     Raises `BadInput`.
     """
@@ -211,7 +212,7 @@ def _level_model(
     inputs: Inputs,
     means: Means,
 ) -> tuple[HeardFlanks, list[tuple[FlankLevels, FloatArray]], float]:
-    """Return the scene in which flanks are heard, both designs with their errors, and CPU seconds of one."""
+    """Return the scene prepared for other flanks, both designs with their errors, and CPU seconds of one."""
     assert mesh.case is not None
     database, cache = subject.databases[mesh.name], means.home / "compliance"
     bodies = condensed_pair(

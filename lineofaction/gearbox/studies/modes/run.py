@@ -13,7 +13,7 @@ from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.linearize.modal_analysis import resolved_to
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull
@@ -37,7 +37,7 @@ MAX_GROUPS = 12
 
 
 def modes_cost(system: System, speeds: int) -> StudyCost:
-    """Return what the modes of a system at rest and at so many speeds take."""
+    """Return the cost of the modes of a system at rest and at a number of speeds."""
     freedoms = system.freedoms.column.size
     at_rest, per_speed = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
     return StudyCost((Work("modes at rest", at_rest), Work("modes at speed", per_speed, speeds)))
@@ -47,7 +47,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the modes at rest and at every speed take, by the number of freedoms.
+        """Return the cost of the modes at rest and at every speed, by the number of freedoms.
 
         Modes that a solid housing keeps are not known before and do not count.
         """
@@ -122,7 +122,7 @@ def surface_shape(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
 
     if not modes.surface_motion.size:
         return None
-    hulls = [Hull.of(part) for part in modes.facts[UNIT] if part["kind"] == HOUSING]
+    hulls = [Hull.of(part) for part in modes.metadata[UNIT] if part["kind"] == HOUSING]
     first = np.cumsum([0] + [len(hull.points) for hull in hulls])
     facets = [hull.facets + start for hull, start in zip(hulls, first[:-1], strict=True)]
     motion = np.asarray(modes.surface_motion @ shape, dtype=complex)
@@ -146,7 +146,7 @@ def _over_speed(modes: ModalAnalysis, mode: int) -> Json:
 
 
 def _crossing(modes: ModalAnalysis, index: int) -> Json:
-    """Return a critical speed; what the mode is, at the nearest of the speeds."""
+    """Return a critical speed, with the mode's description at the nearest of the speeds."""
     mode, speed = int(modes.critical_mode[index]), float(modes.critical_speed[index])
     known = np.isfinite(modes.frequency[:, mode])
     row = int(np.argmin(np.where(known, np.abs(modes.speed - speed), np.inf)))

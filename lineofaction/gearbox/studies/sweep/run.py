@@ -19,7 +19,8 @@ from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
 from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_at, operating_point
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
@@ -32,22 +33,22 @@ from lineofaction.gearbox.units import UM, factor, unit_name
 
 STEPS = 9
 """Values of an axis whose range is not given."""
-_MIN_TORQUES = 3  # fewer torques of a case are no range
-_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center distance
-_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+_MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
+_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
+_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 
 
 @dataclass(frozen=True)
 class _Swept:
-    """Something of a case that can be swept."""
+    """A variable of a case that can be swept."""
 
     name: str
-    """Of a `SweepAxis`."""
+    """Name of the `SweepAxis`."""
     path: str
-    """As in the case file; ``*`` stands for both gears."""
+    """Path of the field in the case file; ``*`` stands for both gears."""
     description: str
     what: Figure | None = None
-    """The declaration of a figure of the flanks."""
+    """Declaration of the figure of the flanks; None for torque, misalignment and center distance."""
 
     @property
     def unit(self) -> str:
@@ -66,7 +67,7 @@ class _Swept:
 
     @property
     def spellings(self) -> set[str]:
-        """What it may be called: the path, its last names, and these without the unit."""
+        """The accepted names: the path, the ends of the path, and both without the unit."""
         names = self.path.split(".")
         minimum = 2 if self.what is not None and "*" not in names else 1
         tails = {".".join(names[-count:]) for count in range(minimum, len(names) + 1)}
@@ -91,7 +92,7 @@ SWEEPABLE = {
         ),
     )
 }
-"""By the name of their `SweepAxis`."""
+"""Variables by the name of their `SweepAxis`."""
 
 
 def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
@@ -129,7 +130,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         size, kind = swept.what.boundary_value(reference_value), swept.what.what.kind
         if kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
+        return _evenly(-2.0 * size if kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
         loads = case.load.torque_n_m or [
             float(pair.torque(force)) for force in case.load.normal_force_n or ()
@@ -154,11 +155,11 @@ class _Quantity:
 
     description: str
     unit: str
-    """`description`, `unit`: As drawn."""
+    """`description`, `unit`: Words and unit as plots show them."""
     one: float
     """The SI value of one unit."""
     field: str
-    """In JSON and CSV, with ``{}`` where ``_error`` stands in the name of the error."""
+    """Name of the field in JSON and CSV; ``{}`` stands where the name of the error has ``_error``."""
 
     @property
     def label(self) -> str:
@@ -175,15 +176,15 @@ QUANTITIES = {
     "max_pressure": _Quantity("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
     "face_load_factor": _Quantity("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
 }
-"""By name in `fe_contact.microgeometry.sweep.SWEPT`."""
+"""Quantities by their name in `fe_contact.microgeometry.sweep.SWEPT`."""
 
 
 @brief
 @dataclass(frozen=True)
 class SweepResult:
-    """A sweep, and which of its quantities are shown.
+    """A sweep, and the quantities that are shown.
 
-    `shown`: of `QUANTITIES`, those that there are.
+    `shown` are names of `QUANTITIES` that the sweep has values of.
     """
 
     sweep: Sweep
@@ -191,7 +192,7 @@ class SweepResult:
 
     @property
     def axes(self) -> tuple[_Swept, ...]:
-        """What is swept."""
+        """The swept variables."""
         return tuple(SWEEPABLE[name] for name in self.sweep.axes)
 
     @property
@@ -235,7 +236,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             _ = case.request(_request, inputs).checked
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies and every design at all torques take."""
+        """Return the cost of the bodies and of every design at all torques."""
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)
@@ -243,7 +244,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
-        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
+        """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""
         with boundary_errors():
             run = means.analysis
             result = sweep(case.request(_request, inputs), run)

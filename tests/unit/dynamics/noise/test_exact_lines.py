@@ -89,7 +89,7 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The line takes the knot between two octaves out; panels of the lower one do not resolve it."""
-    known, model = radiation().facts.resolved_frequency, ElementalRadiators()
+    known, model = radiation().metadata.resolved_frequency, ElementalRadiators()
     point = (0, 0)
     hertz = float(response().frequency[point])
     between, high = 1.012 * hertz, 1.8 * hertz
@@ -129,7 +129,7 @@ def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(
     made = corrected_radiation(driven, body, None, estimated_radiation(body, monopoles, AIR))
     sound = radiated_sound(driven, body, None, made.radiation)
     points = [tuple(np.argwhere(driven.frequency == each.frequency)[0]) for each in made.lines]
-    assert made.lines and not made.left_out
+    assert made.lines and not made.omitted
     for each, point in zip(made.lines, points, strict=True):
         exact = plane[point] * sphere_efficiency(1, float(ka[point]))
         assert 10.0 * np.log10(sound.power[point] / exact) == pytest.approx(0.0, abs=0.3)
@@ -142,10 +142,10 @@ def test_lines_beyond_the_budget_and_without_the_library_are_named(
     estimate: EstimatedRadiation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made = corrected_radiation(response(), housing(), None, estimate, budget=1.0)
-    assert not made.lines and "of 1 CPU s" in made.left_out[0]
+    assert not made.lines and "of 1 CPU s" in made.omitted[0]
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     made = corrected_radiation(response(), housing(), None, estimate)
-    assert made.radiation is estimate and "lineofaction[boundary-elements]" in made.left_out[0]
+    assert made.radiation is estimate and "lineofaction[boundary-elements]" in made.omitted[0]
 
 
 def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> None:

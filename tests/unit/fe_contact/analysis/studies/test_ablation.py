@@ -22,7 +22,7 @@ from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
-from model_studies.workers import RunCost, executor
+from model_studies.workers import RunCost, dispatch
 
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
 PAIR = GearPair(RELIEVED, GEAR)
@@ -75,7 +75,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
     """`start`: seconds that pay for workers, in those that one of the tables takes."""
     request = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
     seconds = request.predicted(request.planned(None), None, with_errors=False).cpu_seconds
-    monkeypatch.setattr(executor, "START_SECONDS", start * seconds)
+    monkeypatch.setattr(dispatch, "START_SECONDS", start * seconds)
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
     only, names = ["tooth_coupling", "corner_contact", "profile_modification"], set()
 
@@ -93,7 +93,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
 
 
 def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
-    assert made.left_out == {"misalignment": "the gears are aligned"}
+    assert made.omitted == {"misalignment": "the gears are aligned"}
     assert [entry.name for entry in made.effects] == [
         "tooth_coupling", "corner_contact", "profile_modification", "finite_width",
     ]  # fmt: skip
@@ -129,7 +129,7 @@ def test_what_no_plane_holds_stays_in() -> None:
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
     made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])  # type: ignore[arg-type]
     assert made.effects == ()
-    assert "misalignments" in made.left_out["face_load_distribution"]
+    assert "misalignments" in made.omitted["face_load_distribution"]
 
 
 def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:

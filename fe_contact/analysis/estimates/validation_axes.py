@@ -1,4 +1,7 @@
-"""Interpolation error of a table between the nodes of its axes, measured at points it does not hold."""
+"""Interpolation error of a table between the nodes of its axes, measured at held-out points.
+
+A held-out point is solved, but is no node of the table.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_contact.analysis.estimates.held_out_alignments import HeldOutAlignments, first_pitch
-from fe_contact.analysis.estimates.held_out_loads import HeldOutLoads
 from fe_contact.analysis.estimates.interval_goal import GoalOf
+from fe_contact.analysis.estimates.validation_alignments import ValidationAlignments, first_pitch
+from fe_contact.analysis.estimates.validation_loads import ValidationLoads
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.errors import DatabaseError
 from fe_contact.sampled import sampled_positions
@@ -33,11 +36,13 @@ class AxisError:
     (I, L) or (I, 1).
     """
     change: FloatArray
-    """What that does to mean, peak-to-peak and harmonics, m. Ndarray, shape (23, I, L) or (23, I, 1)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out point, m. Ndarray, shape
+    (23, I, L) or (23, I, 1).
+    """
     inserted: FloatArray
-    """Values beside those requested, with which the table has these errors. Shape (n,)."""
+    """Values that were inserted between the requested ones. Shape (n,)."""
     limit: str = ""
-    """Why intervals that miss a tolerance got no further value; empty where all meet it."""
+    """Reason why intervals that miss a tolerance got no further value; empty where all meet it."""
 
     def to_json(self) -> Json:
         """Return plain JSON; intervals without a solution hold null."""
@@ -47,18 +52,18 @@ class AxisError:
 
 
 @dataclass(frozen=True)
-class HeldOut:
-    """A table with the nodes that were inserted, and what it misses between all of them."""
+class AxisValidation:
+    """A table with its inserted nodes, and its errors between all nodes."""
 
     made: SolvedTable
-    """With its inserted alignments."""
+    """Solved table with its inserted alignments."""
     axes: Mapping[str, AxisError] = field(default_factory=dict)
-    """By the name of the axis."""
+    """Errors of the axes, by the name of the axis."""
     loads: SupportLoads | None = None
     """Solutions at the inserted loads."""
 
 
-def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:
+def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisValidation:
     """Solve held-out points in every interval of every axis that has one.
 
     Positions are some of the table's, so that the axis alone is interpolated; what is missed between
@@ -74,37 +79,37 @@ def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:
 
     Returns
     -------
-    HeldOut
+    AxisValidation
         Without axes for a table with failed points, or whose transmission error does not rise with load
         everywhere: neither can be interpolated.
     """
     table = made.table
     several = [name for name in BETWEEN_NODES if getattr(table, name).size > 1]
     if table.n_failed or not several:
-        return HeldOut(made)
+        return AxisValidation(made)
     try:
         table.ste(table.position[0], table.force[0])
     except DatabaseError:
-        return HeldOut(made)
+        return AxisValidation(made)
     if any(point.derived is not None for point in made.places.places):
         goal_of = None
     axes: dict[str, AxisError] = {}
     for name in (MISALIGNMENT, CENTER_DISTANCE):
         if name in several:
-            errors = HeldOutAlignments(name, goal_of).errors(made)
+            errors = ValidationAlignments(name, goal_of).errors(made)
             made, inserted = errors.made, getattr(errors.made.table, f"inserted_{name}")
             middles = _middles(getattr(made.table, name))
             axes[name] = AxisError(middles, errors.error, errors.change, inserted, errors.limit)
     if "force" not in several:
-        return HeldOut(made, axes)
+        return AxisValidation(made, axes)
     pitch = first_pitch(made.table)
     goal = None if goal_of is None else goal_of(made.table)
     rows = sampled_positions(pitch.position.size)
-    loads = HeldOutLoads(pitch, rows, made.places, made.solved).errors(goal)
+    loads = ValidationLoads(pitch, rows, made.places, made.solved).errors(goal)
     middles = np.sqrt(table.force[1:] * table.force[:-1])
     inserted = np.empty(0) if loads.inserted is None else loads.inserted.force
     of_loads = AxisError(middles, loads.error[:, None], loads.change[..., None], inserted, loads.limit)
-    return HeldOut(made, {"force": of_loads} | axes, loads.inserted)
+    return AxisValidation(made, {"force": of_loads} | axes, loads.inserted)
 
 
 def _middles(nodes: FloatArray) -> FloatArray:

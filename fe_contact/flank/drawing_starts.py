@@ -1,4 +1,4 @@
-"""Where reliefs start as drawings state it (ISO 21771-1): by diameter, roll length or roll angle.
+"""Starts of reliefs as drawings state them (ISO 21771-1): by diameter, roll length or roll angle.
 
 The point of a flank at the roll length l has the roll angle xi = tan(alpha_y) = l/r_b and the diameter
 d_y = d_b sqrt(1 + xi^2).
@@ -24,16 +24,16 @@ from bounds import (
     described,
 )
 from fe_contact.errors import InputError, declared_fields
-from fe_contact.flank.involute import radius_at_roll_length, roll_length_at_radius
 from fe_contact.flank.part import SHORTEST
 from fe_contact.flank.tooth import Tooth
+from fe_contact.involute import radius_at_roll_length, roll_length_at_radius
 
 _REMEDY = "A relief starts on the involute, before the end of the flank to which it runs."
 
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
+    """A coordinate that names a point of a flank, with its conversion to roll length and back."""
 
     text: str
     unit: str
@@ -41,7 +41,9 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Of the base radius in m and the other."""
+    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
+    each returns the other one.
+    """
 
 
 WAYS = {
@@ -73,7 +75,7 @@ def _start(relief: str, way: str, example: float) -> Any:
 
 @described
 @dataclass(frozen=True, kw_only=True)
-class StatedStarts:
+class DrawingStarts:
     """Starts of the reliefs of a gear, each stated in one way or none.
 
     Raises `InputError`: a value out of its bound.
@@ -142,7 +144,7 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     return min(max(length, SHORTEST), abs(gear.tip_radius - gear.form_radius))
 
 
-RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(StatedStarts)))
+RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(DrawingStarts)))
 """The amounts whose length may be stated by its start."""
 
 
