@@ -1,4 +1,8 @@
-"""``loa open``: cases, scene, load cases and account of a REXS file."""
+"""``loa open``: cases, scene, load cases and account of a REXS file.
+
+The account has a line for each component and value of the file, with its fate: taken, assumed, derived,
+defaulted, ignored or refused.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +23,7 @@ from lineofaction.gearbox.schemas.plan import omission_warnings
 def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
     """Open a REXS file: write cases, scene, load cases and account, and print deviations from the file.
 
-    What is left out of the scene comes first and last.
+    The headline names all that is left out of the scene. It is printed before and after the rest.
     """
     unit = OpenedUnit.of(read_rexs(file), [Assumption.of(text) for text in assume])
     folder = output or Path(file.name).with_suffix("")

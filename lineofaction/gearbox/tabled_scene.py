@@ -27,6 +27,7 @@ from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
+# Called with every table that does not meet the tolerance yet, and with what is refined next.
 OnDraft = Callable[[SteDatabase, str], None]
 TableOf = Callable[[int, MeshInput], SteDatabase]
 CachedTable = Callable[[Case], SteDatabase | None]
@@ -109,18 +110,21 @@ def checked_table(checked: CheckedCase, run: Run, on_draft: OnDraft | None = Non
     """Compute the STE database of a case, its warnings in the fields and units of the case."""
     from fe_contact.analysis.analyze import analyze  # noqa: PLC0415 (start-up time)
 
-    request = checked.checked
     with boundary_errors():
-        database = analyze(request, run=run, case=case_json(checked.case), on_draft=on_draft)
-    made = database.metadata
-    if (allowed := allowed_misalignment(checked.case)) is not None:
-        made = replace(made, receipt=made.receipt | {"misalignment_range": allowed.text})
-    warnings = phrased_for(checked.case, made.warnings)
-    return replace(database, metadata=replace(made, warnings=warnings))
+        database = analyze(checked.checked, run=run, case=case_json(checked.case), on_draft=on_draft)
+    metadata = database.metadata
+    allowed = allowed_misalignment(checked.case)
+    if allowed is not None:
+        receipt = metadata.receipt | {"misalignment_range": allowed.text}
+        metadata = replace(metadata, receipt=receipt)
+    warnings = phrased_for(checked.case, metadata.warnings)
+    return replace(database, metadata=replace(metadata, warnings=warnings))
 
 
 class ComputedTables:
     """A source of tables that computes them in this process, and holds none.
+
+    Its methods are generators, as those of sources that wait for a service; they yield nothing.
 
     `compute`: ``compute(case)``, the database of a case.
     """
@@ -130,20 +134,23 @@ class ComputedTables:
 
     def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Refuse: only a service knows hashes."""
-        yield from ()
+        yield from ()  # makes the method a generator
         remedy = "Name the service that holds it: --service http://127.0.0.1:8321"
         raise BadInput.of("database_hash", key, "used together with a service", remedy)
 
     def by_case(self, case: Case) -> Steps[SteDatabase]:
-        """Compute."""
-        yield from ()
+        """Compute the table of a case."""
+        yield from ()  # makes the method a generator
         return self._compute(case)
 
 
 def _pair_geometry(
     index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, cached_table: CachedTable
 ) -> PairGeometry:
-    """Return the facts of a mesh's pair; of a case without computing anything."""
+    """Return the geometry of the pair of a mesh: from its case, or from its table if that is there.
+
+    A case of which no table is cached gives the geometry after its checks alone: nothing is computed.
+    """
     if mesh.case is None or cached_table(mesh.case) is not None:
         return table_of(index, mesh).geometry
     field, checked = f"meshes[{index}]", cases.of(mesh.case)

@@ -1,7 +1,13 @@
 """The scheduler: a thread that claims computations, minds workers, settles ends.
 
-One server owns the job table (`service.store.ownership.Ownership`). If it loses the lock its workers go on,
-and it starts and notes nothing until it has the lock again; if another server has it, they are killed.
+A computation waits in the job table. The scheduler claims it; an attempt is a claim and the worker that a
+crew has started for it. Children of this process are one crew; they end with the server. A Dask cluster is
+the other crew: it `keeps` its workers beyond the end of the server, and the next server finds them by name.
+The end of an attempt is settled: its products are stored, or its computation fails or waits again.
+
+One server owns the job table by a lock (`service.store.ownership.Ownership`). A server that loses the lock
+starts and notes nothing until it has the lock again, while its workers go on. If another server has the lock
+by then, the workers are killed.
 """
 
 from __future__ import annotations
@@ -59,20 +65,25 @@ class Scheduler:
         self._crew: Crew = crew or Children(settings, registry.modules)
         self._store = store
         self._settlement = Settlement(claims, store, settings.attempts, alone=not self._crew.keeps)
+        # the next three by the ids of computations
         self._running: dict[str, Attempt] = {}
-        self._reached: dict[str, tuple[Claim, Reached]] = {}
-        self._begun: set[str] = set()
+        self._progress: dict[str, tuple[Claim, Reached]] = {}  # not yet in the table
+        self._noted_as_begun: set[str] = set()  # whose children have begun, as the table has it
         self._renewal = Renewal(claims, registry, store, settings.data_directory / "work")
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._wake_in: int | None = None
-        self._doubtful = False
-        self._noted_at = self._turned_at = 0.0
+        self._doubtful = False  # whether the table may say of work that it runs, and it does not
+        self._noted_at = 0.0
+        self._turned_at = 0.0
         self.figures = WorkerFigures()
 
     def start(self) -> None:
-        """Take up the work of a dead service, then begin, also after a stop; `BadInput`: no table of ours."""
+        """Take up the work of a dead service, then begin, also after a stop.
+
+        Raises `BadInput`: another server owns the table.
+        """
         self._owner.acquire()
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
@@ -187,6 +198,7 @@ class Scheduler:
 
     def _next(self) -> Claim | None:
         """Claim the next computation; one of another version is renewed before, or ends."""
+        # Only children share a machine: a suspect, which has lost several runs, must have it to itself.
         alongside = bool(self._running) and not self._crew.keeps
         if alongside and any(running.claim.suspect for running in self._running.values()):
             return None
@@ -197,14 +209,14 @@ class Scheduler:
         return None
 
     def _note_runs(self) -> None:
-        """Note which children have begun, for the case that this server ends with them."""
+        """Note in the table which children have begun: if this server dies, their runs count as lost."""
         if self._crew.keeps:
             return
-        running = self._running.values()
-        fresh = [run.claim for run in running if run.worker.begun and run.claim.id not in self._begun]
-        if fresh:
-            self._claims.note_runs(fresh)
-            self._begun.update(claim.id for claim in fresh)
+        claims = [attempt.claim for attempt in self._running.values() if attempt.worker.begun]
+        claims = [claim for claim in claims if claim.id not in self._noted_as_begun]
+        if claims:
+            self._claims.note_runs(claims)
+            self._noted_as_begun.update(claim.id for claim in claims)
 
     def _listen_to_all(self) -> None:
         """Hear workers and wake-ups; wait for one if there is none."""
@@ -219,7 +231,7 @@ class Scheduler:
             process = self._registry[claim.process]
             attempt = begun(self._settings, process, claim, self._crew, self._store, self.figures)
         except _OUTAGES:
-            raise  # what runs by the table alone is put back
+            raise  # the table says that it runs: `_put_back_strays` lets it wait again
         except ServiceError as error:
             self._claims.fail(claim, str(error))
             return
@@ -240,16 +252,19 @@ class Scheduler:
             running.note_end(outcome.name)
         elif steps:
             last = steps[-1]
-            paced = running.fraction.at(last.stage, last.fraction, running.worker.age)
-            known = paced if last.whole is None else last.whole
-            self._reached[running.claim.id] = running.claim, Reached(last.stage, last.fraction, known)
+            # fraction of the whole work: as the worker says, else from the usual shares of the stages
+            whole = last.whole
+            if whole is None:
+                whole = running.fraction.at(last.stage, last.fraction, running.worker.age)
+            self._progress[running.claim.id] = running.claim, Reached(last.stage, last.fraction, whole)
 
     def _forget(self, running: Attempt) -> Run:
+        """Take an attempt from those that run; return its worker, which may not have ended."""
         if running.worker.channel is not None:
             self._selector.unregister(running.worker.channel)
         del self._running[running.claim.id]
-        self._reached.pop(running.claim.id, None)
-        self._begun.discard(running.claim.id)
+        self._progress.pop(running.claim.id, None)
+        self._noted_as_begun.discard(running.claim.id)
         return running.worker
 
     def _kill(self, running: Attempt, why: str, failure: str = "", patience_s: float | None = None) -> None:
@@ -269,7 +284,7 @@ class Scheduler:
                 raise
             except ServiceError:
                 logger.exception("outcome could not be settled", computation=ended.attempt.claim.id)
-            ended.attempt.worker.kill()
+            ended.attempt.worker.kill()  # a cluster keeps outcomes until then
             self._unsettled.pop(0)
 
     def _known(self) -> list[Attempt]:
@@ -301,7 +316,10 @@ class Scheduler:
         self._doubtful = True
 
     def _put_back_strays(self) -> None:
-        """Put back computations that run by the table only: a step broke off, or another server died."""
+        """Put back computations that run according to the table, but have no worker of this server.
+
+        A step of the scheduler that failed half-way leaves them, or another server that died.
+        """
         if not self._doubtful:
             return
         known = {run.claim.id for run in self._known()}
@@ -311,7 +329,10 @@ class Scheduler:
         self._doubtful = False
 
     def _take_up(self) -> None:
-        """Find running work of a dead service, or let it wait: only begun work has lost a run."""
+        """Find the work of a dead service again, if the crew kept it; else let it wait, or fail.
+
+        A child that had begun has lost a run. Computations that lose several runs fail in the end.
+        """
         for claim in self._claims.running():
             if claim.program != self._claims.program:
                 self._claims.put_back(claim, "Waits: the service was upgraded.", counted=False)
@@ -323,9 +344,9 @@ class Scheduler:
 
     def _note_progress(self) -> None:
         """Write down how far works are, at most every `_NOTED_EVERY_S`."""
-        if self._reached and time.monotonic() - self._noted_at > _NOTED_EVERY_S:
-            self._claims.progress(list(self._reached.values()))
-            self._reached.clear()
+        if self._progress and time.monotonic() - self._noted_at > _NOTED_EVERY_S:
+            self._claims.progress(list(self._progress.values()))
+            self._progress.clear()
             self._noted_at = time.monotonic()
 
     def _enforce_deadline(self) -> None:

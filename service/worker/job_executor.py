@@ -25,24 +25,27 @@ R = TypeVar("R")
 def table_workers(order: WorkOrder) -> Iterator[Workers]:
     """Provide the workers of tables, as `cluster_of`, with their finished tasks stored until the job ends.
 
-    An attempt after one that died finds it in the workspace. Gears are kept in the cache of the service.
+    The tasks are stored in the workspace of the job: after an attempt that died, the next one finds them
+    there. Condensed gears are stored in the cache of the service instead.
     """
     with cluster_of(order) as workers:
+        # of the service, and of the solver of contact: tasks of another version are computed again
         version = f"{solver_version()} {SOLVER_VERSION}"
         yield Remembering(workers, order.workspace / "tasks", version)
 
 
 @contextmanager
 def cluster_of(order: WorkOrder) -> Iterator[Workers]:
-    """Provide the workers of a job: the cluster's, if the service has one, as long as it has workers.
+    """Provide the workers of a job: those of the cluster of the service, or else this process.
 
-    A job does not fail because a cluster is away: it takes longer, and gives the same bits. What the cluster
-    leaves is done in this process; the log says so, with the reason, and the receipt of a table.
+    A job does not fail because a cluster is away: it takes longer, and gives the same bits. This process does
+    the tasks that the cluster has not done. The log says so, with the reason, and so does the receipt of a
+    table.
     """
     if order.scheduler is None:
         yield InProcess()
         return
-    cluster = _WhenNeeded(order.scheduler, order.workspace / PARTS)
+    cluster = _DeferredCluster(order.scheduler, order.workspace / PARTS)
     try:
         yield OrHere(cluster, partial(logger.warning, "cluster away, the job goes on here: %s"))
     finally:
@@ -51,17 +54,20 @@ def cluster_of(order: WorkOrder) -> Iterator[Workers]:
 
 
 @dataclass(frozen=True)
-class _WhenNeeded:
-    """A cluster that the first run connects to: small jobs have none, and connecting costs a second."""
+class _DeferredCluster:
+    """A cluster that the first run connects to: small jobs need none, and the connection takes a second."""
 
     scheduler: str
-    note: Path
+    marker: Path
+    """File `PARTS` of the workspace: it exists once the job gives tasks to the cluster."""
     cost: RunCost = field(default_factory=RunCost, compare=False)
     connected: list[ByDask] = field(default_factory=list, compare=False)
+    """The connection, after the first run; empty before."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         if not self.connected:
-            self.note.touch()  # a Dask worker that waits for this job lends its thread to the parts
+            # A Dask worker that only waits for this job sees the file, and frees its thread for the tasks.
+            self.marker.touch()
             self.connected.append(_connected(self.scheduler, self.cost))
         return self.connected[0].run(function, shared, items)
 

@@ -25,7 +25,7 @@ verbs = typer.Typer()
 
 @dataclass(frozen=True)
 class _HeardOptions:
-    """Options that choose the quantity of a run that is heard."""
+    """Options that choose the quantity of a run that is heard; the fields are those of `RunView`."""
 
     quantity: Annotated[
         str,
@@ -50,7 +50,10 @@ class _HeardOptions:
 
 @dataclass(frozen=True)
 class _HousingOptions:
-    """Options that choose the point or microphone at which a scene's housings are heard."""
+    """Options that choose the point or microphone at which a scene's housings are heard.
+
+    The fields are parameters of `listen.run_listen`.
+    """
 
     scene: Annotated[
         Path | None,

@@ -18,12 +18,12 @@ from lineofaction.gearbox.units import RPM
 
 FIELD = "signal"
 MAX = 100_000
-"""Times that a course of a scene may have."""
+"""Largest number of instants of the course of a speed or a torque in a scene."""
 _REMEDY = "Give average_s, the length of time over which the channel is averaged, or start_s and end_s."
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the recording and send its numbers."
 
 FloatArray = NDArray[np.float64]
-Find: TypeAlias = Callable[[str, str], Path]
+Find: TypeAlias = Callable[[str, str], Path]  # find(name of the file, field that names it): its path
 Table = dict[str, Any]
 
 
@@ -65,12 +65,14 @@ class LoadSignalInput(BoundaryModel):
 
 
 class _Course(NamedTuple):
-    """Field of a part that takes a channel: its name, the quantity, and the SI value of one unit."""
+    """Field of a part of a scene that a channel fills."""
 
     field: str
     quantity: str
     si: float
-    others: tuple[str, ...]
+    """Value of one unit of the field in SI."""
+    exclusive: tuple[str, ...]
+    """Fields of the part that must be absent where a channel is named."""
 
 
 _COURSES = {
@@ -82,8 +84,9 @@ _COURSES = {
 def with_load_signals(table: Table, find: Find, *, read: bool) -> Table:
     """Return the table of a scene with times and values in place of the recordings that it names.
 
-    Raises `BadInput`: a recording is named beside the values, is not to be read here, or cannot be; has no
-    such channel, another unit, or too many samples.
+    `find` gives the path of a recording; without `read` a recording is refused. Raises `BadInput`: a part has
+    both a recording and values; a recording is refused or cannot be read; it has no such channel, another
+    unit, or too many samples.
     """
     changed = dict(table)
     for kind, course in _COURSES.items():
@@ -99,9 +102,10 @@ def _written_out(part: object, course: _Course, find: Find, path: str, *, read: 
     if not isinstance(part, dict) or FIELD not in part:
         return part
     field = f"{path}.{FIELD}"
-    others = [name for name in course.others if name in part]
-    if others:
-        raise BadInput.of(f"{path}.{others[0]}", part[others[0]], f"left out beside {FIELD}", "Keep one.")
+    conflicts = [name for name in course.exclusive if name in part]
+    if conflicts:
+        name = conflicts[0]
+        raise BadInput.of(f"{path}.{name}", part[name], f"left out beside {FIELD}", "Keep one.")
     try:
         signal = LoadSignalInput.model_validate(part[FIELD])
     except ValidationError as error:
@@ -148,18 +152,20 @@ def _stretch(time: FloatArray, values: FloatArray, start: float, end: float) -> 
 def _averaged(
     time: FloatArray, values: FloatArray, length: float, field: str
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the means over lengths of time at their middles: the integral, as the turns of a speed, stays.
+    """Return the means over intervals of `length` s, at the middles of the intervals.
 
-    Raises `BadInput`: there are fewer than two of them, or more than the samples.
+    Samples are joined by straight lines. The integral over each interval stays: of a speed, the revolutions.
+    A rest of the time that is shorter than an interval is left out. Raises `BadInput`: there would be fewer
+    than two intervals, or more than samples.
     """
-    count = int((time[-1] - time[0]) / length + 1e-9)
+    count = int((time[-1] - time[0]) / length + 1e-9)  # a quotient of 5 may come out as 4.999999999999999
     if not 2 <= count <= time.size:
         low, high = (time[-1] - time[0]) / time.size, 0.5 * (time[-1] - time[0])
         raise BadInput.of(field, length, f"from {low:.3g} s, a sample, to {high:.3g} s, half the stretch")
     edges = time[0] + length * np.arange(count + 1)
     integral = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (values[1:] + values[:-1]))])
     piece = np.clip(np.searchsorted(time, edges, side="right") - 1, 0, time.size - 2)
-    into = edges - time[piece]
+    offset = edges - time[piece]
     slope = (values[piece + 1] - values[piece]) / (time[piece + 1] - time[piece])
-    upto = integral[piece] + into * (values[piece] + 0.5 * slope * into)
-    return 0.5 * (edges[1:] + edges[:-1]), np.diff(upto) / length
+    integral_at_edges = integral[piece] + offset * (values[piece] + 0.5 * slope * offset)
+    return 0.5 * (edges[1:] + edges[:-1]), np.diff(integral_at_edges) / length
