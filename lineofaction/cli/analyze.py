@@ -1,4 +1,7 @@
-"""``loa analyze``: case files read and assessed, their tables computed."""
+"""``loa analyze``: the tables of case files, from the cache or computed.
+
+What computes a table is loaded when none is in the cache.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,9 @@ from rich.console import Console
 
 from bounds import engineering
 from fe_contact.ste import SteDatabase
-from host.directories import cache_home
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.cached_tables import CachedTables
 from lineofaction.cli.output import (
-    Report,
     check_netcdf_output,
     console,
     output_of,
@@ -24,10 +26,9 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
+from lineofaction.gearbox.convert.answers import source_rows, summary_json
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
     assumption_lines,
@@ -36,27 +37,27 @@ from lineofaction.gearbox.convert.effects import (
     ledger_table,
     trifles_title,
 )
-from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.tabled_scene import database_of
 from lineofaction.gearbox.units import UM
-from lineofaction.report.ste.page import static_headlines
-from model_studies.workers import InProcess, Workers
+from lineofaction.report.ste.headlines import static_headlines
 
 _MAX_HARMONICS = 2
+_FROM_CACHE = "note: the table of an equal case was in the cache: its cost is of its computation"
 
 
 def run_analyze(
     file: InputFile, named: Path | None, executor: tuple[int, str | None], *, as_json: bool
 ) -> None:
-    """Compute, write, print."""
+    """Find or compute the table, write, print."""
     case = assessed_case(file)
     output = output_of(named, file.project, f"{file.path.stem}.nc")
     check_netcdf_output(output)
-    with open_executor(*executor) as workers, progress_bar() as report:
-        database = analyzed(case, report, workers)
-    CachedTables(lambda _: database).table(case.case)  # for verbs that take it
+    database = CachedTables.find(case.case)
+    if database is None:
+        database = _computed(case, executor)
+    elif not as_json:
+        print(_FROM_CACHE, file=sys.stderr)  # noqa: T201 (this is the command line)
     warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
@@ -70,20 +71,13 @@ def run_analyze(
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
 
-def analyzed(
-    case: CheckedCase,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> SteDatabase:
-    """Compute the database of a case in this process; condensed gears are kept in the user's cache.
+def _computed(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:
+    """Compute the table of a case, and keep it for verbs that take it."""
+    from lineofaction.cli.computed_tables import computed_table  # noqa: PLC0415 (start-up time)
+    from lineofaction.gearbox.executor import open_executor  # noqa: PLC0415 (start-up time)
 
-    Figures of a table that is being refined are printed on standard error: they are progress.
-    """
-
-    def print_draft(table: SteDatabase, refining: str) -> None:
-        print(draft_line(table, refining), file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
-
-    return database_of(case, cache_home(), report, workers, print_draft)
+    with open_executor(*executor) as workers, progress_bar() as report:
+        return CachedTables(lambda _: computed_table(case, report, workers)).table(case.case)
 
 
 def _show(summary: dict[str, Any]) -> None:

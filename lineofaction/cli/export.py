@@ -12,14 +12,14 @@ from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pair
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from host.directories import cache_home
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.export_fmu import export_mesh_fmu
 from lineofaction.cli.export_point import Point
 from lineofaction.cli.export_rexs import export_rexs
 from lineofaction.cli.export_run import TABLE, UNIVERSAL, export_run
 from lineofaction.cli.output import console, print_json, print_written, progress_bar, table
 from lineofaction.cli.ste import positions
-from lineofaction.cli.subjects import assessed_case
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated

@@ -10,9 +10,10 @@ from bounds import engineering
 from dynamics.acoustics import SoundFigures
 from dynamics.results import RunResult
 from host.directories import cache_home
+from lineofaction.cli.costs import announce_cost, listening_cost
 from lineofaction.cli.output import progress_bar
 from lineofaction.cli.run_sounds import RunSound
-from lineofaction.cli.subjects import announce_cost, assessed_scene, listening_cost
+from lineofaction.cli.subjects import assessed_scene
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput

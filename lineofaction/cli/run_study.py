@@ -14,7 +14,7 @@ from bounds import engineering
 from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.costs import announce_cost, study_cost, tables_cost
 from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
@@ -27,13 +27,14 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.study_cache import cached_workers
-from lineofaction.cli.subjects import announce_cost, assessed_scene, inputs_of_study, study_cost, tables_cost
+from lineofaction.cli.subjects import assessed_scene, inputs_of_study
 from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import marks_of_case
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.number_list import number_list

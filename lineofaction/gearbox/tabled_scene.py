@@ -10,10 +10,12 @@ from typing import Any
 from fe_contact.options import Run
 from fe_contact.ste import PairGeometry, SteDatabase
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import allowed_misalignment, boundary_errors, case_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import allowed_misalignment, case_json
+from lineofaction.gearbox.convert.case_plausibility import case_warnings, phrased_for
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import housings_in
-from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
+from lineofaction.gearbox.convert.plausibility import scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
 from lineofaction.gearbox.mesh_tables import Steps
 from lineofaction.gearbox.problems import BadInput

@@ -20,9 +20,9 @@ from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 from host.directories import cache_home
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit

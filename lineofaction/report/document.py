@@ -41,7 +41,8 @@ from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.run.page import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from lineofaction.report.run.view import RunView
-from lineofaction.report.ste.page import static_alarms, static_headlines, static_making, static_results
+from lineofaction.report.ste.headlines import static_headlines
+from lineofaction.report.ste.page import static_alarms, static_making, static_results
 from lineofaction.report.unit_picture import is_picture, one_picture, picture_sections
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 

@@ -10,8 +10,9 @@ from pydantic import ValidationError
 
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.ste import PairGeometry
-from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case_plausibility import case_warnings, unique
+from lineofaction.gearbox.convert.plausibility import scene_warnings, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.plan import omission_warnings

@@ -21,7 +21,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import draft_line, headline_json
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.measured_housings import read_responses

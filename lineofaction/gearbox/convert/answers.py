@@ -14,7 +14,7 @@ from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import Estimate, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 from bounds import inside
 from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
-from fe_contact.errors import FeContactError
 from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import (
     FlankModification,
@@ -26,14 +24,12 @@ from fe_contact.geometry import (
 from fe_contact.geometry.flank_tolerances import NO_CLEARANCE, MisalignmentRange, misalignment_range
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of
-from lineofaction.gearbox.convert.errors import translated
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case, ErrorsInput, LoadInput
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.gear import ToothingInput, with_flank
 from lineofaction.gearbox.units import MM, NM, UM
-from model_studies.workers import WorkersLost
 
 if TYPE_CHECKING:
     pass
@@ -90,18 +86,6 @@ def _with_flank(name: str, gear: Toothed, figures: ToothingInput) -> Toothed:
 
     with inside(name):
         return replace(gear, modification=_modification(figures, plain))
-
-
-@contextmanager
-def boundary_errors(prefix: str = "") -> Iterator[None]:
-    """Turn errors of the libraries into the boundary's."""
-    try:
-        yield
-    except (FeContactError, WorkersLost) as error:
-        known = translated(error)
-        if isinstance(known, BadInput) and prefix:
-            known = known.within(prefix)
-        raise known or error from None
 
 
 def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:

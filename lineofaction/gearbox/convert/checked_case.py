@@ -14,14 +14,8 @@ from bounds.types import Json
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.plausibility import pair_findings
-from lineofaction.gearbox.convert.case import (
-    THICK,
-    analysis_options,
-    boundary_errors,
-    case_json,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import THICK, analysis_options, case_json, gear_pair, table_axes
 from lineofaction.gearbox.schemas.case import Case
 
 if TYPE_CHECKING:

@@ -25,7 +25,7 @@ from dynamics.mechanism.passing import (
     shaft_rates,
 )
 from dynamics.scene.scene import Scene
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.complaint import ComplaintInput

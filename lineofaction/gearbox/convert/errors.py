@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -94,15 +92,6 @@ def translated(error: Exception) -> ServiceError | None:
     if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
         return JobFailed(str(missing))
     return None
-
-
-@contextmanager
-def named(part: str) -> Iterator[None]:
-    """Turn input errors of dynamics into the boundary's, named inside `part`."""
-    try:
-        yield
-    except DynamicsInputError as error:
-        raise translated(error.within(part) if part else error) or error from None
 
 
 def _fault(error: RefusedValue, reader: _CaseReader) -> Fault:

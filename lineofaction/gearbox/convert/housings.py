@@ -19,8 +19,8 @@ from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mesh_content import check_mesh_content
 from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.file_content import FileContentInput

@@ -25,8 +25,9 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
+from lineofaction.gearbox.convert.case import gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput

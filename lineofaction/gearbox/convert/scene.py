@@ -18,11 +18,10 @@ from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Scene
 from fe_contact.ste import PairGeometry, SteDatabase
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors, named
 from lineofaction.gearbox.convert.closed_form_meshes import _closed_forms
 from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import (
     ANY_STIFFNESS,
     check_measured,

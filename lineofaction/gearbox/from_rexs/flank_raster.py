@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.geometry import FlankGrid
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import rounded
 from lineofaction.gearbox.units import MM, UM

@@ -18,7 +18,8 @@ from fe_contact.geometry.flank_tolerances import (
 )
 from fe_contact.microgeometry.drawn_teeth import PitchBounds
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_json, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, measured_gear
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.inspection.sheet import Flank

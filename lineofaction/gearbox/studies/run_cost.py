@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError, SolveError
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scene_before_tables import SceneText, moving_before_tables, scene_in_motion

@@ -10,7 +10,8 @@ import numpy as np
 from bounds.types import FloatArray
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Curve, SteDatabase
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Document

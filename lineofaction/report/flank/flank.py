@@ -33,7 +33,8 @@ from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.ste.curves import POSITION_LABEL
-from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
+from lineofaction.report.ste.headlines import edge_text
+from lineofaction.report.ste.page import case_tables, contact_effects
 
 N_PER_MM = 1e3
 """One N/mm in N/m."""

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from bounds import leftover
-from fe_contact.ste import Curve, SteDatabase
-from fe_contact.types import Estimate
+from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import inserted_json, source_rows
 from lineofaction.gearbox.convert.effects import by_size, influence_point, influence_text, trifles_title
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
-from lineofaction.report.drawing.page import Headline, Part, Section
+from lineofaction.report.drawing.page import Part, Section
 from lineofaction.report.drawing.tables import (
     EffectRow,
     effect_table,
@@ -26,10 +25,8 @@ from lineofaction.report.drawing.tables import (
 )
 from lineofaction.report.pair import data_sheet_section, pair_of, tolerance_class_of
 from lineofaction.report.ste.curves import (
-    aligned_index,
     drawn_loads,
     headline_load,
-    load_curve,
     load_labels,
     ste_curves,
 )
@@ -43,7 +40,7 @@ from lineofaction.report.ste.over_torque import (
 )
 from lineofaction.report.ste.spectrum import ste_spectrum, ste_waterfall
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
-from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines, tooth_sections
+from lineofaction.report.ste.teeth import tooth_sections
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _INSERTED = {
@@ -58,42 +55,6 @@ _DECISIONS = {
     "price": "price of the choice",
     "checked": "checked",
 }
-
-
-def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
-    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
-    load = headline_load(database, force)
-    at = (slice(None), load, *aligned_index(database))
-    pressure = float(np.nanmax(database.max_pressure[at]))
-    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
-    remark = f"{UNBOUNDED}{edge_text(edge)}"
-    curve, label = load_curve(database, load), load_labels(database)[load]
-    figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
-    biases = _over_face(curve)
-    return (
-        *(
-            Headline(f"{name} STE at {label}", f"{um(one.value)} µm", f"{_band(one)}{bias}")
-            for (name, one), bias in zip(figures.items(), biases, strict=True)
-        ),
-        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
-        *tooth_headlines(database, load),
-    )
-
-
-def _over_face(curve: Curve) -> tuple[str, str]:
-    """Say mean and peak-to-peak of the gears of finite width; nothing where the table has them."""
-    if curve.over_face is None:
-        return "", ""
-    figures = curve.over_face.mean, curve.over_face.peak_to_peak
-    mean, ripple = (f"; gears of this width {um(one.value)} µm {_band(one)}" for one in figures)
-    return mean, ripple
-
-
-def edge_text(pressure: float) -> str:
-    """Return text on the pressure (Pa) of contacts at an edge, separate from the flank's; empty for 0."""
-    if pressure <= 0.0:
-        return ""
-    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"
 
 
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:
@@ -234,7 +195,3 @@ def _by_source(database: SteDatabase) -> Table:
     head = ("source", "mean, µm", "peak to peak, µm", "harmonic 1, µm")
     title = f"Errors by source at {load_labels(database)[-1]}"
     return Table(title, head, tuple((name, *(um(error, 2) for error in errors)) for name, *errors in rows))
-
-
-def _band(estimate: Estimate) -> str:
-    return "not estimated" if math.isnan(estimate.error) else f"± {um(estimate.error, 2)} µm"

@@ -17,8 +17,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.tolerance_study import ToleranceRequest
 from fe_contact.types import FloatArray
 from host import cpu_seconds
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

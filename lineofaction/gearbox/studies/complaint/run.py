@@ -18,7 +18,7 @@ from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, m
 from dynamics.mechanism.passing import Passing
 from dynamics.scene import Scene
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import (
     Complaint,

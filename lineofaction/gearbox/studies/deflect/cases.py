@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from bounds import inside
 from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput

@@ -16,7 +16,8 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import across_face
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case

@@ -13,7 +13,7 @@ from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.linearize.modal_analysis import resolved_to
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull

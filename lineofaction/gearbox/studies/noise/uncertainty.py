@@ -21,7 +21,7 @@ from dynamics.noise import (
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.gear import has_extent
 from lineofaction.gearbox.schemas.housings import HousingInput

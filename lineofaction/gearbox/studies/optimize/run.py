@@ -28,8 +28,8 @@ from fe_contact.microgeometry.search_methods import (
     never,
 )
 from fe_contact.microgeometry.variables import DesignVariable
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

@@ -17,8 +17,9 @@ from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, sampled
 from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.microgeometry.variables import GEARS
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import figures
@@ -42,7 +43,7 @@ MAX_SAMPLES = 100_000
 _TOLERATED = {
     f"{gear}.{figure.field}": f"{gear}.{figure.name}"
     for gear in GEARS
-    for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+    for figure in figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 }
 """Figures of the case file that a drawing may bound, by their names in the library."""
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")

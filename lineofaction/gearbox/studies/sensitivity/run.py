@@ -17,7 +17,8 @@ from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
 from fe_contact.errors import InputError
 from fe_contact.options import TableAxes
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors, study_options
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, study_options
 from lineofaction.gearbox.convert.checked_case import CheckedCase, across_face
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile

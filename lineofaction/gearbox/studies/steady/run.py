@@ -15,7 +15,7 @@ from dynamics.errors import InputError, SolveError
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
 from dynamics.periodic.steady_cost import SteadyCost, steady_cost
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file

@@ -12,8 +12,8 @@ from dynamics.mechanism.planet_copies import numbered, planet_parts
 from dynamics.study import (
     Response,
 )
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.case import table_axes
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import MAX_POINTS, FactorInput, Inputs

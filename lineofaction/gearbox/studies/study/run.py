@@ -17,7 +17,7 @@ from dynamics.study import (
     study,
 )
 from fe_contact.analysis.run_plan import predicted_designs
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -19,7 +19,8 @@ from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
 from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_at, operating_point
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
@@ -34,7 +35,7 @@ STEPS = 9
 """Values of an axis whose range is not given."""
 _MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
 _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
-_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 
 
 @dataclass(frozen=True)
@@ -129,7 +130,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         size, kind = swept.what.boundary_value(reference_value), swept.what.what.kind
         if kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
+        return _evenly(-2.0 * size if kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
         loads = case.load.torque_n_m or [
             float(pair.torque(force)) for force in case.load.normal_force_n or ()

@@ -18,7 +18,7 @@ from dynamics.vibration import (
 )
 from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.measured_housings import housing_mobility
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

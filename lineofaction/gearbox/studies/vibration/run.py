@@ -24,7 +24,7 @@ from dynamics.vibration import (
 )
 from dynamics.vibration.housing_vibration import HousingVibration
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
