@@ -2,9 +2,9 @@
 
 Of all distributions of force that balance the torque, the true one has the least complementary energy. One
 of them is an even force along the contact line of one pair. Its energy is F G + W, with the load F, the gap G
-of the pair and the strain energy W. The least energy is also the integral of the transmission error d over the
-load. Contacts stiffen under load, so d is concave and the integral is at least F (d_0 + d)/2, with d_0 the
-transmission error without load. Hence
+of the pair and the strain energy W. The least energy is also the integral of the transmission error d over
+the load. Contacts stiffen under load, so d is concave and the integral is at least F (d_0 + d)/2, with d_0
+the transmission error without load. Hence
 
     d <= 2 G - d_0 + 2 W/F.
 

@@ -1,7 +1,7 @@
 """The request of a sweep: one or two axes over operating conditions and figures of the flanks.
 
-A figure of the flanks is one quantity of the modification of one gear, such as ``pinion.tip_relief``. A design
-is one combination of the values on all axes but the torque.
+A figure of the flanks is one quantity of the modification of one gear, such as ``pinion.tip_relief``. A
+design is one combination of the values on all axes but the torque.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class SweepRequest:
         )
         # as the documentation of `options` says, the choices of the caller for these three are ignored
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
-        # no table is stored, so its size has no limit; all designs have the same effects, so none is neglected
+        # no table is stored, so its size has no limit; all designs have the same effects
         return check_request(self.flanks(acting), axes, options, check_size=False, neglect=False)
 
     def _check_axes(self) -> None:
