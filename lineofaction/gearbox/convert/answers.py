@@ -7,7 +7,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from bounds import engineering
+from bounds.error_digits import with_error
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, ToothLoads
 from fe_contact.ste.curve_quantities import BY_SOURCE
@@ -236,4 +236,4 @@ def draft_line(table: SteDatabase, refining: str) -> str:
 
 
 def _figure(estimate: Estimate) -> str:
-    return f"{estimate.value / UM:.4g} ± {engineering(estimate.error / UM, 1)}"
+    return with_error(estimate.value / UM, estimate.error / UM)
