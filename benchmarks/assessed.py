@@ -15,9 +15,9 @@ from fe_contact.types import FloatArray
 HARMONICS = 3
 QUANTITIES = ("mean", "peak-to-peak", *(f"harmonic {k + 1}" for k in range(HARMONICS)))
 STATED = (MEAN, PEAK_TO_PEAK, *range(FIRST_HARMONIC, FIRST_HARMONIC + HARMONICS))
-"""Which they are of the errors that a table states."""
+"""Indices of these quantities among the errors that a table states."""
 LARGEST_MEDIAN = 3.0
-"""Of stated over true errors."""
+"""Largest median of the stated errors over the true ones."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Assessed:
 
     name: str
     level: str
-    """`name`, `level`: Of the pair and of its mesh."""
+    """`name`, `level`: Name of the pair, and level of its mesh."""
     value: FloatArray
     stated: FloatArray
     true: FloatArray

@@ -56,23 +56,24 @@ class AssessedEffect:
 
 
 def per_cent_right(found: Sequence[AssessedEffect], quantity: int | None = None) -> float:
-    """Return how many per cent are right, in one quantity or in all of them at once."""
+    """Return the percentage of right estimates, in one quantity or in all of them at once."""
     right = [all(one.right) if quantity is None else one.right[quantity] for one in found]
     return 100.0 * float(np.mean(right)) if right else 100.0
 
 
 @dataclass(frozen=True)
 class InfluenceStudy:
-    """What a study counts, and in which words."""
+    """Subject, quantities and limits of a study, and its words for them."""
 
     subject: str
     one: str
     anywhere: str
-    """`subject`, `one`, `anywhere`: Of its figures; what an ablation is of; where an estimate may be wrong.
+    """`subject`, `one`, `anywhere`: Subject of its figures, object of an ablation, and place where an
+    estimate may be wrong, in words.
     """
     quantities: tuple[str, ...]
     tolerances: tuple[float, ...]
-    """At which the decisions of "auto" are assessed."""
+    """Tolerances at which the decisions of "auto" are assessed."""
 
     def counts(self, found: Sequence[AssessedEffect]) -> list[Figure]:
         """Return how often the estimates are right."""

@@ -1,4 +1,4 @@
-"""What a Dask scheduler takes for a task: workers that sleep as long as a task of a table computes."""
+"""Cost of a task for a Dask scheduler: workers sleep as long as a task of a table computes."""
 
 from __future__ import annotations
 
@@ -34,14 +34,16 @@ async def work(address, count):
     await asyncio.gather(*(worker.finished() for worker in workers))
 asyncio.run(work(sys.argv[1], int(sys.argv[2])))
 """
-"""Threads of one process that sleep and do not watch themselves: two cores are enough for 512 of them."""
+"""Program of one process whose threads are workers. They sleep and do not watch themselves: two cores are
+enough for 512 of them.
+"""
 _PATIENCE_S = 120.0
-"""How long a cluster may take to start."""
+"""Longest time that a cluster takes to start, s."""
 
 
 @dataclass(frozen=True)
 class Rate:
-    """What one cluster took for all tasks: CPU seconds of its scheduler and of the caller, wall seconds."""
+    """Cost of all tasks of one cluster: CPU seconds of its scheduler and of the caller, wall seconds."""
 
     scheduler: float
     caller: float

@@ -1,4 +1,4 @@
-"""What verbs of the command line load before they compute: seconds of imports, beside all CPU seconds."""
+"""Imports of the verbs of the command line before they compute: CPU seconds of imports and in total."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a default run costs over the bare one: a run-up, the same in a housing, a planetary stage."""
+"""Cost of a default run over the bare one: a run-up, the same in a housing, a planetary stage."""
 
 from __future__ import annotations
 

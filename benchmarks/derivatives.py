@@ -1,4 +1,4 @@
-"""What derivatives of a curve cost over the curve alone, and how near they are to central differences."""
+"""Cost of the derivatives of a curve over the curve alone, and their distance from central differences."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ NAMES = tuple(f"{gear}.{name}" for gear in ("pinion", "wheel") for name in FLANK
 TURNS = 9
 STEP = 1e-9
 MAX = 1.5
-"""Of the CPU time of the curve alone."""
+"""Largest CPU time of the derivatives over that of the curve alone."""
 
 
 def figures() -> list[Figure]:

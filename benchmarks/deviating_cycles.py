@@ -51,7 +51,7 @@ class AssessedCycle(NamedTuple):
     pitches: int
     stated: FloatArray
     true: FloatArray
-    """`stated`, `true`: Of `ASSESSED`, m. Shape (8,) each."""
+    """`stated`, `true`: Stated and true errors of `ASSESSED`, m. Shape (8,) each."""
     points: float
     """Part of the positions of pitches not solved that are beyond the error stated of a position."""
     seconds: float

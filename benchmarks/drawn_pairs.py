@@ -15,7 +15,7 @@ from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.geometry.backlash import reference_center_distance
 
 LOADS = (0.4, 1.0, 2.0)
-"""Over the rated one."""
+"""Loads over the rated load."""
 UM = 1e-6
 Draw = np.random.Generator
 

@@ -183,7 +183,7 @@ def markdown(found: Sequence[AssessedLevel]) -> str:
 
 
 def _table_of_effects(found: Sequence[AssessedLevel]) -> str:
-    """How often the estimates of every effect are right."""
+    """Return the table of how often the estimates of every effect are right."""
     lines = [
         "| effect | ablations | "
         + " | ".join(f"{name}: right" for name in (*STUDY.quantities, "level"))

@@ -20,7 +20,7 @@ SECTION = "finest"
 SUBJECT = "stated errors against the finest solution"
 LEVELS = ("draft", "standard")
 SHARED = (METHOD,)
-"""Sources that the finest solution has as well: no part of what is assessed."""
+"""Sources of error that the finest solution shares; they are not assessed."""
 _COVERAGE = 95.0
 
 

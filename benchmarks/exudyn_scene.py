@@ -173,11 +173,11 @@ class _PlanarRun:
     """The result of a run in Exudyn."""
 
     time: FloatArray
-    """s. Shape (T,)."""
+    """Time, s. Shape (T,)."""
     dynamic_transmission_error: FloatArray
-    """m. Shape (T,)."""
+    """Dynamic transmission error, m. Shape (T,)."""
     cpu_seconds: float
-    """Of the time integration alone."""
+    """CPU seconds of the time integration alone."""
 
 
 def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> _PlanarRun:

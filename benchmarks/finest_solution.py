@@ -26,7 +26,7 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
 FINER, SLICES = 1.5, FINER_SLICES[-1]
-"""Elements of the level fine over those of the finest solution, and its slices."""
+"""Element size of the level fine over that of the finest solution, and its number of slices."""
 PLANE_POSITIONS, FACE_POSITIONS = 512, 128
 _SAMPLES, _FEW = 4096, 50
 

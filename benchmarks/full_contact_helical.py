@@ -1,6 +1,6 @@
 """Do the stated errors over the face cover the truth? 3-D standard against full contact along the helix.
 
-Six helical pairs, and two misaligned spur pairs, whose helix is none.
+Six helical pairs, and two misaligned spur pairs.
 
 `python -m benchmarks.full_contact_helical` solves the peer anew and writes its reference: some three CPU
 minutes a pair.
@@ -29,9 +29,9 @@ PAGE, SECTION = MEASURED / "accuracy.md", "helical full contact"
 SUBJECT = "3-D standard against helical full contact"
 AXES = ("load", "position_driver")
 NUMBERS = ("43.2", "43.5", "43.10", "43.15", "43.90", "43.145", "43.7")
-"""Of drawn pairs: seed and place; the last is a spur pair."""
+"""Numbers of drawn pairs, "seed.place"; the last is a spur pair."""
 POSITIONS = np.arange(16) / 16.0
-"""Base pitches."""
+"""Positions, base pitches."""
 
 
 @cache

@@ -38,7 +38,7 @@ REFERENCE = Path(__file__).parents[1] / "tests" / "reference" / "full_contact_li
 SUBJECT = "line load at free ends against full contact"
 PLAIN = FlankModification()
 STRETCHES, SLICES = 90, 15
-"""Over the face, of flank results in their usual slices: lengths over which a peak is taken."""
+"""Number of stretches and slices of flank results over the face: the lengths over which a peak is taken."""
 PeerMesh = Resolution | HelicalMesh
 SPUR_MESH, HELICAL_MESH = Resolution(2.0, layers=11, outermost=0.05), HelicalMesh(0.15, 8, 15, 57)
 
@@ -53,7 +53,7 @@ class LineLoadCase:
     torque: float
     misalignments: tuple[float, ...]
     meshes: tuple[PeerMesh, ...]
-    """Of the peer, the finest first."""
+    """Meshes of the peer, the finest first."""
     edge: int | None = None
     """Pair index of the peer's line that ends at a tip edge."""
 
@@ -110,7 +110,7 @@ def _fresh_helical_pairs() -> tuple[LineLoadCase, ...]:
 
 
 BORES = {17: 18e-3, 40: 30e-3, 19: 30e-3, 29: 40e-3, 22: 25e-3, 23: 25e-3}
-"""Of the helical gears by their teeth, m."""
+"""Bore diameters of the helical gears by their numbers of teeth, m."""
 
 
 def _helical(

@@ -28,7 +28,7 @@ CURVES = "curves over the face"
 SUBJECT = "3-D standard against full contact over the face"
 AXES = ("misalignment_um", "torque_n_m", "position_driver")
 POSITIONS = (0.05, 0.4)
-"""Base pitches: one pair in contact, and two."""
+"""Positions with one pair in contact, and with two, base pitches."""
 
 
 @dataclass(frozen=True)

@@ -109,4 +109,4 @@ CASES = {
         16.0,
     ),
 }
-"""By name; walls of 6 to 9 mm."""
+"""Gear cases by name; their walls are 6 to 9 mm thick."""

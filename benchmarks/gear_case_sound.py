@@ -27,7 +27,7 @@ from host import cpu_seconds
 
 MODES, LINES = 40, 3
 RANGE = 300.0, 1300.0
-"""Hz; a hull of 1600 panels, 20 CPU s for boundary elements, resolves the highest."""
+"""Range of frequencies, Hz. A hull of 1600 panels, 20 CPU s for boundary elements, resolves the highest."""
 MODELS, FINEST = (EquivalentRadiatedPower(), ElementalRadiators()), BoundaryElements()
 LIMIT = 1.5
 """dB, of the estimate."""

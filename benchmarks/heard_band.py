@@ -23,7 +23,7 @@ SPEED = 24_000.0 * math.pi / 30.0
 TEETH = 20
 SECONDS, COMPARED = 0.1, 0.02
 WIDE = 1e6
-"""Hz; a band that leaves ten orders whole."""
+"""Wide band, Hz; it leaves ten orders whole."""
 
 
 def figures() -> list[Figure]:

@@ -1,4 +1,4 @@
-"""What designs by what is heard cost, and what the best of them brings to the two-stage unit."""
+"""Cost of searches for designs by their sound, and the gain of the best design of the two-stage unit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SUBJECT = "two-stage unit, flanks of its second stage by what is heard"
 UNIT = Path(__file__).parents[1] / "examples" / "two_stage" / "unit.py"
 DRAWN, DESIGNS = 40, 1000
 BUDGET, QUIETER = 600.0, 5.0
-"""CPU seconds of all `DESIGNS`; dB at the loudest speed."""
+"""Limits: CPU seconds of all `DESIGNS`, and fall of the level at the loudest speed, dB."""
 AMOUNTS = ("tip_relief", "profile_crowning", "profile_slope", "profile_form", "helix_crowning", "helix_slope")
 GRADIENT = 2.0
 """Cost of a level with its gradient by `AMOUNTS` of both gears, over that of the level."""

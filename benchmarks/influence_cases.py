@@ -19,7 +19,7 @@ from fe_contact import (
 from fe_contact.geometry import ParallelAxes
 
 LOADS = (0.3, 1.0)
-"""Over the rated one: light and full."""
+"""Loads over the rated load: light and full."""
 SKEW = 15e-6
 """Misalignment, m."""
 

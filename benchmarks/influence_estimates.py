@@ -125,7 +125,7 @@ def markdown(found: Sequence[LoadedInfluence]) -> str:
 
 
 def _table_of_effects(found: Sequence[LoadedInfluence]) -> str:
-    """How often the estimates of every effect are right, and the spread of the ratio where it can be seen."""
+    """Return the table of how often the estimates of every effect are right, and of their spread."""
     lines = [
         "| effect | ablations | mean: right | median estimated / measured | peak-to-peak: right | median |",
         "|---|---:|---:|---:|---:|---:|",

@@ -1,4 +1,4 @@
-"""What a live answer costs the service: CPU time of a slider's preview and of the whole answer at rest."""
+"""Cost of a live answer for the service: CPU time of a slider's preview and of the whole answer at rest."""
 
 from __future__ import annotations
 

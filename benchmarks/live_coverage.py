@@ -74,12 +74,12 @@ class Bodies:
 
     @property
     def forces(self) -> list[float]:
-        """Normal forces in N, up to that of the table."""
+        """Normal forces, N, up to that of the table."""
         return replace(self.case, loads=LOADS).forces
 
     @property
     def questions(self) -> dict[str, Question]:
-        """By name; in the plane nothing acts across the face."""
+        """Questions by name. In the plane nothing acts across the face."""
         return PROFILES | (ACROSS if self.options else {})
 
 

@@ -1,4 +1,4 @@
-"""What the figures were measured on."""
+"""Machine and versions that the figures were measured on."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What neglected effects cost: runs with them off against registries that do not know them."""
+"""Cost of neglected effects: runs with effects off against registries that do not know them."""
 
 from __future__ import annotations
 

@@ -28,17 +28,17 @@ UM = 1e-6
 
 @dataclass(frozen=True)
 class BetweenNodes:
-    """One table at points between its nodes, held against a table that is solved there."""
+    """A table at points between its nodes, compared with a table that is solved there."""
 
     name: str
     met: bool
-    """Whether the table says that it meets its tolerance."""
+    """Whether the table states that it meets its tolerance."""
     inserted: int
-    """Its inserted loads, misalignments and center distances."""
+    """Number of inserted loads, misalignments and center distances."""
     mean: FloatArray
     ripple: FloatArray
-    """`mean`, `ripple`: Value, stated error less that which the solution at the point has in common, true
-    difference, and allowed error of mean and peak-to-peak, m. Shape (Q, 4) each.
+    """`mean`, `ripple`: Mean and peak-to-peak: value, stated error without the part that the solution at the
+    point shares, true difference, and allowed error, m. Shape (Q, 4) each.
     """
     outside: FloatArray
     """Part of the positions at which the difference is beyond the band. Shape (Q,)."""

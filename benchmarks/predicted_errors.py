@@ -87,7 +87,7 @@ def markdown(found: Sequence[Predicted]) -> str:
 
 
 def _cell(ratios: Sequence[float]) -> str:
-    """How many are within the factor, and the range."""
+    """Return how many ratios are within the factor, and their range."""
     if not ratios:
         return "-"
     return f"{sum(map(within, ratios))} of {len(ratios)}, {min(ratios):.2g} to {max(ratios):.2g}"

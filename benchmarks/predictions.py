@@ -116,6 +116,6 @@ def figures() -> list[Figure]:
 
 
 def _factor(one: Any) -> float:
-    """How far one prediction is off, >= 1."""
+    """Return the factor between prediction and measurement, >= 1."""
     _, predicted, spent = one
     return float(max(predicted / spent, spent / predicted))

@@ -1,4 +1,4 @@
-"""How much more a quarter space gives way near its free end under an even load, by finite elements.
+"""Additional approach of a quarter space near its free end under an even load, by finite elements.
 
 The closed form of `fe_contact.contact.free_end` against a quarter of a disc, 24 half strips in radius, that
 is extruded from its free end over 36 half strips: `python -m benchmarks.quarter_space` prints both along the
@@ -30,7 +30,7 @@ from verification.full_contact.over_face.layers import Layers, graded_layers
 
 SUBJECT = "free end of a quarter space"
 MODULUS = 1e9
-"""Pa: any."""
+"""Modulus of elasticity, Pa. The result does not depend on it."""
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -39,7 +39,7 @@ class QuarterDisc:
     """Six-node triangles on a grid of radii and angles; lengths in half strips, the surface on y = 0."""
 
     radius: float = 24.0
-    """Of its outer arc, which is fixed."""
+    """Radius of the outer arc, which is fixed, in half strips."""
     under_strip: int = 6
     angles: int = 8
     """`under_strip`, `angles`: Elements along half the strip, and from the surface to the plane of symmetry x
@@ -174,7 +174,7 @@ def closed_form(poissons_ratio: float, distance: FloatArray, far: float) -> Floa
 
 
 FAR = 5.0
-"""Half strips from the end up to which the disc, a finite body, gives way as a quarter space does."""
+"""Distance from the end up to which the disc, a finite body, deforms as a quarter space does, half strips."""
 
 
 def largest_difference(disc: QuarterDisc, poissons_ratio: float, layers: int) -> float:

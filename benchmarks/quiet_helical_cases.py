@@ -10,7 +10,7 @@ from fe_contact import FlankModification, Gear, GearPair
 
 UM = 1e-6
 LOADS = (0.4, 1.0)
-"""Over the nominal torque."""
+"""Loads over the nominal torque."""
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,9 @@ class QuietPair:
     name: str
     pair: GearPair
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     misalignment: float = 0.0
-    """m."""
+    """Misalignment, m."""
     unseen: bool = False
     """Whether nothing about the estimates was decided on this pair: it assesses them."""
 

@@ -1,4 +1,4 @@
-"""What a receipt costs: runs with cached compliance, full and minimal receipts by turns in one process."""
+"""Cost of a receipt: runs with cached compliance, full and minimal receipts by turns in one process."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fe_contact.analysis.studies.frontier import warm_up
 
 SUBJECT = "receipts, compliance cached"
 TARGET = 30.0
-"""Of error estimates and effect ledger together, per cent of the run."""
+"""Largest cost of error estimates and effect ledger together, per cent of the run."""
 STAGES = ("error estimate", "effect ledger")
 _SPUR = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=30e-3)
 _HELIX = math.radians(12.0)

@@ -1,4 +1,4 @@
-"""What was last published, subject by subject: ``docs/lab/benchmarks.json``."""
+"""Last published figures, subject by subject: ``docs/lab/benchmarks.json``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table of ten alignments by one process and by two, and what a model of the scaling says of more."""
+"""A table of ten alignments by one process and by two, and the prediction of a scaling model for more."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ class Recording:
 
     @property
     def cost(self) -> RunCost:
-        """That of the workers."""
+        """Cost of the workers."""
         return self.workers.cost
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
-        """Start what they do, and yield what they yield."""
+        """Start the tasks of the workers, and yield their results."""
         seconds: list[float] = []
         self.runs.append(seconds)
         return self._recorded(self.workers.run(function, shared, items), seconds)

@@ -1,4 +1,4 @@
-"""What a step is made of: the parts of one in compiled loops, and whole runs, for `benchmarks.step_cost`."""
+"""Parts of a time step: the parts of one in compiled loops, and whole runs, for `benchmarks.step_cost`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs of pairs, measured once: each is a JSON line, so that a study that is stopped goes on where it was."""
+"""Runs of pairs, measured once: each is a JSON line, so that a study that was stopped can go on."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ class StoredRun:
     """One table of a pair."""
 
     value: FloatArray
-    """Mean, peak-to-peak and three harmonics, m. Shape (5, loads)."""
+    """Values of mean, peak-to-peak and three harmonics, m. Shape (5, loads)."""
     sources: FloatArray
-    """Their stated errors by source, in the order of `AT_NODES`, m. Shape (6, 5, loads)."""
+    """Stated errors of these values by source, in the order of `AT_NODES`, m. Shape (6, 5, loads)."""
     receipt: Json
-    """Of its receipt: cost, prediction, plan, tolerance, passes."""
+    """Parts of the table's receipt: cost, prediction, plan, tolerance, passes."""
 
     @property
     def seconds(self) -> float:
-        """CPU seconds of all passes, nothing in the cache."""
+        """CPU seconds of all passes with an empty cache."""
         return float(self.receipt["cpu_seconds"])
 
     def stated(self, *without: str) -> FloatArray:

@@ -12,7 +12,7 @@ from benchmarks.fresh_process import measure
 from benchmarks.run_up import SCENE, TABLE
 
 TARGET = 8.0
-"""Of a run beyond its integration, ms of CPU time."""
+"""Largest cost of a run beyond its integration, ms of CPU time."""
 _REPEATS = 3
 _STUDY = """
 import time

@@ -34,22 +34,22 @@ class ToleranceRun:
 
     name: str
     ended: str
-    """Mesh and slices of the table it gives."""
+    """Mesh and slices of the final table."""
     passes: int
     met: bool
-    """What its receipt says."""
+    """Whether the receipt states that the tolerance is met."""
     stated: float
     true: float
-    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, in parts of
-    what is allowed; of what is stated the part that a tolerance bounds: without `METHOD`, which no mesh
-    lowers.
+    """`stated`, `true`: Largest stated and true error of mean and peak-to-peak over the loads, relative to
+    the allowed error. The stated error is the part that a tolerance bounds: it leaves out `METHOD`, which no
+    mesh lowers.
     """
     seconds: float
     """CPU seconds of all passes."""
     least_stated: float
     least_true: float
-    """`least_stated`, `least_true`: Of the quickest run whose stated, or whose true errors are within the
-    tolerance; NaN if there is none.
+    """`least_stated`, `least_true`: Cost of the quickest run whose stated, or whose true errors are within
+    the tolerance; NaN if there is none.
     """
     reason: str = "met"
     """Why the passes ended."""

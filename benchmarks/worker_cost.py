@@ -1,4 +1,4 @@
-"""What jobs cost a service: CPU time and memory of workers by process, bytes of results, requests, jobs."""
+"""Cost of jobs for a service: CPU time and memory of workers by process, bytes of results, requests, jobs."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ Row = tuple[str, str]
 
 @runtime_checkable
 class Headlined(Protocol):
-    """A record that says itself what stands first."""
+    """A record that gives the headlines of its brief form."""
 
     def headlines(self) -> tuple[str, list[Row]]:
         """Return the title, and rows of name and text that take the place of the fields."""

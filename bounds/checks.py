@@ -126,7 +126,7 @@ class Checks:
     def chosen(
         self, field: str, names: Sequence[str] | None, known: Sequence[str], suggestion: Wording = ""
     ) -> list[str]:
-        """Return those of the `known` names that are in `names`, in the order of `known`; all if None."""
+        """Return the `known` names that are in `names`, in the order of `known`; all if None."""
         for name in names or ():
             self.one_of(field, name, known, suggestion)
         return [name for name in known if names is None or name in names]

@@ -1,4 +1,4 @@
-"""Fields of a dataclass that say what they are: their unit, what they accept, and what they mean."""
+"""Declared fields of a dataclass, with their unit, accepted values and meaning."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Kind(StrEnum):
     SLOPE = auto()
     """A small depth with a sign."""
     LENGTH = auto()
-    """An extent; ``x_length`` is that over which the amount ``x`` acts, which does not act without it."""
+    """An extent; ``x_length`` is the extent of the amount ``x``, which does not act without it."""
     START = auto()
-    """Where something begins."""
+    """The place at which a modification begins."""
     EDGE = auto()
     """The size of an edge, that ends a flank."""
     ANGLE = auto()
@@ -37,11 +37,11 @@ class Kind(StrEnum):
     CHOICE = auto()
     """One of several, by its name."""
     SURFACE = auto()
-    """A table of its own."""
+    """A surface given by a table."""
     PART = auto()
     """A part of declared fields."""
     PARTS = auto()
-    """Any number of them."""
+    """A list of parts, each a dataclass."""
     STIFFNESS = auto()
     """A force, traction or stress per displacement or strain."""
     DAMPING = auto()
@@ -66,7 +66,7 @@ DEPTHS = (Kind.AMOUNT, Kind.SLOPE)
 
 
 class Direction(Flag):
-    """Along what of a flank a figure acts."""
+    """Direction along which a figure of a flank acts."""
 
     NONE = 0
     PROFILE = auto()
@@ -79,31 +79,36 @@ class Declared:
 
     kind: Kind
     unit: str
-    """Symbol of its SI unit; empty for none."""
+    """Symbol of the SI unit; empty for none."""
     bound: Interval | Choice | None
-    """What is accepted whatever the other fields are, in SI; None is left to the value itself."""
+    """Range of accepted values in SI, whatever the other fields are; None: the value checks itself."""
     description: str
-    """What it is. Whoever writes it out puts its unit in place of {unit}, else before the first semicolon."""
+    """Meaning of the field. A writer of the description puts the unit in place of {unit}, else before the
+    first semicolon.
+    """
     example: Any = None
     """A usual value, in SI."""
     along: Direction = Direction.NONE
-    """Directions along which it acts."""
+    """Directions along which the field acts."""
     written: str = ""
-    """Symbol of the unit in which it is usually written, where that is not the usual one of its SI unit."""
+    """Symbol of the unit in which the field is usually written, where that is not the usual one of its SI
+    unit.
+    """
     part: type | None = None
-    """The dataclass of a part; its value is None, or the dataclass's own default, where it is left out."""
+    """Dataclass of a part. The field's value is None, or the dataclass's default, where the part is left out.
+    """
     later: bool = False
-    """Whether the field came after results had been stored. At its default it is not written out, so that
-    what says nothing of it keeps the address of its result.
+    """Whether the field was added after results had been stored. At its default it is not written out, so
+    that an input without the field keeps the address of its result.
     """
     maximum: int = 100
-    """Number of parts of a list, at most."""
+    """Largest number of parts of a list."""
     with_unit: bool = False
     """Whether a message has the unit behind the ends of the range."""
 
     @cached_property
     def limits(self) -> Bound | Choice | None:
-        """What is accepted, as a message says it."""
+        """Range of accepted values, as a message states it."""
         if not isinstance(self.bound, Interval):
             return self.bound
         unit = self.unit if self.with_unit else ""
@@ -111,7 +116,7 @@ class Declared:
 
     @cached_property
     def remedy(self) -> SiNote:
-        """What to try where a value is refused."""
+        """Remedy for a refused value, with an example in its unit."""
         return SiNote(f"In {self.unit}, for example {self.example}.")
 
 

@@ -11,7 +11,7 @@ TOLERANCE = 1e-6
 
 
 def order_name(order: float, mesh: Mapping[str, float], shaft: Mapping[str, float]) -> str:
-    """Return what an order is: of a mesh, a sideband of a mesh by a shaft, or of a shaft.
+    """Return the name of an order: of a mesh, a sideband of a mesh by a shaft, or of a shaft.
 
     "mesh 2"; "mesh 1 - pinion 1", by up to three turns of the shaft; "pinion 11", waves of that number: a
     ghost order; empty: none of these.

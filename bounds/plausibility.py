@@ -1,4 +1,4 @@
-"""Plausibility: limits of practice, and what is beyond them. A check warns and changes no number."""
+"""Plausibility: limits of practice, and findings beyond them. A check warns and changes no number."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ TYPED: dict[str, tuple[Unit, ...]] = {
     "kg m^2": (Unit("kg cm^2", 1e-4), Unit("kg mm^2", 1e-6), Unit("kg m^2", 1.0)),
     "1": (Unit("per cent", 1e-2),),
 }
-"""By SI unit: what people type instead, the likeliest first."""
+"""Units that people type by mistake, by the SI unit of the field; the likeliest first."""
 
 SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
@@ -53,19 +53,19 @@ def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, 
 
 @dataclass(frozen=True)
 class Check:
-    """A limit of practice that a quantity is held against."""
+    """A limit of practice that a quantity is compared with."""
 
     name: str
-    """What a finding is called."""
+    """Name of the findings of the check."""
     quantity: str
-    """What is compared, in words."""
+    """Compared quantity, in words."""
     low: float | None
     high: float | None
     """`low`, `high`: Bounds in `unit`; None: no such bound."""
     unit: str
     """Unit of the bounds; "1" for a ratio."""
     source: str
-    """Where the limit comes from."""
+    """Source of the limit."""
 
 
 class PlausibilityWarning(UserWarning):
@@ -81,23 +81,23 @@ class Finding:
     field: str
     """Dotted name of the field, as in an `InputError`."""
     value: float
-    """Of the field, in `unit`."""
+    """Value of the field, in `unit`."""
     low: float
     high: float
-    """`low`, `high`: Usual values of the field in `unit`: here, with all that is beside it. No bound is 0 or
-    infinity.
+    """`low`, `high`: Usual values of the field in `unit`, given the other values of the case. No bound is 0
+    or infinity.
     """
     unit: str
     """SI unit."""
     reason: str
-    """What is implausible, in words."""
+    """Reason why the value is implausible, in words."""
     source: str
-    """Of the limit."""
+    """Source of the limit."""
     whole: str = ""
-    """Other fields that must have slipped with this one, in words; empty if it stands alone."""
+    """Other fields that must have slipped with the field, in words; empty if it slipped alone."""
 
     def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
-        """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
+        """Return the finding in one line, in the caller's name and unit of the field (default: ours, SI)."""
         unit = field_unit or SI_UNITS[self.unit]
         suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")

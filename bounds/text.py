@@ -45,7 +45,7 @@ class _Worded(Protocol):
     """Anything that can be put into words for a reader."""
 
     def worded(self, reader: Reader) -> str:
-        """Return it in the reader's units and names."""
+        """Return the text in the reader's units and names."""
 
 
 Wording = str | _Worded
@@ -57,9 +57,9 @@ class Quantity:
     """A number inside a message."""
 
     value: float
-    """In SI."""
+    """Value in SI."""
     unit: str = ""
-    """Symbol of its SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number."""
+    """Symbol of the SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number."""
     digits: int = DIGITS
     """Significant digits to write."""
     side: Literal["", "low", "high"] = ""

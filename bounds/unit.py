@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 DIGITS = 7
-"""Digits of a number in a message, unless it says otherwise."""
+"""Default number of digits of a number in a message."""
 MIN_LEFTOVER = 1e-12
 """Residual from which on its digits are written."""
 
@@ -17,11 +17,11 @@ class Unit:
     """A unit as it is written."""
 
     name: str = ""
-    """Its symbol, e.g. ``"mm"``; empty for none."""
+    """Symbol of the unit, e.g. ``"mm"``; empty for none."""
     factor: float = 1.0
-    """SI value of one."""
+    """SI value of one unit."""
     si: str = ""
-    """Symbol of the SI unit of what it measures, e.g. ``"m"``."""
+    """Symbol of the SI unit of the same quantity, e.g. ``"m"``."""
 
     @property
     def plain(self) -> str:

@@ -81,7 +81,7 @@ class RunFigures(Figures):
 
     @property
     def lines(self) -> Lines:
-        """The largest squares of the level by order."""
+        """Largest squares of the level by order."""
         return dict(zip(self.line_order.tolist(), self.line_square.tolist(), strict=True))
 
 
@@ -92,7 +92,7 @@ def _run_figures(result: RunResult, seconds: float, quantity: LevelQuantity) -> 
     """
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
-    position = np.unwrap(result.position[0], period=1.0)  # of the first mesh, in base pitches
+    position = np.unwrap(result.position[0], period=1.0)  # position of the first mesh, base pitches
     travel = abs(float(np.sum(np.diff(position))))
     pitches = max(1, min(PITCHES, int(travel / 4.0)))  # at least four blocks: two of them in the settled half
     transmission = _largest(result, "dynamic_transmission_error", pitches)
@@ -175,7 +175,7 @@ class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     Attributes
     ----------
     nominal, effects, left_out
-        As in `model_studies.Ablation`.
+        Fields of `model_studies.Ablation`.
     """
 
     mesh: tuple[str, ...]
@@ -297,7 +297,7 @@ class _EffectState(NamedTuple):
 
 
 def _toggled(scene: Scene, nominal: RunFigures, state: _EffectState) -> EffectAblation:
-    """Return the figures of a scene with and without one effect: `nominal`, and those of a run of its own.
+    """Return the figures of a scene with and without one effect: `nominal`, and the figures of a second run.
 
     Raises `LeftOut`: no part of the scene can have the effect.
     """

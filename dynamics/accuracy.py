@@ -29,19 +29,21 @@ from dynamics.types import FloatArray, IntArray
 from model_studies import Progress, against_finest, in_unit, knee_above, run_fidelities, silent
 from model_studies.frontier import Errors
 
-MAX_BLOCKS, ORDERS = 6, 5
-MIN_SAMPLES = 32
-MIN_PITCHES = 2.0
+MAX_BLOCKS, ORDERS = 6, 5  # most blocks of a run that are compared, and mesh orders compared in each
+MIN_SAMPLES = 32  # least samples of a block
+MIN_PITCHES = 2.0  # least base pitches of the first mesh in a block
 BY_TORSION = (COAST_FLANKS, TEETH_AS_MADE)
 IN_PLANE = (*BY_TORSION, "x", "y")
-ORDER_MATCH = 1e-6
-NM = 1e-9
+ORDER_MATCH = 1e-6  # relative difference of orders, below which they are the same
+NM = 1e-9  # nanometer, m
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
 NAN = float("nan")
-WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
+WARM_UP = 1e-4  # duration of a run before the measured ones, s: it compiles their routines
 HALF, TABLE_REST = "table_half", 1.0 / 3.0
-"""The fidelity of every second position node, and what of its error the whole table leaves: second order."""
-MIN_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say what is left
+"""Name of the fidelity of every second position node, and share of its error that the whole table has: second
+order.
+"""
+MIN_RATE = 1.5  # least fall of errors from fidelity to fidelity that allows an extrapolation
 STEPS = 0.2
 """Power of the tolerance with which the steps of a run fall: errors of the fifth order."""
 
@@ -256,7 +258,7 @@ class _LinearResponse:
 
 
 def _of_one_speed(response: HarmonicResponse, system: System, blocks: BlockGrid) -> _Vibration:
-    """Pick each mesh's own orders, and those of the first mesh for bearings."""
+    """Return the vibration of each mesh at its orders, and of bearings at the orders of the first mesh."""
     pace = np.abs(blocks.position[:, -1] - blocks.position[:, 0])
     ratio = pace / pace[0]
     size = np.abs(response.dynamic_transmission_error[:, 0])
@@ -389,7 +391,7 @@ def frontier(
 
 
 def runs_of_frontier(scene: Scene, names: Sequence[str]) -> tuple[list[float], float]:
-    """Return the steps of the run of each valid fidelity over those of the scene's own, and no cost beside.
+    """Return the steps of the run of each valid fidelity, over the steps of the scene as it is, and 0.
 
     Raises `InputError`: no mesh, or a run too short to compare.
     """
@@ -441,7 +443,7 @@ def _relative_difference(values: FloatArray, reference: FloatArray) -> float:
 
 
 def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) -> Errors:
-    """Return what the errors of two fidelities leave behind the finer one, by the rate at which they fell."""
+    """Estimate the errors of the finer of two fidelities by the rate at which the errors fell."""
     if len(coarser) < 2:
         return dict.fromkeys(FIGURES, NAN)
     (_, far), (_, near) = coarser[-2:]
@@ -452,5 +454,5 @@ def _remaining(coarser: Sequence[tuple[_Fidelity, Errors]], _finest: _Fidelity) 
 
 
 def knee_of_results(results: Sequence[FidelityResult]) -> str | None:
-    """Return the knee; differences below what steps and tables of the reference leave say nothing."""
+    """Return the knee; differences below the errors of the reference by steps and tables do not count."""
     return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

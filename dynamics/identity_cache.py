@@ -7,7 +7,9 @@ from functools import lru_cache, wraps
 from typing import Any, TypeVar, cast
 
 MAX_CACHED = 8
-"""Results per function, the last ones. They keep what they are made from alive: an identity stays its own."""
+"""Most results per function, the last ones. They keep their arguments alive, so that an identity stays
+unique.
+"""
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,7 +23,7 @@ def _itself(data: Any) -> tuple[Any, ...]:
 
 
 def _key(part: Any) -> Any:
-    """Return what tells a part from others: of tuples their parts, of names their letters, else identity."""
+    """Return the key of a part: of tuples the keys of their items, of names their letters, else identity."""
     kind = type(part)
     if kind is tuple:
         return tuple([_key(item) if type(item) in _BY_VALUE else id(item) for item in part])

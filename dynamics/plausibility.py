@@ -1,4 +1,4 @@
-"""Checks of a scene: its run, bearings, meshes, bodies, and what loads them. Nothing is integrated."""
+"""Checks of a scene: its run, bearings, meshes, bodies, and loads. Nothing is integrated."""
 
 from __future__ import annotations
 
@@ -157,11 +157,11 @@ assessed = Checklist(CHECKS).assessed
 
 
 ROLLING = (1e7, 1e10)
-"""N/m; usual stiffness of rolling bearings."""
+"""Usual stiffness of rolling bearings, N/m."""
 
 
 def scene_findings(scene: Scene) -> tuple[Finding, ...]:
-    """Return what is implausible about a scene that can move.
+    """Return the implausible values of a scene that can move.
 
     Raises `InputError`: the parts of the scene do not fit each other.
     """

@@ -1,4 +1,4 @@
-"""What a housing is by its solid: material, walls of seats, files, settings of its reduction; no mesh."""
+"""The solid of a housing: material, walls of seats, files, settings of its reduction; no mesh."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MESH_FORMATS = {
     ".vtu": "VTU",
     ".vtk": "VTK",
 }
-"""By suffix. CalculiX reads and writes those of Abaqus."""
+"""Formats of mesh files by suffix. CalculiX reads and writes the format of Abaqus."""
 MESH_SUFFIXES = tuple(MESH_FORMATS)
 
 
@@ -113,7 +113,7 @@ class ReductionSettings:
 
 
 class Ring(StrEnum):
-    """What a seat's wall does.
+    """Behavior of the wall of a seat.
 
     ``WEIGHTED_AVERAGE``: it stays elastic; its motion is the rigid motion nearest to that of the wall in
     the mean square over its area, and a force is spread by the same weights (RBE3). ``RIGID``: it moves as a
@@ -136,7 +136,7 @@ _RING = Declared(
 @described
 @dataclass(frozen=True)
 class SeatWall:
-    """The wall of a bearing seat; where it is follows from its bearing."""
+    """The wall of a bearing seat; its position follows from its bearing."""
 
     bore_diameter: float = required(BORE_DIAMETER)
     bore_length: float = required(BORE_LENGTH)

@@ -1,4 +1,4 @@
-"""Steady temperatures of a scene: those of its parts beside the one of the housing at which drawings hold."""
+"""Steady temperatures of a scene: the housing's, at which drawings hold, and those of the other parts."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ class WarmBearing:
 
 @dataclass(frozen=True)
 class WarmMesh:
-    """What steady temperatures change of a mesh, m."""
+    """Changes of a mesh by steady temperatures, m."""
 
     distance_change: float
-    """Growth of the center distance less that of the gears' pitch radii."""
+    """Growth of the center distance less the growth of the gears' pitch radii."""
     backlash: float
-    """Along the transverse line of action."""
+    """Change of the backlash along the transverse line of action."""
     misalignment: float
-    """As the table counts it: from seats of unlike temperature."""
+    """Misalignment by seats of unlike temperature, as the table counts it."""
 
 
 @described
@@ -65,5 +65,5 @@ class Temperatures:
         return expansion * (warm - self.reference)
 
     def housing_strain(self, temperature: float | None = None) -> float:
-        """Return the strain of the housing, or where it has another temperature."""
+        """Return the strain of the housing, also at a place with another temperature."""
         return self.strain(self.housing_material.thermal_expansion or 0.0, temperature)

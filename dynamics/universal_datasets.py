@@ -16,7 +16,7 @@ DOUBLE = 4  # ordinates are real, double precision
 EVEN = 1  # abscissa by its first value and its increment
 
 
-NO_AXIS = (0, 0, 0, "NONE", "NONE")
+NO_AXIS = (0, 0, 0, "NONE", "NONE")  # fields of an axis that a function does not have
 SPECTRUM = "amplitude (peak), Hann window"
 
 
@@ -41,7 +41,7 @@ class Quantity:
     """`length`, `force`: Exponents of the units of length and force."""
     label: str
     unit: str
-    """`label`, `unit`: At most 20 characters."""
+    """`label`, `unit`: Names of the quantity and its unit, at most 20 characters each."""
 
 
 @dataclass(frozen=True)
@@ -55,15 +55,16 @@ class NodalFunction:
     """Name of the response, at most 10 characters."""
     node: int
     direction: int
-    """`node`, `direction`: Of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation about them; 0 scalar.
+    """`node`, `direction`: Node and direction of the response: 1, 2, 3 for x, y, z; 4, 5, 6 for rotation
+    about them; 0 scalar.
     """
     abscissa: Quantity
     ordinate: Quantity
     first: float
     increment: float
-    """`first`, `increment`: Of the abscissa; the file keeps six digits."""
+    """`first`, `increment`: First value and step of the abscissa; the file keeps six digits."""
     values: FloatArray
-    """Shape (N,)."""
+    """Values of the ordinate. Shape (N,)."""
 
 
 def units_dataset() -> str:

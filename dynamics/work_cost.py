@@ -1,4 +1,4 @@
-"""Cost of a piece of work: predicted before it runs, corrected by what is known of the host, measured."""
+"""Cost of a piece of work: predicted before it runs, corrected for the host, measured."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Cost(NamedTuple):
         return Cost(self.seconds + later.seconds, max(self.bytes, later.bytes))
 
     def times(self, count: float) -> Cost:
-        """Return the cost of so many pieces of the same work, one after the other."""
+        """Return the cost of `count` pieces of the same work, one after the other."""
         return Cost(self.seconds * count, self.bytes)
 
     @property
@@ -40,25 +40,25 @@ class WorkCost:
     """Predicted and measured cost of work that was done."""
 
     predicted_seconds: float
-    """`predicted_seconds`, `seconds`: CPU seconds; predicted for this host."""
+    """`predicted_seconds`, `seconds`: CPU seconds, predicted for this host and measured."""
     predicted_bytes: float
-    """Of the largest working set."""
+    """Predicted bytes of the largest working set."""
     seconds: float
     bytes: float | None = None
-    """By how much the process grew above what it held before; None where it had been as large before, and
-    nobody can tell.
+    """Growth of the process above its largest memory before; None where it had been as large before, so that
+    the growth is unknown.
     """
 
 
 def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
-    """Return a predicted cost with the speed of this host, and with what earlier work of a kind took.
+    """Return a predicted cost with the speed of this host, and with the cost of earlier work of a kind.
 
     Parameters
     ----------
     kind : str
         The name under which `run_log` keeps the work.
     cost : Cost
-        On the reference host of `host_speed`.
+        Cost on the reference host of `host_speed`.
     cache : Path, optional
         Directory of what is known of the host; None: its speed is measured once per process.
     """
@@ -76,12 +76,12 @@ def measured(
     work: Callable[[], Result],
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> tuple[Result, WorkCost]:
-    """Do work; return its result and what it cost beside what was predicted, which the log keeps too.
+    """Do work; return its result and its measured cost with the predicted one, which the log holds too.
 
     Parameters
     ----------
     kind, cost, cache
-        As of `on_this_host`.
+        Arguments of `on_this_host`.
     workers : Workers
         Who does some of it: their time counts.
     """
@@ -98,7 +98,7 @@ def measured(
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:
-    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+    """Report the cost of a stage before it begins, after its name, if that is more than a moment.
 
     `progress`: called as progress("stage; subject: about 25 CPU s, 1.2 GB", 0.0).
     """

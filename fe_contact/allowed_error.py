@@ -22,9 +22,9 @@ class AllowedError:
     """
 
     relative: float = 0.01
-    """Part of the quantity: mean or peak-to-peak STE."""
+    """Relative part of the error, of mean or peak-to-peak STE."""
     floor: float = 20e-9
-    """m; 0: the part alone."""
+    """Absolute part of the error, m; 0: the relative part alone."""
 
     def __post_init__(self) -> None:
         within("tolerance", self.relative, 1e-4, LARGEST_RELATIVE, "0.01 means one per cent.")
@@ -34,7 +34,7 @@ class AllowedError:
 
     @classmethod
     def from_value(cls, tolerance: AllowedError | float | None) -> AllowedError | None:
-        """Return what a caller requested; a number alone is the relative part."""
+        """Return the allowed error of a request; a number alone is its relative part."""
         if tolerance is None or isinstance(tolerance, AllowedError):
             return tolerance
         return cls(tolerance)
@@ -53,7 +53,7 @@ class AllowedError:
         return self.floor / self.relative
 
     def part_text(self, change: float) -> str:
-        """Say which part of what is allowed a change takes, in parts of `scale`."""
+        """Return the text of the part of the tolerance that a change takes, in parts of `scale`."""
         return f"{engineering(100.0 * change / self.relative, 2)} % of the tolerance ({self.text})"
 
     @property
@@ -64,4 +64,4 @@ class AllowedError:
 
 
 RELATIVE = AllowedError(floor=0.0)
-"""What holds where no tolerance was requested."""
+"""Allowed error of a run without a requested tolerance. Its absolute part is zero."""

@@ -1,4 +1,4 @@
-"""How often a cache had what was looked for: counts of this process."""
+"""Counts of the reads of a cache in this process: how many found their entry, and how many did not."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class CacheReads:
     misses: int = 0
 
     def note(self, *, hit: bool) -> None:
-        """Count one read."""
+        """Count one read of the cache."""
         self.hits += hit
         self.misses += not hit
 
 
 COMPLIANCE_READS = CacheReads()
-"""Of the cache of compliances and root stresses."""
+"""Counts of the cache of compliances and root stresses."""

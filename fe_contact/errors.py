@@ -51,7 +51,7 @@ class InfeasibleGeometry(InputError):
 
 
 class MeshError(FeContactError):
-    """No acceptable mesh: gmsh failed, or an element missed its quality limit."""
+    """Mesh failure: gmsh failed, or an element missed its quality limit."""
 
 
 class SolveError(FeContactError):

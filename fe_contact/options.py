@@ -15,11 +15,11 @@ from model_studies import Progress, silent
 from model_studies.workers import InProcess, Workers
 
 LARGEST_DEVIATION = 0.01
-"""m; larger values of an axis are micrometers given as meters."""
+"""Largest value of an axis, m. Larger ones are taken for micrometers given as meters."""
 LARGEST_PERIOD = 1_000_000
 Levels = Sequence[float] | FloatArray
 OnPlan = Callable[[Mapping[str, float]], None]
-"""Called with the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
+"""Callback for the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
 LEVELS = ("draft", "standard", "fine")
 CHOICES = {
     "level": (None, *LEVELS),
@@ -43,12 +43,13 @@ class TableAxes:
     """
     misalignments: Levels = (0.0,)
     center_distance_changes: Levels = (0.0,)
-    """`misalignments`, `center_distance_changes`: m, increasing. Misalignment is the tilt of the axes in the
-    plane of action as growth of the gap over the common face width, zero at the pitch point in its middle.
+    """`misalignments`, `center_distance_changes`: Nodes of both axes, m, increasing. Misalignment is the tilt
+    of the axes in the plane of action as growth of the gap over the common face width, zero at the pitch
+    point in its middle.
     """
     pitches: int | None = None
-    """Base pitches that the table covers if gears have pitch deviations; default: the full period. A smaller
-    number closes the table on itself: at its seam teeth are adjacent that never mesh.
+    """Number of base pitches that the table covers if gears have pitch deviations; default: the full period.
+    A smaller number closes the table on itself: at its seam teeth are adjacent that never mesh.
     """
 
     def __post_init__(self) -> None:
@@ -97,7 +98,7 @@ class OperatingPoint:
     """`torque`, `normal_force`: Torque on the driving gear in N m, or normal force F_bn in N; exactly one."""
     misalignment: float = 0.0
     center_distance_change: float = 0.0
-    """`misalignment`, `center_distance_change`: As the axes of a table, m."""
+    """`misalignment`, `center_distance_change`: Alignment in the terms of `TableAxes`, m."""
 
     @property
     def axes(self) -> TableAxes:
@@ -123,11 +124,13 @@ class Run:
     count the CPU time of all workers.
     """
     cache: Path | None = None
-    """Directory of flank compliances: with it a gear is condensed once."""
+    """Directory of flank compliances: with it each gear is condensed once."""
     progress: Progress = silent
-    """Called as progress(stage, fraction); studies of several tables start again with each table."""
+    """Callback for progress, called as progress(stage, fraction); studies of several tables start again with
+    each table.
+    """
     on_plan: OnPlan = _unplanned
-    """Called with the predicted CPU seconds by stage of each table, and of each pass of one."""
+    """Callback for the predicted CPU seconds by stage of each table, and of each pass of a table."""
 
     @property
     def silent(self) -> Run:
@@ -144,30 +147,30 @@ class AnalysisOptions:
     """
 
     tolerance: AllowedError | None = None
-    """Of mean and peak-to-peak STE, without what no mesh lowers. A table is refined by its measured errors
-    until it meets the tolerance, in at most four passes: `receipt["passes"]`; `receipt["tolerance"]` says
-    whether it is met, or why not.
+    """Tolerance of mean and peak-to-peak STE, for the errors that finer discretizations lower. A table is
+    refined by its measured errors until it meets the tolerance, in at most four passes (`receipt["passes"]`).
+    `receipt["tolerance"]` states whether it is met, or why not.
     """
     time_budget: float | None = None
     """CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them."""
     level: str | None = None
-    """"draft", "standard" or "fine"."""
+    """Level of the mesh: "draft", "standard" or "fine"."""
     model: str = "auto"
-    """"auto" (three dimensions where the scene acts across the face, else plane strain corrected for the
-    finite face width), "plane_strain", "plane_stress" or "3d".
+    """Contact model: "auto" (three dimensions where the scene acts across the face, else plane strain
+    corrected for the finite face width), "plane_strain", "plane_stress" or "3d".
     """
     positions: int | None = None
-    """Of a table: equally spaced positions in a base pitch; default: nodes placed so that interpolation keeps
-    0.2 % of peak-to-peak.
+    """Number of equally spaced positions of a table in a base pitch; default: nodes placed so that
+    interpolation keeps 0.2 % of peak-to-peak.
     """
     effects: Mapping[str, str] = field(default_factory=dict)
-    """Effect name to "on", "off" or "auto"; effects that are not named are "auto"."""
+    """Choice by effect name: "on", "off" or "auto"; effects that are not named are "auto"."""
     receipt: str = "full"
-    """Of a table: "full" measures its errors by source; "minimal" does not estimate them: they are NaN, and
-    the receipt says so.
+    """Receipt of a table. "full" measures its errors by source. "minimal" does not estimate errors: they are
+    NaN, and the receipt states it.
     """
     on_violation: str = "repeat"
-    """What to do if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
+    """Action if the solution violates an assumption (`receipt["assumptions"]`): "repeat" enables the
     automatic effect that is needed and solves again, "fail" raises, "report" reports it.
     """
 
@@ -196,7 +199,7 @@ class AnalysisOptions:
         return self.tolerance is not None and self.receipt == "full"
 
     def at_level(self, level: str) -> AnalysisOptions:
-        """Return the same with a level of mesh in place of a tolerance or a time."""
+        """Return the options with a level of mesh in place of a tolerance or a time budget."""
         return replace(self, tolerance=None, time_budget=None, level=level)
 
     def to_json(self) -> Json:

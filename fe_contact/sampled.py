@@ -1,4 +1,4 @@
-"""Errors change slowly along an axis: they are measured at a few of its nodes and interpolated between them.
+"""Samples of an axis at which errors are measured, and interpolation of the errors between them.
 
 The errors of a discretization are nearly a fixed part of the deflection, so that linear interpolation between
 loads a factor of some apart carries them on; the same holds between alignments. What is to be estimated is

@@ -52,4 +52,4 @@ class Shaft:
 
 
 Shafts = tuple[Shaft | None, Shaft | None]
-"""Of the driving and the driven gear; None is rigid."""
+"""Shafts of the driving and the driven gear; None is rigid."""

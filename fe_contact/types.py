@@ -36,7 +36,7 @@ class Status(IntEnum):
 
 @dataclass(frozen=True)
 class Estimate:
-    """A number with the estimate of its own error."""
+    """A number with an estimate of its error."""
 
     value: float
     error: float

@@ -1,9 +1,9 @@
-"""What the host offers: what systems answer differently, and what is installed.
+"""The host: functions that differ between operating systems, and optional packages that are installed.
 
 Costs of processes, locks on files, limits, priorities and groups of processes; children that answer one
-request; the directory of caches. What a system does not offer raises `Unavailable`, what is not installed
+request; the directory of caches. A function that a system lacks raises `Unavailable`, a missing package
 `MissingExtra`. The only package that imports `resource` and `fcntl`. It depends on psutil on Windows, on
-nothing elsewhere; `host.loops` and what it imports, which nothing here loads, is of numba.
+nothing elsewhere. `host.loops` and its imports need numba; no module here loads them.
 """
 
 from __future__ import annotations

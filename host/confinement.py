@@ -1,8 +1,8 @@
-"""What a process that reads foreign bytes gives up before it reads them.
+"""Confinement of a process before it reads foreign bytes: files, system calls and limits.
 
 Whatever a file makes its reader do, a confined process opens no file but those of Python and of its own
 folder, calls the system for what reading needs and nothing else (`host.system_calls`), and ends at its limits
-of memory, CPU time and size of files. What the system lacks is missing by name: `missing_protections`.
+of memory, CPU time and size of files. `missing_protections` names the protections that a system lacks.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _SYSTEM = ("/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", "/dev
 _MB = 1 << 20
 _SIGNAL_AT_END_OF_PARENT = 1
 _LIBRARIES_MB = 1024
-"""Addresses of libraries that are loaded later, beside memory: of scipy 130 MB, of gmsh 100 MB."""
+"""Address space of libraries that are loaded later, in addition to memory, MB: scipy 130, gmsh 100."""
 _STACK_MB = 64
 """gmsh asks for a stack without limit, and does not get it."""
 
@@ -123,7 +123,7 @@ def _limit(limits: Limits, addresses: int) -> None:
 
 
 def excess(pid: int, folder: Path, limits: Limits) -> str:
-    """Return what a confined process writes beyond its limits, "" if nothing; for whoever started it.
+    """Return the text of the limits that a confined process exceeds by writing, "" if none; for its starter.
 
     Systems have no limit on all that a process writes, or on files in a folder: at a gigabyte a second it
     writes 50 MB more before it is seen. Files that it has removed count.

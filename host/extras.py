@@ -1,4 +1,4 @@
-"""Extras of the installation, which a base install does not bring; what a system does not offer."""
+"""Optional parts: extras of the installation, and functions that an operating system may lack."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Unavailable(OSError):
 
 
 class MissingExtra(ModuleNotFoundError):
-    """A module of an extra is asked for that is not installed."""
+    """A module of an extra that is not installed was needed."""
 
     def __init__(self, module: str, extra: str) -> None:
         remedy = f"pip install 'lineofaction[{extra}]'"
@@ -72,6 +72,6 @@ def require(extra: str) -> None:
 
 
 def missing_extra(error: ModuleNotFoundError) -> MissingExtra | None:
-    """Return what is missing by the name of the extra that brings it, None for another module."""
+    """Return the missing extra that brings a module, None for another module."""
     module = (error.name or "").partition(".")[0]
     return next((MissingExtra(module, extra) for extra, names in MODULES.items() if module in names), None)

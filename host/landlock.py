@@ -20,14 +20,14 @@ _TRUNCATE = 1 << 14
 _OF_FILES = _WRITE_FILE | _READ_FILE | _TRUNCATE
 _OF_FOLDER = _OF_FILES | _READ_FOLDER | _REMOVE_FILE | _MAKE_FILE
 _RIGHTS = {1: (1 << 13) - 1, 2: 1 << 13, 3: 1 << 14, 5: 1 << 15}
-"""Rights to files by the version that brought them."""
+"""Bits of the rights to files that each version of Landlock introduced."""
 _BIND_AND_CONNECT = 0b11
 _NETWORK_SINCE, _SCOPES_SINCE = 4, 6
 _ABSTRACT_SOCKETS_AND_SIGNALS = 0b11
 
 
 class _Beneath(ctypes.Structure):
-    """What is allowed beneath an open file or folder."""
+    """Rights beneath an open file or folder."""
 
     _pack_ = 1
     _fields_ = (("rights", ctypes.c_uint64), ("descriptor", ctypes.c_int32))

@@ -22,7 +22,7 @@ _decorator = _OverloadFunctionTemplate._get_jit_decorator
 
 
 class _Linked(JITCodeLibrary):
-    """The code of a loop as others link it: what it becomes part of is optimized, and made machine code."""
+    """Unoptimized code of a loop for linking; the loop that links it is optimized and made machine code."""
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()

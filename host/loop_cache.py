@@ -1,4 +1,4 @@
-"""Compiled loops on disk, found by the content of all that they call.
+"""Compiled loops on disk, found by the content of all code that they call.
 
 numba finds an entry by the hash of the file of its loop: an inner loop that another file changed would leave
 the code of its callers as it was. Here an entry has the key of that file and of all that it imports, and of
@@ -38,14 +38,14 @@ from host.loop_sources import PACKAGES, PROJECT, Sources, sources
 SHIPPED = Path(__file__).parent / "shipped_loops"
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 VERSIONS_KEPT = 4
-"""Of a loop in a folder: those of other branches, of other Pythons."""
+"""Number of versions of a loop that stay in a folder: those of other branches, of other Pythons."""
 
 _UNREADABLE = (AttributeError, ImportError, EOFError, pickle.UnpicklingError, TypeError, ValueError)
-"""What reading an entry raises that is cut off, or names modules and functions that are gone."""
+"""Errors of reading an entry that is cut off, or names modules and functions that are gone."""
 
 
 class _Provided(UserProvidedCacheLocator):
-    """In NUMBA_CACHE_DIR by the name of a package, so that clones of the project share what they compile."""
+    """Folders in NUMBA_CACHE_DIR by the name of a package: clones of the project share compiled loops."""
 
     def __init__(self, function: Callable[..., Any], file: str) -> None:
         super().__init__(function, file)
@@ -53,11 +53,11 @@ class _Provided(UserProvidedCacheLocator):
 
 
 class _Nowhere(UserWideCacheLocator):
-    """Where no folder can be written: what an installation brings is read."""
+    """Locator for hosts without a writable folder: only the loops of an installation are read."""
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], file: str) -> _Nowhere:
-        """Return it for any loop."""
+        """Return the locator for any loop."""
         return cls(function, file)
 
 
@@ -66,7 +66,7 @@ class _Implementation(CompileResultCacheImpl):
 
 
 class _Entries(IndexDataCacheFile):
-    """The entries of a loop; what cannot be read is none."""
+    """The entries of a loop; unreadable ones count as absent."""
 
     def load(self, key: Any) -> Any:
         """Return the entry of a signature, None if there is none."""

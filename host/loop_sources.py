@@ -36,7 +36,7 @@ State = tuple[int, int, int, int]
 
 
 class Sources:
-    """Files below a folder as they were when they were first looked at, and those of this project.
+    """Files below a folder in the state of their first reading, and the files of this project.
 
     Among foreign packages of an installation, `packages` names those that count.
     """
@@ -157,7 +157,7 @@ def _absolute(module: str, file: str) -> str:
 
 
 def _state(path: str) -> State | None:
-    """Return what changes with a file, or with the list of files of a folder; None if there is none."""
+    """Return a state that changes with a file or with the list of files of a folder; None without it."""
     try:
         status = os.stat(path)  # noqa: PTH116 - called for each file of the project
     except OSError:

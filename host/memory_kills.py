@@ -1,4 +1,4 @@
-"""How many processes the system has killed for lack of memory, which tells that kill from other SIGKILLs."""
+"""Number of processes that the system has killed for lack of memory: it tells these from other SIGKILLs."""
 
 from __future__ import annotations
 

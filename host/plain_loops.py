@@ -1,4 +1,4 @@
-"""Compiled loops by numba as it is, and none kept: its own cache does not see what a loop calls."""
+"""Compiled loops by unmodified numba, without its cache, which does not see the loops that one calls."""
 
 from __future__ import annotations
 

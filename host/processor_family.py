@@ -18,7 +18,7 @@ from numba.core import config
 _V3 = ("avx", "avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe", "xsave")
 _V4 = (*_V3, "avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl")
 FAMILIES = {"x86-64-v4": _V4, "x86-64-v3": _V3}
-"""What a processor has, in the names of LLVM, beyond what both have in common; the first that fits counts."""
+"""Features of each family in LLVM's names, beyond the features that both have; the first match counts."""
 
 
 def family_of(features: Mapping[str, bool], machine: str) -> str | None:

@@ -1,30 +1,30 @@
-"""What a process that reads foreign bytes may take of memory, time and files."""
+"""Limits of memory, time and files for a process that reads foreign bytes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 LOOK_S = 0.05
-"""How often whoever started a confined process looks at what it has written."""
+"""Interval at which the starter of a confined process checks what it has written, s."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What a process that reads foreign bytes may take."""
+    """Limits of memory, time and files for a process that reads foreign bytes."""
 
     memory_mb: int | None = 512
-    """Private memory that it may write, MB; None: as much as the process that started it."""
+    """Private memory that the process may write, MB; None: as much as its starter."""
     cpu_seconds: int = 10
-    """At their end the system kills it."""
+    """CPU time after which the system kills the process, s."""
     file_bytes: int = 256_000_000
-    """Size of a file that it writes."""
+    """Largest size of a written file, bytes."""
     written_bytes: int = 400_000_000
     files: int = 100
-    """`written_bytes`, `files`: All bytes that it writes, its answer among them, and files in its folder:
-    whoever started it looks (`excess`).
+    """`written_bytes`, `files`: Largest number of written bytes, the answer among them, and of files in the
+    folder of the process. The starter checks both (`excess`).
     """
     open_files: int = 64
 
 
 READING = Limits()
-"""The limits of every reader whose work is reading alone."""
+"""Limits of every reader that does nothing but read."""

@@ -25,9 +25,9 @@ class Ended(NamedTuple):
     code: int
     """Exit code, or the negative number of the signal that ended it."""
     cpu_seconds: float
-    """Of the child and of those it has waited for."""
+    """CPU seconds of the child and of its children that it has waited for."""
     peak_memory: int
-    """Most resident memory, bytes."""
+    """Peak resident memory, bytes."""
 
 
 def ending_signal(code: int) -> str:

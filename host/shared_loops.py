@@ -1,4 +1,4 @@
-"""Compiled loops that processes share: what one of them compiles the others wait for and read.
+"""Compiled loops that processes share: one compiles, the others wait and read the result.
 
 Each would otherwise compile for itself what is not kept yet, and two that keep different signatures of a
 function at a time could take the same file for them. Loops are compiled for a family of processors
@@ -36,7 +36,7 @@ class Loop(CPUDispatcher):
     """A loop that Python calls: one process at a time compiles it, the others read its entry."""
 
     def enable_caching(self) -> None:
-        """Keep what is compiled."""
+        """Store compiled loops on disk."""
         self._cache = LoopCache(self.py_func)
 
     def compile(self, sig: Any) -> Any:

@@ -1,4 +1,4 @@
-"""A filter of system calls (seccomp): a process of Linux makes those that reading needs and no others.
+"""A filter of system calls (seccomp): a process of Linux makes the calls of a reader and no others.
 
 The list was recorded: all calls after `confine` of the readers of STEP, meshes, REXS, TOML, CSV, MDF4, UFF,
 WAV, MAT and HDF5, of the tests' files and of files of 20 to 70 MB. Each stands with the names that other

@@ -1,4 +1,4 @@
-"""Contact analysis of gears, their dynamics and their noise: what a Python user imports.
+"""Contact analysis of gears, their dynamics and their noise: the public names of the package.
 
     import lineofaction as loa
 
@@ -89,7 +89,8 @@ _HOME = {
     "Wave": ("fe_contact", "Wave"),
     "write": ("lineofaction.report.document", "write"),
 }
-"""Of the names that are neither studies nor of the workbench: module, and name there."""
+"""Address, as module and name in it, of each public name that belongs neither to a study nor to the
+workbench."""
 
 __all__ = [
     "AsyncClient",

@@ -1,4 +1,4 @@
-"""Ablation: every effect of a model toggled by itself, the change beside its estimate."""
+"""Ablation: every effect of a model is toggled by itself, and its change is compared with its estimate."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from bounds.types import FloatArray, Json
 from model_studies.record import in_unit
 
 TRIFLE = 1e-3
-"""Relative change below which an effect is too small for a line of its own."""
+"""Relative change below which a report lists effects together."""
 
 
 @dataclass(frozen=True)
@@ -21,8 +21,8 @@ class Figures:
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
-    """`mean`, `peak_to_peak`: Of the transmission error under every load, or of every mesh, m. Shape (n,)
-    each.
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak of the transmission error under every load, or of every
+    mesh, m. Shape (n,) each.
     """
     cpu_seconds: float
     """Measured."""
@@ -94,7 +94,7 @@ class Ablation(Generic[F, A]):
     """All effects of a request, each toggled by itself."""
 
     nominal: F
-    """Of the request."""
+    """Figures of the request itself."""
     effects: tuple[A, ...]
     left_out: dict[str, str]
     """Effects that were not toggled, and why."""

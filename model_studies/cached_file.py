@@ -1,4 +1,4 @@
-"""Results kept in files that are named by the content of what they come from."""
+"""Results cached in files that are named by the content of their inputs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def cached_in(
     unreadable: type[Exception],
     keeps: Callable[[Cached], bool] = lambda _made: True,
 ) -> Cached:
-    """Return what a file keeps; made and written where it is absent or damaged.
+    """Return the content of a cached file; it is made and written where it is absent or damaged.
 
     A folder that cannot be written is no reason to lose a result.
 

@@ -29,11 +29,11 @@ class Fidelity(Protocol[Q_contra]):
 
     @property
     def title(self) -> str:
-        """In words."""
+        """Name of the fidelity in words."""
 
     @property
     def family(self) -> str:
-        """The parameter it varies: errors within a family fall towards its finest."""
+        """Parameter that varies within a family: errors fall towards its finest value."""
 
     def refusal(self, request: Q_contra) -> str | None:
         """Return why this fidelity is not valid for a request; None if it is."""
@@ -151,12 +151,12 @@ class FidelityResult:
     """The outcome of one fidelity; a library adds its errors and further figures."""
 
     FIGURES: ClassVar[tuple[str, ...]]
-    """The fields that are relative errors; NaN: not known."""
+    """Names of the fields that are relative errors; an error of NaN is not known."""
 
     name: str
     title: str
     cpu_seconds: float
-    """Of the whole computation."""
+    """CPU seconds of the whole computation."""
 
     @property
     def errors(self) -> dict[str, float]:
@@ -179,7 +179,9 @@ class Frontier(Generic[R_co]):
     """An accuracy study."""
 
     results: tuple[R_co, ...]
-    """In the order of their usual cost; the last one is the reference, whose errors are its own."""
+    """Results in the order of their usual cost. The last one is the reference: its errors are its own
+    estimates.
+    """
     left_out: dict[str, str]
     """Name of a fidelity to the reason why it has no result."""
     knee: str | None

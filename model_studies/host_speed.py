@@ -1,4 +1,4 @@
-"""Speeds of this host that predictions of cost go by; measured once and kept, so that they agree.
+"""Speeds of this host for predictions of cost, measured once and stored, so that predictions agree.
 
 A short factorisation of a sparse matrix stands for all work but dense algebra, which has a measurement of its
 own (`cyclic_compliance.dense_rate` of fe_contact). Processors are shared: measured again, either differs
@@ -25,7 +25,7 @@ from host.directories import atomic_file
 VERSION = 1  # raise it with every change of the benchmark or its reference
 FILE = "host-speed.json"
 REFERENCE_SECONDS = 0.0065
-"""Of the benchmark on the host where the constants of the cost model were measured."""
+"""CPU seconds of the benchmark on the host where the constants of the cost model were measured."""
 _SIDE, _REPEATS = 60, 5
 _SLOWEST = 1000.0
 
@@ -88,7 +88,7 @@ def _identity() -> dict[str, object]:
 
 
 def _read(file: Path) -> dict[str, object]:
-    """Return what is kept of this host; nothing where it cannot be trusted."""
+    """Return the stored speed of this host; nothing where it cannot be trusted."""
     try:
         content = json.loads(file.read_text(encoding="utf-8"))
         return dict(content) if content["identity"] == _identity() else {}

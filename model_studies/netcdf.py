@@ -20,13 +20,15 @@ if TYPE_CHECKING:
 MAX_VARIABLES = 4096
 MAX_ATTRIBUTES = 256
 MAX_ENTRIES = 32
-"""Of an attribute of texts or lists, as of dimensions in HDF5: all may point to one long text."""
+"""Most entries of an attribute of texts or lists, the limit of dimensions in HDF5. All entries may point to
+one long text.
+"""
 FREE_BYTES = 2**30
-"""Of values and texts, which any file may unpack to."""
+"""Bytes of values and texts that any file may unpack to."""
 UNPACKED = 100
 """Bytes of values and texts per byte of a larger file."""
 DAMAGE = (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError, MemoryError)
-"""What HDF5, its readers and a record of foreign fields raise is not one class."""
+"""Errors of damaged files. HDF5, its readers and a record of foreign fields have no common error class."""
 
 
 class UnreadableFile(ValueError):

@@ -29,14 +29,15 @@ class Variable(NamedTuple):
 
 @dataclass(frozen=True)
 class NetcdfContent:
-    """The content of a file."""
+    """Content of a netCDF-4 file."""
 
     variables: Mapping[str, Variable]
-    """By name. One that is called as its only dimension is the coordinate along it."""
+    """Variables by name. A variable named as its only dimension is the coordinate along it."""
     attributes: Mapping[str, Any]
-    """Of the file: texts and numbers."""
+    """Attributes of the file: texts and numbers."""
     coordinates: tuple[str, ...] = ()
-    """Variables that are coordinates of others and have a name of their own, as a torque along the forces."""
+    """Names of variables that are coordinates of others under a different name, as a torque along the forces.
+    """
 
     def to_xarray(self) -> xarray.Dataset:
         """Return the same as a dataset of xarray."""

@@ -7,10 +7,12 @@ from collections.abc import Callable, Mapping
 from bounds import engineering
 
 Progress = Callable[[str, float], None]
-"""Called as progress(stage, fraction); behind a semicolon the stage may say more, see `stage_name`."""
+"""Callback for progress, called as progress(stage, fraction); behind a semicolon the stage may say more, see
+`stage_name`.
+"""
 
 Report = Callable[[float], None]
-"""Called with the fraction done of one piece of work, from 0 to 1."""
+"""Callback for the fraction done of one piece of work, from 0 to 1."""
 
 ANNOUNCED = 3.0
 """CPU seconds from which on a cost is reported before the work begins."""

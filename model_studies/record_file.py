@@ -17,9 +17,10 @@ import numpy as np
 
 from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf import DAMAGE, UnreadableFile
+from model_studies.record import key_of
 
 IN_VARIABLE = "variable"
-"""Stands in the JSON for what is in a variable."""
+"""Mark in the JSON for a value that is stored in a variable."""
 _UNITS = {"n": "N", "n_m": "N m", "pa": "Pa"}
 
 
@@ -34,7 +35,7 @@ class _FieldVariable:
 
     def of(self, field: Field[Any]) -> _FieldVariable:
         """Return the place of a field of the record that is here."""
-        name = f"{self.name}.{field.name}" if self.name else field.name
+        name = f"{self.name}.{key_of(field)}" if self.name else key_of(field)
         unit = field.metadata.get("unit", "1")
         return _FieldVariable(name, _UNITS.get(unit, unit), field.metadata.get("dimensions", ()), self.row)
 
@@ -65,7 +66,7 @@ def write_record(record: Any, path: Path, schema: str) -> None:
 
 
 def read_record(path: Path, kinds: Mapping[str, type]) -> Any:
-    """Return what `write_record` wrote, bit by bit the same; `kinds` are the dataclasses by their schemas.
+    """Return the content of a record that `write_record` wrote; `kinds` are dataclasses by their schemas.
 
     A field that has a default may be missing, in files of versions that did not know it.
 
@@ -92,7 +93,7 @@ def _split(kind: Any, value: Any, variable: _FieldVariable, columns: dict[_Field
         return None
     if is_dataclass(kind):
         return {
-            field.name: _split(of, getattr(value, field.name), variable.of(field), columns)
+            key_of(field): _split(of, getattr(value, field.name), variable.of(field), columns)
             for field, of in _stored_fields(kind)
         }
     if get_origin(kind) is tuple:
@@ -112,9 +113,9 @@ def _rebuilt(kind: Any, plain: Any, variable: _FieldVariable, taken: Any) -> Any
         return None
     if is_dataclass(kind):
         values = {
-            field.name: _rebuilt(of, plain[field.name], variable.of(field), taken)
+            field.name: _rebuilt(of, plain[key_of(field)], variable.of(field), taken)
             for field, of in _stored_fields(kind)
-            if field.name in plain or (field.default is MISSING and field.default_factory is MISSING)
+            if key_of(field) in plain or (field.default is MISSING and field.default_factory is MISSING)
         }
         return kind(**values)  # type: ignore[operator]  # is_dataclass says instances are types too
     if get_origin(kind) is tuple:

@@ -19,7 +19,7 @@ LAST = 40
 """Runs of a stage that count."""
 _MADE_UP = 2
 _SHORTEST = 0.02
-"""Seconds; shorter stages say nothing about speed: reading what is kept, calls of libraries."""
+"""Shortest stage whose cost corrects predictions, s. Shorter ones read from the cache, or call libraries."""
 _LARGEST_FILE = 1_000_000
 
 

@@ -28,7 +28,7 @@ STEPS = (
     ),
     (("simulate", EXAMPLES / "palermo_scene.toml", "-o", "run.nc"),),  # finds its table in the cache
 )
-"""What an engineer computes first, by the verbs of `loa`; those of a step run side by side."""
+"""Commands of `loa` for a first table and a first run; the commands of a step run side by side."""
 
 
 def main(families: list[str]) -> None:

@@ -99,7 +99,7 @@ def definition(figure: Figure, usual: Mapping[str, str] = MappingProxyType({})) 
 
 
 def accepted(figure: Figure) -> str:
-    """Say what is accepted."""
+    """Return the text of the accepted values."""
     bound, limits = figure.what.bound, figure.limits
     if bound is None:
         return "`true` or `false`"
@@ -111,7 +111,7 @@ def accepted(figure: Figure) -> str:
 
 
 def default(figure: Figure) -> str:
-    """Say what the field is if it is left out, as a case file has it."""
+    """Return the text of the default, as a case file has it."""
     if figure.default is MISSING:
         return "required"
     if figure.default is None:

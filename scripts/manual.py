@@ -53,10 +53,10 @@ class Stale:
     """A line of a page that no command printed."""
 
     offset: int
-    """Of its first character in the page."""
+    """Offset of the line's first character in the page."""
     line: str
     nearest: str
-    """The line of the output that begins most like it."""
+    """Line of the output whose beginning is most similar."""
     renewed: str | None
     """The line with the numbers of the one line of the output that has its words; None without such a line.
     """
@@ -118,7 +118,7 @@ def needed(page: Path) -> list[Path]:
 
 
 def _run(page: Path) -> str:
-    """Return what is run of a page."""
+    """Return the blocks of a page that are run."""
     return "\n".join(text for language, text in _BLOCK.findall(page.read_text("utf-8")) if language != "text")
 
 

@@ -82,7 +82,7 @@ def velocities(ripple: FloatArray) -> FloatArray:
 
 
 def sound(ripples: Sequence[FloatArray], durations_ms: Sequence[int]) -> Recording:
-    """Return what the mesh excites while each curve is shown, all at one scale."""
+    """Return the sound of each curve while it is shown, all at one scale."""
     counts = [round(1e-3 * duration * SAMPLE_RATE) for duration in durations_ms]
     shown = np.repeat([velocities(ripple) for ripple in ripples], counts, axis=0)
     fade = np.hanning(round(FADE_S * SAMPLE_RATE) + 2)[1:-1]

@@ -35,7 +35,7 @@ def table(titles: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
 
 
 def verbs(text: str) -> str:
-    """Return what each verb does; those with a section of the page link to it."""
+    """Return a table of the verbs; those with a section of the page link to it."""
     told = dict(commands(get_command(app), "loa"))
     for name, study in STUDIES.items():
         told.setdefault(f"loa {name}", study.description)
@@ -53,7 +53,7 @@ def commands(group: Any, name: str) -> Iterator[tuple[str, str]]:
 
 
 def routes(api: dict[str, Any]) -> str:
-    """Return what each route does, those of executions once."""
+    """Return a table of the routes, those of executions once."""
     rows = {"`POST /v1/processes/{id}/execution`": "Submit a job: 201 with its status and `Location`"}
     for path, operations in api["paths"].items():
         short = re.sub(r"\{\w+_id\}", "{id}", path).replace("{key}", "{hash}")

@@ -46,7 +46,7 @@ def scenes_part(scenes: list[Json]) -> str:
 
 
 def sweeps_part(folder: Path) -> str:
-    """Return what became of the cases of every sweep, and what the refusals named."""
+    """Return the outcomes of the cases of every sweep, and the names in refusals."""
     rows, named = [], []
     for kind, title in SWEEPS.items():
         file = folder / f"sweep-{kind}.jsonl"

@@ -24,7 +24,7 @@ FLOORS = (
     ("model_studies",),
     ("bounds", "host"),
 )
-"""From the top; imports point down."""
+"""Floors of the picture from the top; imports point down."""
 HOUSES = tuple(house for floor in FLOORS for house in floor)
 PRODUCT = tuple(house for house in HOUSES if house != "verification")
 """The houses in the wheel."""

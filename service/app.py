@@ -109,7 +109,7 @@ def _route(app: FastAPI, offered: Registry) -> None:
 
 
 def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:
-    """Return what runs the scheduler while the application runs, in a directory that is its own."""
+    """Return the lifespan that runs the scheduler with the application, and locks the directory."""
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:

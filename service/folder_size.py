@@ -1,4 +1,4 @@
-"""Size of a folder of files that can be made again: what was not used for longest goes first."""
+"""Limit on the size of a folder of files that can be made again: the longest unused go first."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from pydantic_settings import BaseSettings, PydanticBaseSettingsSource
 from lineofaction.gearbox.problems import BadInput
 
 _MAX_CHARACTERS = 65_536
-"""A secret ends there at the latest; what follows in the file is not read."""
+"""Most characters of a secret; the rest of its file is not read."""
 
 
 def is_secret(field: FieldInfo) -> bool:
@@ -56,7 +56,7 @@ class SecretFiles(PydanticBaseSettingsSource):
 
 
 def _content(file: Path, variable: str, field: str) -> str:
-    """Return what a file holds, without the end of its line."""
+    """Return the content of a file, without the end of its line."""
     tip = f"It is named by {variable}; the user of the service must be able to read it."
     try:
         with file.open(encoding="utf-8") as stream:

@@ -28,7 +28,7 @@ from service.origin import Origin, is_loopback
 from service.secret_files import SecretFiles
 
 MIN_MEMORY_MB = 256
-"""What a worker needs to load the program."""
+"""Memory in MB that a worker needs to load the program."""
 _SIGNING = "whsec_"
 _SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
 _ENCRYPTED = ("tls", "wss")
@@ -36,7 +36,7 @@ _FORMER = {
     "LOA_DASK_SCHEDULER": "It is LOA_SCHEDULER.",
     "LOA_LEASE_S": "Remove it: one server owns a job table, by a lock that ends with it.",
 }
-"""Settings that earlier versions had, and what to do with them."""
+"""Settings of earlier versions, and the advice on each."""
 logger = structlog.get_logger(__name__)
 
 
@@ -47,11 +47,11 @@ class Settings(BaseSettings):
 
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
-    """`host`, `port`: Where it listens; beyond loopback only with access keys."""
+    """`host`, `port`: Address on which the service listens; beyond loopback only with access keys."""
     management_host: str = "127.0.0.1"
     management_port: int | None = Field(None, ge=0, le=65535)
-    """`management_host`, `management_port`: Where health, readiness and metrics are answered without a key;
-    None: nowhere.
+    """`management_host`, `management_port`: Address that answers health, readiness and metrics without a key;
+    None: no address.
     """
     data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
     """Jobs, results and the compliance cache."""
@@ -63,14 +63,14 @@ class Settings(BaseSettings):
     results_access_key_id: SecretStr | None = None
     results_secret_access_key: SecretStr | None = Field(None, validate_default=True)
     """`results_access_key_id`, `results_secret_access_key`: Credentials of that bucket, both or none; None:
-    those of the AWS_ variables.
+    the AWS_ variables.
     """
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
-    """What the cache of files from elsewhere may hold, MB."""
+    """Largest size of the cache of files from another place, MB."""
     retention_days: float | None = Field(None, ge=1.0, le=100_000.0)
-    """How long results and ended jobs are kept that nobody asks for; None: for ever."""
+    """Days for which results and ended jobs are stored without a request for them; None: for ever."""
     quarantine_days: float = Field(7.0, ge=0.0, le=100_000.0)
-    """How long a removed result can be had back."""
+    """Days for which a removed result can be restored."""
     workers: int = Field(1, ge=1, le=256)
     """Jobs that run at the same time on this machine."""
     processes: int = Field(1, ge=1, le=64)
@@ -78,25 +78,26 @@ class Settings(BaseSettings):
     queue_limit: int = Field(100, ge=1, le=100_000)
     """Computations that may wait; beyond it a submission is answered with 429."""
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
-    """Bytes of a request body; beyond it 413."""
+    """Largest size of a request body in bytes; a larger one is answered with 413."""
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
-    """Longest run of one computation."""
+    """Longest run of one computation, s."""
     memory_limit_mb: int | None = Field(None, ge=MIN_MEMORY_MB, le=1_000_000_000)
     """Memory that one computation may have, MB; None: the machine's over the number of workers."""
     attempts: int = Field(2, ge=1, le=10)
-    """How often a computation whose worker died is started."""
+    """Most starts of a computation whose worker died."""
     scheduler_unencrypted: bool = False
     """Whether the network between this machine and the scheduler is trusted with jobs in plain text."""
     scheduler: str | None = None
     """Address of a Dask scheduler whose workers do the jobs; None: children of this machine do."""
     require_confinement: bool = False
-    """Whether it starts only where the system has every protection for readers of callers' files."""
+    """Whether the service refuses to start on a system without every protection for readers of callers'
+    files."""
     keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
     """The file of access keys; None: ``keys.json`` in the data directory."""
     webhook_origins: str = ""
     """Origins that may be called about jobs, such as ``https://hooks.example.com``, separated by commas."""
     webhook_secret: SecretStr | None = Field(None, validate_default=True)
-    """With which these calls are signed: ``whsec_`` and 24 to 64 bytes in base64."""
+    """Secret that signs calls about jobs: ``whsec_`` and 24 to 64 bytes in base64."""
 
     @field_validator("keys_file", mode="before")
     @classmethod

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from opentelemetry.sdk.trace import TracerProvider
 
 TRACEPARENT: ContextVar[str] = ContextVar("traceparent", default="")
-"""Of the request that is being answered; empty: it belongs to no trace."""
+"""Traceparent of the request that is being answered; empty: the request belongs to no trace."""
 Fact = str | int | float
 
 _VALID = re.compile(r"(?!ff)[0-9a-f]{2}-(?!0{32})([0-9a-f]{32})-(?!0{16})[0-9a-f]{16}-[0-9a-f]{2}", re.ASCII)
@@ -57,7 +57,7 @@ def traceparent_of(span: Span) -> str:
 
 
 def current_traceparent(sent: str) -> str:
-    """Return that of the span of the request, or else what its caller `sent`."""
+    """Return the traceparent of the request's span, or else the one that its caller `sent`."""
     return traceparent_of(trace.get_current_span()) or sent
 
 
@@ -101,7 +101,7 @@ def flush_spans() -> None:
 
 @cache
 def span_provider() -> TracerProvider | None:
-    """Return what sends the spans of this process to the receiver of the environment; None: there is none.
+    """Return the provider that sends this process's spans to the receiver of the environment; None: none.
 
     Then they go where the provider of the API sends them, by default nowhere.
     """

@@ -1,4 +1,4 @@
-"""The version of the program, which is that of its solver."""
+"""The version of the program and of its solver."""
 
 from __future__ import annotations
 

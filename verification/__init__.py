@@ -1,1 +1,1 @@
-"""What results are held against: solvers and records for tests, benchmarks and pages, in no wheel."""
+"""References for results: solvers and records for tests, benchmarks and pages, in no wheel."""

@@ -30,7 +30,9 @@ from model_studies.progress import Progress, by_cost, silent
 from model_studies.workers import InProcess, Workers
 
 MARGIN = 8
-"""Spherical harmonics above the wavenumber times the radius, whose part of the far field is below 1e-6."""
+"""Orders of spherical harmonics above the wavenumber times the radius; their part of the far field is below
+1e-6.
+"""
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
 EDGES = 2.6
 """Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
@@ -48,7 +50,8 @@ def _far_field_resistance(
 ) -> ComplexArray:
     """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
 
-    Of the kernel e^{+ikr}: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn of panels.
+    The kernel is e^{+ikr}. Arguments: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn
+    of panels.
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())

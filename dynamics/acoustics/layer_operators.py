@@ -15,7 +15,7 @@ from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers, divided
 
 BLOCK = 512
-"""Panels, at most, whose rows of the operators are a task."""
+"""Most panels whose rows of the operators make one task."""
 TESTED = "tested"
 """Name of the panels of a block in the library's mesh."""
 SECONDS, GROWTH = 1.40e-6, 2.24

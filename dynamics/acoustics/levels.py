@@ -162,7 +162,7 @@ def level_bands(
     Parameters
     ----------
     levels : callable
-        From the values of all parameters by name to levels in dB, (L,).
+        Function of the values of all parameters by name that returns levels in dB, (L,).
     cases : int
         Joint cases, spread evenly; best a power of two.
     """
@@ -191,7 +191,7 @@ def _cases(ranges: Mapping[str, Range], count: int) -> Iterator[dict[str, float]
 
 
 def _parts(reached: FloatArray, alone: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-    """Return deviations, at least 0, that add up in squares to what is reached, the rest as `JOINTLY`."""
+    """Return deviations, at least 0, whose squares add up to `reached` squared; the rest is `JOINTLY`."""
     square = np.maximum(reached, 0.0) ** 2
     squares = {name: np.maximum(value, 0.0) ** 2 for name, value in alone.items()}
     sum_of_squares = np.sum([0.0 * square, *squares.values()], axis=0)

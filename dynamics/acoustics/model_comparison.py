@@ -34,7 +34,9 @@ PAIR, PAIR_SHAPE = 48e-9, 0.1e-9
 WAVE, WAVE_SHAPE = 11e-9, 0.065e-9
 """CPU seconds of a panel and a plane wave: its phase, and for each shape; 720 to 13 520 panels."""
 OFF_AT, OFF = (1.5, 2.5), ((-7.0, -9.0), (2.0, 1.0))
-"""ka, and what monopoles are off there, dB: least and most of spheres, a box and modes of five gear cases."""
+"""Values of ka, and least and largest error of monopoles at each, dB, on spheres, a box and modes of five
+gear cases.
+"""
 WAVES_IN_MEMORY = 4
 """Arrays of phases."""
 
@@ -195,7 +197,7 @@ def compare_models(
     progress : callable
         Called as progress(stage, fraction); before a costly model with its predicted cost behind the stage.
     offered : sequence of RadiationModel, optional
-        Of which cost and error are stated, too; they are not computed.
+        Further models whose cost and error are stated; they are not computed.
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     """

@@ -29,11 +29,11 @@ class ModalResistance:
     """
 
     frequency: FloatArray = field(metadata=stored("Hz", "frequency", "frequency"))
-    """Hz, increasing. Shape (F,)."""
+    """Frequencies, Hz, increasing. Shape (F,)."""
     matrix: ComplexArray = field(
         metadata=stored("kg s-1", "radiation resistance", "frequency", "coordinate", "coordinate")
     )
-    """Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
+    """Resistance matrices, Hermitian, kg/s for shapes of amplitude in m/s. Shape (F, M, M)."""
 
     def power(self, frequency: FloatArray, velocity: ComplexArray) -> FloatArray:
         """Return the sound power v^H R v / 2 at every sample, (B,), W.
@@ -43,7 +43,7 @@ class ModalResistance:
         Parameters
         ----------
         frequency : (B,) array
-            Hz.
+            Frequencies, Hz.
         velocity : (B, M) array
             Complex peak amplitudes of the shapes, m/s.
         """
@@ -231,7 +231,7 @@ def order_power(resistance: ModalResistance, frequency: FloatArray, velocity: Co
     Parameters
     ----------
     frequency : (K, B) array
-        Hz, within those of the resistance.
+        Frequencies within those of the resistance, Hz.
     velocity : (K, B, M) array
         Complex peak amplitudes of the M shapes.
     """

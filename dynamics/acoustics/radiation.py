@@ -22,7 +22,7 @@ from dynamics.work_cost import Cost
 PRODUCT = 0.1e-9
 """CPU seconds for a panel and a pair of shapes."""
 SMALLER = 0.8
-"""Size of the sphere: two waves on a wall are shorter than those around the body."""
+"""Radius of the sphere over that of the body: two waves on a wall are shorter than two around the body."""
 
 
 class RadiationModel(Protocol):
@@ -38,7 +38,7 @@ class RadiationModel(Protocol):
         Parameters
         ----------
         frequency : float
-            Hz, above zero.
+            Frequency, Hz, above zero.
         shapes : (T, M) array
             Normal velocity of the panels per unit of each shape's amplitude, > 0 outwards.
 
@@ -62,7 +62,7 @@ class RadiationModel(Protocol):
     def error_band(self, ka: float) -> tuple[float, float]:
         """Return by how much levels are off, dB: from (below 0: too quiet) and to.
 
-        Of bodies that breathe, move as a whole or bend once around, and of walls of boxes
+        The bounds hold for bodies that breathe, move as a whole or bend once around, and for walls of boxes
         (docs/theory/sound-power.md). `ka`: wavenumber times `Hull.equivalent_radius`.
         """
 
@@ -121,7 +121,7 @@ def panel_power(
     Parameters
     ----------
     frequency : float
-        Hz.
+        Frequency, Hz.
     normal_velocity : (T,) array
         Complex peak amplitudes, m/s.
     """

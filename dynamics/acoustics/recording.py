@@ -21,14 +21,15 @@ from dynamics.orders.resampling import resampled
 from dynamics.results import RunResult
 from dynamics.types import ComplexArray, FloatArray
 
-SAMPLE_RATE = 48_000
-HALF_LENGTH = 64  # of the resampling filter, in samples of the lower rate
-LARGEST_STEP = 20_000  # of the lower of two rates in their ratio
+SAMPLE_RATE = 48_000  # usual sample rate, Hz; the only one for which loudness is computed
+HALF_LENGTH = 64  # half length of the resampling filter, in samples of the lower rate
+LARGEST_STEP = 20_000  # largest denominator of the ratio of two rates
 PASSED = 0.45
 """Highest frequency over the sample rate: the resampling filter passes it unchanged."""
 
 LOWEST = 20.0
-"""Hz: below it nothing is heard, and slow changes of load would take the full scale."""
+"""Edge of the high-pass, Hz: below it nothing is audible, and slow changes of load would take the full scale.
+"""
 SLOPE = 4  # order of the high-pass filter, which is run forwards and backwards
 FADE = 0.01  # s at both ends
 COMMENT = ("quantity", "unit", "full_scale")
@@ -111,7 +112,7 @@ def order_recording(
     time : (B,) array
         s, increasing.
     frequency : (K, B) array
-        Hz, at most `PASSED` times the sample rate.
+        Frequencies, Hz, at most `PASSED` times the sample rate.
     amplitude : (K, B) array
         Complex or real peak amplitudes, in `unit`.
     """
@@ -159,8 +160,8 @@ def audible(values: FloatArray, sample_rate: float) -> FloatArray:
 def principal_direction(values: FloatArray, sample_rate: float) -> tuple[FloatArray, float]:
     """Return the direction (3,) in which a vector (3, T) varies most audibly, and its share of the variance.
 
-    The unit eigenvector of the largest eigenvalue of the covariance; its largest component is positive. Of a
-    single mesh it is close to the line of action, since the force of the teeth acts along it.
+    The unit eigenvector of the largest eigenvalue of the covariance; its largest component is positive. With
+    a single mesh it is close to the line of action, along which the force of the teeth acts.
 
     Raises `InputError` as `audible`; or nothing varies.
     """
@@ -177,8 +178,8 @@ def series_recording(
 ) -> Recording:
     """Return a series (T,) of a run as a recording of the same duration, at its own level.
 
-    What `audible` leaves, resampled, with cosine fades of 10 ms at both ends. Nothing is equalized or
-    compressed. It holds no more than the run: nothing above the pass frequency of its output.
+    The recording is the series after `audible`, resampled, with cosine fades of 10 ms at both ends. Nothing
+    is equalized or compressed. It holds no more than the run: nothing above the pass frequency of its output.
 
     Raises `InputError` as `audible` and `Recording`.
     """

@@ -22,7 +22,7 @@ from dynamics.types import FloatArray
 from host import MissingExtra
 
 SHORTEST = 0.01
-"""s of a sound that has a loudness."""
+"""Shortest sound that has a loudness, s."""
 STEADY = 0.01
 """Largest change of speed of a steady sound, over the largest speed."""
 EXCEEDED = 5.0
@@ -51,12 +51,14 @@ class _SoundQuality:
     """Metrics of a stationary sound."""
 
     loudness: float
-    """sone, of a free field: 1 for a tone of 1 kHz at 40 dB."""
+    """Loudness in the free field, sone: 1 for a tone of 1 kHz at 40 dB."""
     sharpness: float
-    """acum: 1 for a band of noise, a critical band wide about 1 kHz, at 60 dB."""
+    """Sharpness, acum: 1 for a band of noise, a critical band wide about 1 kHz, at 60 dB."""
     tone_frequency: FloatArray
     tone_to_noise: FloatArray
-    """`tone_frequency`, `tone_to_noise`: Hz and dB of the prominent tones. Shape (K,) each."""
+    """`tone_frequency`, `tone_to_noise`: Frequencies, Hz, and tone-to-noise ratios, dB, of the prominent
+    tones. Shape (K,) each.
+    """
 
 
 def sound_quality(recording: Recording) -> _SoundQuality:
@@ -105,15 +107,17 @@ class SoundFigures:
 
     level: float
     weighted_level: float
-    """`level`, `weighted_level`: Of the rms over the whole run, dB and dB(A) re 20 uPa."""
+    """`level`, `weighted_level`: Level of the rms over the whole run, dB and dB(A) re 20 uPa."""
     steady: bool
     """Whether the speed is constant."""
     loudness: float | None = None
-    """sone, in the free field; of a changing sound that exceeded for 5 % of the time. None: not computed."""
+    """Loudness in the free field, sone; that of a changing sound is exceeded for 5 % of the time. None: not
+    computed.
+    """
     sharpness: float | None = None
-    """acum, of the mean spectrum."""
+    """Sharpness of the mean spectrum, acum."""
     tones: tuple[tuple[float, float], ...] = ()
-    """Hz and tone-to-noise ratio in dB of the prominent tones of a steady sound."""
+    """Frequency, Hz, and tone-to-noise ratio, dB, of the prominent tones of a steady sound."""
 
 
 def is_steady(speed: FloatArray) -> bool:

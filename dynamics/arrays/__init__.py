@@ -1,1 +1,1 @@
-"""The assembled system as plain arrays: what the compiled loops see."""
+"""The assembled system as plain arrays, which the compiled loops read."""

@@ -1,4 +1,4 @@
-"""The assembled system as plain arrays: what the compiled loops see."""
+"""The assembled system as plain arrays, which the compiled loops read."""
 
 from __future__ import annotations
 

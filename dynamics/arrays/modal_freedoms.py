@@ -21,8 +21,8 @@ class ModalFreedoms(NamedTuple):
     first: int
     """Freedoms before them."""
     row: IntArray
-    """Local coordinates that they move; s is a multiple of `TOGETHER`, what is missing to it repeats one.
-    Shape (s,).
+    """Local coordinates that the modal freedoms move. Their number s is a multiple of `TOGETHER`: the last
+    ones repeat. Shape (s,).
     """
     shape: FloatArray
     """Motion of these coordinates per amplitude: a block of `SystemArrays.direction`; 0 where one repeats.
@@ -91,7 +91,7 @@ def modal_loss(modal: ModalFreedoms, velocity: FloatArray) -> float:
 
 @inner
 def subtract_modal_resistance(modal: ModalFreedoms, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
-    """Subtract what the modes' own dampers and springs exert at `q` and `v` (n,) from `force` (n,)."""
+    """Subtract the forces of the modes' dampers and springs at `q` and `v` (n,) from `force` (n,)."""
     first = np.uint64(modal.first)
     for i in range(np.uint64(modal.damping.size)):
         force[first + i] -= modal.damping[i] * v[first + i] + modal.stiffness[i] * q[first + i]

@@ -24,9 +24,9 @@ class _SparseRows(NamedTuple):
     first: IntArray
     """First entry of each row, and the number of entries. Shape (rows + 1,)."""
     column: IntArray
-    """Shape (entries,)."""
+    """Columns of the entries. Shape (entries,)."""
     weight: FloatArray
-    """Shape (entries,)."""
+    """Weights of the entries. Shape (entries,)."""
 
 
 class RowRuns(NamedTuple):
@@ -38,7 +38,7 @@ class RowRuns(NamedTuple):
     column: IntArray
     """`entry`, `column`: First entry of each run, and its column. Shape (runs,) each."""
     length: IntArray
-    """Shape (runs,)."""
+    """Lengths of the runs. Shape (runs,)."""
 
 
 def _row_runs(rows: _SparseRows) -> RowRuns:
@@ -164,7 +164,7 @@ def row_products(
 
 @inner
 def subtract_resistance(sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray) -> None:
-    """Subtract what dampers and springs exert at `q` and `v` (n,) from `force`."""
+    """Subtract the forces of dampers and springs at `q` and `v` (n,) from `force`."""
     damping, stiffness = sparse.damping.weight, sparse.stiffness.weight
     for i in range(sparse.modal.first):
         damped, elastic = row_products(sparse.damping, i, damping, v, stiffness, q)
@@ -187,7 +187,7 @@ def run_product(runs: RowRuns, weight: FloatArray, row: int, vector: FloatArray)
 def subtract_resistance_by_runs(
     sparse: SparseMatrices, q: FloatArray, v: FloatArray, force: FloatArray
 ) -> None:
-    """Subtract what `subtract_resistance` does, the sums of a row in any order."""
+    """Subtract the forces as `subtract_resistance` does, the sums of a row in any order."""
     damping, stiffness, runs = sparse.damping.weight, sparse.stiffness.weight, sparse.resistance_runs
     for i in range(sparse.modal.first):
         force[i] -= run_product(runs, damping, i, v) + run_product(runs, stiffness, i, q)

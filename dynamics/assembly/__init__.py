@@ -1,1 +1,1 @@
-"""A scene as elements and arrays: what the integrators advance."""
+"""A scene as elements and arrays, which the integrators advance."""

@@ -24,14 +24,14 @@ from dynamics.motion.observation import local_state
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
-ITERATIONS = 200
-SETTLED = 1e-12  # of the largest force
-SOFTEST = 1e-9  # of the largest stiffness: least damping of a step
-UNRESISTED = 1e-13  # of the largest stiffness: below it nothing resists a motion
+ITERATIONS = 200  # most damped Newton steps
+SETTLED = 1e-12  # unbalanced force over the largest force, at which the search ends
+SOFTEST = 1e-9  # least damping of a step, over the largest stiffness
+UNRESISTED = 1e-13  # stiffness over the largest, below which no spring resists a motion
 
 
 class _Rest(NamedTuple):
-    """Whether forces balance, at what deviation (n,) from the kinematic motion; what is left of them, N."""
+    """Whether forces balance, deviation (n,) from the kinematic motion, and force left, N."""
 
     settled: bool
     displacement: FloatArray

@@ -1,4 +1,4 @@
-"""The force elements of rotating frames: what rotation adds to rotors, and couplings across frames.
+"""The force elements of rotating frames: terms of rotors that rotate, and couplings across frames.
 
 Axis letters: N columns, the six freedoms of every rotor; k laws of the kinematic motion.
 """
@@ -25,7 +25,7 @@ from dynamics.types import FloatArray
 
 
 def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], RotatingFrameLaws]:
-    """Return the elements of what effects add to rotors because they or their frames rotate, and their laws.
+    """Return the elements, and their laws, of the terms that effects add to rotors in rotation.
 
     A lever makes lengths of angles. Terms that no freedom moves have no element.
     """
@@ -49,7 +49,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
-    """Return the terms of a rotor, those that move alike added up: every term costs two unknowns a stage."""
+    """Return the terms of a rotor, those of equal motion in sum: each term costs two unknowns a stage."""
     merged: list[FrameTerm] = []
     for term in terms:
         for entry, other in enumerate(merged):

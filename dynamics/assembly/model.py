@@ -27,7 +27,7 @@ class Model(LoadedTrain):
 
 
 def decide_model(scene: Scene, registry: tuple[Effect, ...]) -> Model:
-    """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
+    """Decide the effects of rotors, which give the freedoms, and then the effects of meshes, which use them.
 
     Raises `InputError`: a choice is unknown, parts do not fit each other, or a free direction has no inertia.
     """

@@ -42,9 +42,9 @@ def with_flank(system: System, mesh: int, table: MeshTable) -> System:
     Parameters
     ----------
     mesh : int
-        Its index in the scene.
+        Index of the mesh in the scene.
     table : MeshTable
-        At one misalignment and center distance.
+        Table at one misalignment and center distance.
     """
     used, plain, spatial = _used(system, mesh, table), *_laws(system)
     plain = plain._replace(table=by_address(plain.table.with_table(mesh, used)), damping=plain.damping.copy())
@@ -89,7 +89,7 @@ def _used(system: System, mesh: int, table: MeshTable) -> PlainTable:
 
 
 def _damped(system: System, mesh: int, used: PlainTable) -> System:
-    """Return `system`, whose laws hold a table `used` already, with its damping in them and what follows."""
+    """Return `system` with damping and mean stiffness of the table `used`, which its laws have already."""
     elements, flanks = system.arrays.elements, system.flanks
     force = float(flanks.nominal_force[mesh]) or float(used.level[1])
     stiffness = mean_stiffness(flanks.law.table, mesh, force)
@@ -132,8 +132,8 @@ def starting_at(system: System, time: float, quanta: IntArray) -> System:
 def operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
     """Return misalignment and center-distance change of every mesh in m, (m, 2).
 
-    Those of the bodies displaced by `displacement` (n,) where the mesh's table follows them, else the mesh's
-    constant ones.
+    Where the mesh's table follows the bodies, the values are those at `displacement` (n,), else the mesh's
+    constants.
     """
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
     points = np.array(

@@ -27,11 +27,11 @@ from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 HOLDS = ALONG | AGAINST
-STEPS = 100
-SETTLED = 1e-12  # of the sum of the loads of all balls
+STEPS = 100  # most safeguarded Newton steps to the place of a ring that slides
+SETTLED = 1e-12  # thrust over the sum of the loads of all balls, at which a sliding ring rests
 Seat = tuple[float, float, float, float, float, float, float, float]
 Thrust = tuple[float, float, float, float, float, float, float]
-DIRECTIONS, AXIAL = 5, 2
+DIRECTIONS, AXIAL = 5, 2  # number of displacements of a bearing (x, y, z, tilt_x, tilt_y), and index of z
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,9 @@ class RowPlacement:
     """Data of a row of elements beside its geometry: coordinates, damping and seats."""
 
     copies: int = 1
-    """Each element as so many that share its stiffness, evenly spaced: more than 1 averages its passing."""
+    """Number of parts of each element, evenly spaced, that share its stiffness: more than 1 averages the
+    passing.
+    """
     lever: float = 1.0
     """Length that makes coordinates of tilts, m; 1: coordinates are in rad and moments in N m."""
     shift: float = 0.0
@@ -76,7 +78,7 @@ class BallElements(NamedTuple):
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[BallBearing, RowPlacement]]) -> BallElements:
-        """Lay out `rows` and how they are placed."""
+        """Lay out `rows` with their placements."""
         figures = [_figures(bearing, placement) for bearing, placement in rows]
         return cls(
             balls=np.array([bearing.count * placement.copies for bearing, placement in rows], dtype=np.int64),
@@ -132,7 +134,7 @@ def cage_angle(local: LocalState, turned: int) -> float:
 
 @routine
 def axial_seat(laws: BallElements, entry: int, local: LocalState, row: int, turned: int) -> Seat:
-    """Return where a ring stands along the axis, and what presses it against its seat.
+    """Return the position of a ring along the axis, and the thrust that presses it against its seat.
 
     A ring that slides stands between the places where the grooves of all balls are on one side. Between them
     the thrust of the balls grows with z, and safeguarded Newton steps find its zero.
@@ -251,7 +253,7 @@ def _add(
     length: float,
     axial_rate: float,
 ) -> None:
-    """Add what a ball of the elastic force `rigid` `press` does along g and across it."""
+    """Add the forces of a ball with the elastic force `rigid` `press`, along g and across it."""
     load, closing, sliding = rigid * press, 0.0, 0.0
     for i in range(DIRECTIONS):
         rate = axial_rate if i == AXIAL else local.rate[row + i]

@@ -18,7 +18,7 @@ class BearingDuty:
     mass: float
     """Share of the bearing in the mass on the shaft, kg."""
     lever: float
-    """Radius that makes lengths of tilts where a law has none of its own, m."""
+    """Radius by which tilts become lengths, where a law states no lever, m."""
 
 
 class BearingLaw(Protocol):
@@ -43,17 +43,17 @@ class BearingLaw(Protocol):
         """Return its coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
 
     def laid_out(self, duty: BearingDuty) -> Any:
-        """Return what those take of it."""
+        """Return the law as `packed` of its arrays takes it."""
 
     def typical(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (p,), N/m."""
 
     def tangent_error(self, duty: BearingDuty) -> float:
-        """Return what its tangent misses of the displacement under the typical load, m."""
+        """Return the displacement under the typical load, less that by the tangent, m."""
 
 
 class PlausibleValue(NamedTuple):
-    """A value of a law that is held against those of real bearings."""
+    """A value of a law, to compare with the values of real bearings."""
 
     check: str
     """Name of the check in `dynamics.plausibility`."""
@@ -93,5 +93,5 @@ class SceneBearingLaw:
         return None
 
     def plausible_values(self) -> Iterable[PlausibleValue]:
-        """Return the values that are held against those of real bearings."""
+        """Return the values to compare with those of real bearings."""
         return ()

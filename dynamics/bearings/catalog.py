@@ -23,6 +23,7 @@ from dynamics.bearings.rolling_bearing import BallBearing, CatalogLine
 from dynamics.errors import InputError
 
 SLENDERNESS = (0.0, 0.09, 0.1, 0.11, 0.12, 0.15, 0.2, 0.25, 0.3)
+"""Ball diameter over pitch diameter, at which `RATING` has values."""
 RATING = (14.7e6, 16.5e6, 16.4e6, 16.1e6, 15.9e6, 15.2e6, 14.0e6, 12.8e6, 11.6e6)  # Pa; straight between
 FILLED = math.radians(187.5)
 NUMBERS = range(5, 41)
@@ -57,7 +58,8 @@ def from_catalog(
     """
     CatalogLine(bore, outside_diameter, static_rating, clearance)
     pitch, largest = (bore + outside_diameter) / 2.0, WALL * (outside_diameter - bore) / 2.0
-    smallest = pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))  # of the greatest number of balls
+    # diameter with the greatest number of balls
+    smallest = pitch * math.sin(FILLED / (2.0 * (NUMBERS[-1] - 1)))
     minimum, maximum = (_filled_rating(diameter, pitch) for diameter in (smallest, largest))
     if not minimum <= static_rating <= maximum:
         suggestion = "Check its unit: no deep groove ball bearing of this section has such a rating."

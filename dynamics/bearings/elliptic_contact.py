@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from dynamics.checks import positive
 
-MIN_RATIO = 1e-12  # of the axes: radii that differ by 23 orders of magnitude
+MIN_RATIO = 1e-12  # least ratio of the axes: that of radii which differ by 23 orders of magnitude
 
 
 @dataclass(frozen=True)

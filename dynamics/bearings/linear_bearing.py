@@ -15,7 +15,7 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-MAX = 5
+MAX = 5  # most rows of a linear bearing
 
 
 class LinearBearingLaws(NamedTuple):
@@ -25,7 +25,9 @@ class LinearBearingLaws(NamedTuple):
     """n, up to 5. Shape (l,)."""
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: N/m, N s/m; symmetric, positive semidefinite. Shape (l, 5, 5) each."""
+    """`stiffness`, `damping`: Stiffness, N/m, and damping, N s/m; symmetric, positive semidefinite. Shape
+    (l, 5, 5) each.
+    """
 
     @classmethod
     def packed(cls, laws: Sequence[tuple[FloatArray, FloatArray]]) -> LinearBearingLaws:

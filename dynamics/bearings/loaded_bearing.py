@@ -28,8 +28,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import Routine
 from dynamics.types import FloatArray
 
-TOLERANCE = 1e-12  # of the load
-STEPS = 500
+TOLERANCE = 1e-12  # unbalanced force over the load, at which the search ends
+STEPS = 500  # most Newton steps to the displacement under a load
 MIN_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
 
 
@@ -50,7 +50,7 @@ class Reaction:
     slope: float
     """Derivative of the energy in the angle of the cage, J/rad."""
     load: FloatArray
-    """Normal loads of the elements, N; with copies (Z copies, L): that of a whole element in each place.
+    """Normal loads of the elements, N; with copies (Z copies, L), each copy has the load of a whole element.
     Shape (Z, L).
     """
 
@@ -95,7 +95,7 @@ class LoadedBearing:
         displacement : (5,) array_like
             x, y, z (m), tilt_x, tilt_y (rad) about the bearing's center.
         angle : float
-            Of the first element from x towards y, rad.
+            Angle of the first element from x towards y, rad.
         """
         local = self._local
         local.coordinate[:], local.position[0] = displacement, angle / (2.0 * math.pi)

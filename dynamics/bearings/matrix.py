@@ -57,8 +57,9 @@ def check_matrix(
 def _least_eigenvalue(matrix: FloatArray, precision: float) -> float:
     """Return the least eigenvalue in units in which the diagonal is 1.
 
-    What computed the entries left n eps of the largest of them, the lever between forces and moments taken as
-    a meter. A diagonal entry so small that this is more than `precision` of it is measured by that instead.
+    The program that computed the entries left an error of n eps of the largest entry, with 1 m as lever
+    between forces and moments. A diagonal entry so small that this is more than `precision` of it is measured
+    by that instead.
     """
     rounding = OPERATIONS * len(matrix) * float(np.finfo(float).eps) * float(np.max(np.abs(matrix)))
     if rounding == 0.0:

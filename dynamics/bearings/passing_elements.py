@@ -12,7 +12,7 @@ from dynamics.bearings import BallBearing, RollerBearing
 from dynamics.bearings.loaded_bearing import LoadedBearing
 from dynamics.types import FloatArray
 
-ANGLES = 32
+ANGLES = 32  # usual number of cage angles over the passing of an element
 
 
 @dataclass(frozen=True)

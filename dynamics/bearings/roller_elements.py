@@ -19,8 +19,8 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray, IntArray
 
-EXPONENT = 10.0 / 9.0
-DIRECTIONS = 5
+EXPONENT = 10.0 / 9.0  # exponent of line contact, from load over approach
+DIRECTIONS = 5  # number of displacements of a bearing: x, y, z, tilt_x, tilt_y
 
 
 class RollerElements(NamedTuple):
@@ -47,13 +47,13 @@ class RollerElements(NamedTuple):
     """First lamina of each bearing. Shape (l + 1,)."""
     coordinate: FloatArray
     drop: FloatArray
-    """`coordinate`, `drop`: Middle of each lamina along the roller over the lever of tilts, and by how much
-    its profile is lower there, on both contacts together, m. Shape (L,) each.
+    """`coordinate`, `drop`: Middle of each lamina along the roller over the lever of tilts, and relief of the
+    profile at it, on both contacts together, m. Shape (L,) each.
     """
 
     @classmethod
     def packed(cls, rows: Sequence[tuple[RollerBearing, RowPlacement]]) -> RollerElements:
-        """Lay out `rows` and how they are placed."""
+        """Lay out `rows` with their placements."""
         figures = [_figures(bearing, at) for bearing, at in rows]
         places = [bearing.lamina_places for bearing, _ in rows]
         drops = [
@@ -157,7 +157,7 @@ def _laminae(
 def _add(
     local: LocalState, row: int, g: tuple[float, ...], t: tuple[float, ...], sums: tuple[float, ...]
 ) -> None:
-    """Add what a roller does, by the sums over its laminae."""
+    """Add the forces of a roller, by the sums over its laminae."""
     load, moment, total, turns, k, kx, kxx, d, dx, dxx = sums
     for i in range(DIRECTIONS):
         local.elastic[row + i] += load * g[i] + moment * t[i]

@@ -88,7 +88,7 @@ LOCATING = Declared(
     BOTH,
     later=True,
 )
-ALONG, AGAINST = 1, 2
+ALONG, AGAINST = 1, 2  # bits of the directions in which the seats hold the rings: along z, against z
 LOCATED = {BOTH: ALONG | AGAINST, POSITIVE: ALONG, NEGATIVE: AGAINST, NONE: 0}
 """The directions as bits."""
 AXIAL_PRELOAD = Declared(
@@ -333,7 +333,7 @@ class RollingBearing:
     of one bearing, or bearings side by side, are several of these, each at its own position.
 
     Its rings are held in their seats along the axis, or one slides: a non-locating ball bearing carries no
-    axial force (`locating`). Of cylindrical rollers it changes nothing.
+    axial force (`locating`). It changes nothing in rows of cylindrical rollers.
 
     An element of load Q pushes back with ``Q (1 + d p')``, p' the rate at which it is pressed, and never
     pulls (Hunt and Crossley); d follows from `damping_ratio` with the mass of the shaft and its gears divided

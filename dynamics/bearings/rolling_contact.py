@@ -34,7 +34,9 @@ class RollingContactLaws(NamedTuple):
     stiffness: FloatArray
     exponent: FloatArray
     clearance: FloatArray
-    """`stiffness`, `exponent`, `clearance`: In N/m^exponent, 1 and m. Shape (l,) each."""
+    """`stiffness`, `exponent`, `clearance`: Stiffness, N/m^exponent, exponent and clearance, m, of the
+    contacts. Shape (l,) each.
+    """
     damping: FloatArray
     reach: FloatArray
     """`damping`, `reach`: Damping in full contact, N s/m, and the elastic force from which it acts in full,

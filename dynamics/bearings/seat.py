@@ -17,7 +17,7 @@ from dynamics.errors import InputError
 from dynamics.shafts.bodies import TEMPERATURE
 from dynamics.types import FloatArray
 
-DEFAULT_DAMPING_RATIO = 0.05
+DEFAULT_DAMPING_RATIO = 0.05  # damping ratio where a scene states none
 SEAT = 5
 """Number of directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
 

@@ -52,15 +52,15 @@ class SpringCurve(SceneBearingLaw):
     """
 
     bushing: str
-    """The bushing or planet bearing in whose place it acts."""
+    """Bushing or planet bearing that the curve replaces."""
     direction: str
     """One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
     axis.
     """
     displacement: tuple[float, ...]
-    """m, rad for a tilt; strictly increasing, at least 2."""
+    """Displacements of the table, m, or rad for a tilt; strictly increasing, at least 2."""
     force: tuple[float, ...]
-    """N, N m for a tilt; strictly increasing."""
+    """Forces of the table, N, or moments, N m, for a tilt; strictly increasing."""
 
     def __post_init__(self) -> None:
         one_of("direction", self.direction, DIRECTIONS)
@@ -94,7 +94,7 @@ class SpringCurve(SceneBearingLaw):
         return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
 
     def laid_out(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
-        """Return what its arrays take."""
+        """Return the curve as `SpringCurveLaws.packed` takes it."""
         return self, duty
 
     def typical(self, duty: BearingDuty) -> FloatArray:
@@ -102,7 +102,7 @@ class SpringCurve(SceneBearingLaw):
         return np.array([self.slope / self.lever(duty) ** 2])
 
     def tangent_error(self, duty: BearingDuty) -> float:
-        """Return how far the table is off a straight line through its value at 0, m; of a tilt 0."""
+        """Return the deviation of the table from a straight line through its value at 0, m; of a tilt 0."""
         if self.direction.startswith("tilt"):
             return 0.0
         ways, forces = np.array(self.displacement), np.array(self.force)

@@ -22,13 +22,13 @@ def tangent_bushing(
     Parameters
     ----------
     bearing : LoadedBearing
-        Its outer ring is held by the ground, its center is on the shaft's axis.
+        Bearing whose outer ring the ground holds and whose center is on the shaft's axis.
     seat : (str, str, float)
         Name of the bushing, its shaft, position along it (m).
     displacement : (5,) array_like
-        Of the shaft at the bushing: x, y, z (m), tilt_x, tilt_y (rad).
+        Displacement of the shaft at the bushing: x, y, z (m), tilt_x, tilt_y (rad).
     angle : float
-        Of the first element from x towards y, rad.
+        Angle of the first element from x towards y, rad.
     """
     name, shaft, position = seat
     at = bearing.evaluate(displacement, angle)

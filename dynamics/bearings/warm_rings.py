@@ -29,16 +29,16 @@ class Cylinder:
 
     @property
     def shrinkage(self) -> float:
-        """Return by how much its outer diameter falls, of itself, per pressure on it, 1/Pa [1]_."""
+        """Return the decrease of the outer diameter over itself, per pressure on it, 1/Pa [1]_."""
         return (self._stretch - self.poissons_ratio) / self.youngs_modulus
 
     @property
     def widening(self) -> float:
-        """Return by how much its bore grows, of itself, per pressure in it, 1/Pa [1]_."""
+        """Return the increase of the bore over itself, per pressure in it, 1/Pa [1]_."""
         return (self._stretch + self.poissons_ratio) / self.youngs_modulus
 
     def far_side(self, pressed: float) -> float:
-        """Return by how much the free diameter grows, m per Pa of pressure on that at `pressed` (m) [1]_.
+        """Return the increase of the free diameter, m per Pa of pressure on the diameter `pressed` (m) [1]_.
 
         A pressure in the bore widens the outside, one on the outside narrows the bore.
         """

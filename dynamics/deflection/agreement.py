@@ -67,13 +67,13 @@ def in_agreement(
     Parameters
     ----------
     contacts : mapping
-        Of the meshes whose load may vary over the face, by name.
+        Contacts of the meshes whose load may vary over the face, by name.
     first : Deflection
-        On the tables of the scene.
+        Deflection with the tables of the scene.
     complete : callable
         Called with the knots by mesh, m, before their tables are asked for.
     workers : Workers
-        As of `deflect`.
+        Workers as in `deflect`.
     """
     if not contacts:
         return Agreement(first, 1, 0.0)

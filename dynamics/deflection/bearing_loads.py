@@ -45,7 +45,7 @@ def life_duration(revolutions: Sequence[float], speed: Sequence[float], share: S
     revolutions : (C,) sequence
         Life L under each case alone; may be infinite, NaN if not known.
     speed : (C,) sequence
-        rad/s, >= 0.
+        Speeds under the load cases, rad/s, >= 0.
     share : (C,) sequence
         Shares q of the duration, in any unit, not all 0.
     """

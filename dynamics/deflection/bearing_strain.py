@@ -1,4 +1,4 @@
-"""Displacements at bearings by cause: what yields, what is clearance, and what the seat moves."""
+"""Displacements at bearings by cause: elasticity and clearance of the bearing, and motion of the seat."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from dynamics.mechanism.connections import condensed_housings, seat_compliance
 from dynamics.mechanism.supports import carried_seat, seat_motion
 from dynamics.types import FloatArray
 
-HALVINGS = 50
+HALVINGS = 50  # bisections that find the clearance
 FREE = 1e-12
 """Part of the force up to which an element does not press."""
 
@@ -101,7 +101,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
-    """Return the motions (b, 5) of the seats in housings that are no freedoms by the shafts' there (b, 5)."""
+    """Return the motions (b, 5) of seats in massless housings by those of the shafts in them (b, 5)."""
     places, names = supports_by_name(system.rotors), list(system.supports.name)
     displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):

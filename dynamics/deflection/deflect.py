@@ -128,7 +128,7 @@ def deflect(
     ----------
     scene : Scene
     cases : sequence of LoadCase
-        Their names differ. Default: the scene's own loads at t = 0.
+        Load cases with different names. Default: the loads of the scene at t = 0.
     positions : int
         Least number of positions of the mesh cycle, see `cycle_times`.
     progress : callable, optional
@@ -167,7 +167,7 @@ def _deflected(shared: tuple[Scene, int], numbered: tuple[int, LoadCase]) -> Cas
         direction=case.direction,
         share=case.share,
         speed=speed,
-        torque=sum(leading_torque(loaded, leader, speed)),  # of loads at t = 0 and of all other torques
+        torque=sum(leading_torque(loaded, leader, speed)),  # by loads at t = 0, and by all other torques
         status=rest.status.name.lower(),
         residual=rest.residual,
         meshes=tuple(mesh_alignment(system, k, rest, strain) for k in range(len(loaded.meshes))),

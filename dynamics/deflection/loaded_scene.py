@@ -19,7 +19,9 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 
 STATIC = 1.0
-"""Hz to which shafts are resolved: their deflections under forces at what is on them are exact anyway."""
+"""Frequency to which shafts are resolved, Hz: their deflections under forces at parts on them are exact
+anyway.
+"""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class ForceUnderCase:
 
 
 def _case_force(force: AppliedForce, specified: CaseForce | None) -> AppliedForce:
-    """Return a force with what a load case states of it."""
+    """Return a force with the values that a load case states."""
     if specified is None:
         return force
     factor = 1.0 if specified.factor is None else specified.factor
@@ -148,7 +150,7 @@ def _effects_at_rest(scene: Scene) -> dict[str, str]:
 
 
 def _fixed_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:
-    """Yield a drive for every free train: it takes what its torques do not balance, at rest and in motion."""
+    """Yield a drive for every free train: it takes the unbalanced torque, at rest and in motion."""
     for free in scene.free_rotations:
         speed = free.initial_speed or (free.forward if free.shaft == leader.shaft else 0.0)
         if speed == 0.0:
@@ -158,7 +160,7 @@ def _fixed_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[Impos
 
 
 def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, float]:
-    """Return what loads at t = 0, and all other torques, ask of the leading shaft at a speed, N m.
+    """Return the torque on the leading shaft at a speed, N m: by loads at t = 0, and by all other torques.
 
     By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that. The
     others are torques by speed, and moments of forces about the axis, which are torques about +z.
@@ -184,7 +186,7 @@ def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, 
 
 
 def _toward(kinematics: Kinematics, shaft: int, leader: _Leader) -> float:
-    """Speed of a shaft over that of the leader, > 0 where what resists it resists the leader."""
+    """Speed of a shaft over that of the leader, > 0 where a resistance of the shaft resists the leader."""
     return kinematics.sense[shaft] * leader.forward * float(kinematics.ratio[shaft][leader.law])
 
 

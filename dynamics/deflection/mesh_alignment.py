@@ -23,8 +23,9 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 
 CAUSES = ("shaft", "bearing", "clearance", "housing", "coupling", "set")
-"""Elastic shafts, elastic bearings, their clearance, the motion of their seats, shafts that couplings alone
-hold, and what the scene itself sets."""
+"""Causes of misalignment: elastic shafts, elastic bearings, clearance of bearings, motion of their seats,
+shafts that couplings alone hold, and the misalignment that the scene sets.
+"""
 SHAFT, BEARING, CLEARANCE, HOUSING, COUPLING, SET = range(len(CAUSES))
 TILT = slice(3, 5)
 
@@ -92,7 +93,7 @@ def _radial(system: System, index: int) -> list[str]:
 
 
 def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
-    """Return how the gap of mesh `index` grows over its common face by the twist of both shafts, m.
+    """Return the growth of the gap of mesh `index` over its common face by the twist of both shafts, m.
 
     Towards positive z of the table's driving gear, as misalignment. The shafts as they are under the gears;
     a torque that enters evenly along the face twists its ends as one that enters in its middle.
@@ -146,7 +147,7 @@ class MeshAlignment:
 
 
 def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain) -> MeshAlignment:
-    """Return the alignment of mesh `index` in the rest positions, `strain` that of their mean."""
+    """Return the alignment of mesh `index` in the rest positions; `strain` belongs to their mean."""
     scene, mesh, rotors = system.scene, system.scene.meshes[index], system.rotors
     line, sense = system.lines[index], system.kinematics.mesh_sense[index]
     motion = rest.motion.mean(axis=0)

@@ -33,7 +33,7 @@ class Rest:
     force acts at mid-face. Shape (K, m).
     """
     bearing_force: FloatArray
-    """Force and moment on what holds each bearing, N and N m. Shape (K, b, 5)."""
+    """Force and moment on the part that holds each bearing, N and N m. Shape (K, b, 5)."""
 
 
 def rest_over(system: System, times: FloatArray) -> Rest:

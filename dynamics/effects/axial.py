@@ -36,7 +36,7 @@ class Axial(RotorEffect):
         return Verdict(True, True, "a helical mesh pushes along the axis", influence)
 
     def check(self, mechanism: Mechanism) -> None:
-        """Refuse a shaft that is pushed along its axis and that nothing holds there.
+        """Refuse a shaft that is pushed along its axis and that no bearing holds axially.
 
         Idlers and planets between sun and ring balance themselves. So do double helical gears: their meshes
         alone hold them, and between these the shaft floats; without axial stiffness it would not. Three

@@ -22,7 +22,7 @@ UNLOADED = 1e-9  # m; within it rows of a pair just touch
 
 
 class BearingTemperature(RotorEffect):
-    """Other rows in the place of those as drawn."""
+    """Rows of bearings at temperature in place of the rows as drawn."""
 
     name = "bearing_temperature"
     at_rest = True
@@ -63,7 +63,7 @@ def _differs(row: WarmBearing) -> bool:
 
 
 def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Say what becomes of every row without a contact angle; a negative clearance is a preload."""
+    """Return the clearance of each row without contact angle in words; a negative clearance is a preload."""
     for row in rows:
         if row.drawn.row.contact_angle == 0.0:
             before, after = (1e6 * part.row.clearance for part in (row.drawn, row.warm))

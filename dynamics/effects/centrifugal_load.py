@@ -16,7 +16,9 @@ from dynamics.mechanism.connections import Connections
 from dynamics.mechanism.mechanism import Mechanism
 
 SHARE = 0.01
-"""Least load, over what the nominal mesh forces push the planet by, that calls for it."""
+"""Least load, over the displacing force of the nominal mesh forces on the planet, at which a scene calls for
+the effect.
+"""
 
 
 class CentrifugalLoad(RotorEffect):
@@ -26,7 +28,7 @@ class CentrifugalLoad(RotorEffect):
     cost = "none beside the effect gyroscopic; without it a force element of two rows per planet"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where the load at the largest speed is a share of what meshes push the planet by.
+        """Call for the effect where the load at the largest speed is a share of the forces of the meshes.
 
         Its influence is how far that load, held by the bearing alone, moves it along a line of action.
         """

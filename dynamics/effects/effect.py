@@ -1,4 +1,4 @@
-"""An effect of the multibody model: its facts, its decision and what it contributes where it is on.
+"""An effect of the multibody model: its facts, its decision and its contribution where it is on.
 
 An effect is one file: a class of a rotor or of a mesh and a line in the registry. The rest of the model knows
 none by name; what an effect does not contribute, the class it derives from leaves as it is.
@@ -51,17 +51,17 @@ class Effect:
     one of motion; None: where the scene calls for it, as in a run.
     """
     compulsory: ClassVar[bool] = False
-    """Whether there are scenes that cannot do without it, whatever they choose."""
+    """Whether there are scenes that need the effect, whatever they choose."""
 
     def prepared(self, scene: Scene) -> Scene:
-        """Return `scene` with what the effect, if it is not switched off, changes of its parts.
+        """Return `scene` with the changes that the effect, unless it is switched off, makes to its parts.
 
         Raises `InputError`.
         """
         return scene
 
     def neglected(self, scene: Scene) -> Scene:
-        """Return `scene` without what causes the effect, which is switched off."""
+        """Return `scene` without the cause of the effect, which is switched off."""
         return scene
 
     def check(self, mechanism: Mechanism) -> None:
@@ -107,5 +107,5 @@ class MeshEffect(Effect):
         return flanks
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:
-        """Return `terms` with what the effect adds to the force of one flank."""
+        """Return `terms` with the terms that the effect adds to the force of one flank."""
         return terms

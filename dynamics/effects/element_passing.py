@@ -24,7 +24,7 @@ class ElementPassing(RotorEffect):
     linear = False
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where the passing moves the shaft by more than the tolerance of what meshes yield.
+        """Call for the effect where the passing moves the shaft by more than a share of the mesh deflection.
 
         Its influence is that motion: from peak to peak, along the typical load. Averaged without a tolerance.
         """

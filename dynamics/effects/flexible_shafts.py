@@ -25,15 +25,15 @@ from dynamics.shafts.shaft import OnShaft, on_length
 from dynamics.types import FloatArray
 
 SHARE = 0.05
-"""Least displacement at a mesh, over what the mesh itself yields, that calls for it."""
-ROUNDING = 1e-9
+"""Least displacement at a mesh, over the deflection of the mesh, at which a scene calls for the effect."""
+ROUNDING = 1e-9  # misalignment over displacement, below which it is rounding
 NOTHING_BENDS = (
     "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
 )
 
 
 def _why_rigid(mechanism: Mechanism, index: int) -> str:
-    """Return why the shaft `index` cannot be flexible; empty where it can."""
+    """Return the reason why the shaft `index` cannot be flexible; empty where it can."""
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
     if not shaft.sections:
@@ -141,7 +141,7 @@ class FlexibleShafts(RotorEffect):
     cost = "five to thirty freedoms per shaft, all in one block"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
-        """Call for it where the nominal force bends and twists a shaft by a share of what its mesh yields."""
+        """Call for the effect where the nominal force deflects a shaft by a share of its mesh deflection."""
         mechanism, flanks = rotors[0].mechanism, rotors[0].flanks
         refusals = [_why_rigid(mechanism, index) for index in range(len(rotors))]
         elastic = [None if refusal else _elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]

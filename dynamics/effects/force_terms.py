@@ -1,4 +1,4 @@
-"""Terms of the force of one flank: the table it reads, what it follows, where and how it acts."""
+"""Terms of the force of one flank: its table, the motions that it follows, its point of action."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ MISALIGNMENT, CENTER_DISTANCE, SLIDING = range(3)
 
 @dataclass(frozen=True)
 class FlankTerms:
-    """A flank of the plane and what effects add to it."""
+    """A flank of the plane, and the terms that effects add to it."""
 
     table: MeshTable
     """Table of the flank, at one operating point."""
     rows: tuple[FloatArray | None, FloatArray | None, FloatArray | None] = (None, None, None)
     """Gradients of each kind of row in all rotors' freedoms; None: it has none. Three (k, N) arrays."""
     follows: tuple[int, int] = (0, 0)
-    """1 where the force follows misalignment and center distance, 0 where it stays at the mesh's value."""
+    """Whether the force follows misalignment and center distance (1), or stays at the mesh's value (0)."""
     per_face: float = 0.0
     """1/(face width), 1/m; 0: the force acts at mid-face."""
     friction: float = 0.0

@@ -27,7 +27,7 @@ class Friction(MeshEffect):
     cost = "two more rows per flank and eight more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where a coefficient is given; the influence is that of the largest friction torque."""
+        """Call for the effect where a coefficient is given; its influence is the largest friction torque."""
         coefficient = mesh.mesh.friction
         if coefficient is None:
             return Verdict(False, False, "no coefficient of friction given", 0.0)
@@ -40,7 +40,7 @@ class Friction(MeshEffect):
         return Verdict(True, True, reason, share * mesh.force / mesh.stiffness)
 
     def check(self, mechanism: Mechanism) -> None:
-        """Refuse a coefficient on a table that does not say how its flanks slide; raises `InputError`."""
+        """Refuse a coefficient on a table that does not state how its flanks slide; raises `InputError`."""
         for index, mesh in enumerate(mechanism.scene.meshes):
             if mesh.friction is not None and getattr(mesh.table, "sliding_lever", None) is None:
                 bound = "left out: the table of the mesh has no sliding data"

@@ -20,8 +20,8 @@ from dynamics.mechanism.spun_shaft import spun_pairs
 from dynamics.types import FloatArray
 
 SHARE = 0.01
-"""Least shift of a natural frequency, over the frequency, that calls for it."""
-LATERAL, TILT = (0, 1), (3, 4)
+"""Least shift of a natural frequency, over the frequency, at which a scene calls for the effect."""
+LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
 
 
 class Gyroscopic(RotorEffect):
@@ -32,7 +32,7 @@ class Gyroscopic(RotorEffect):
     cost = "a force element of two rows per tilting shaft; in rotating frames one or more per member"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where it shifts a natural frequency by more than a share.
+        """Call for the effect where it shifts a natural frequency by more than a share.
 
         A tilting shaft of spin w whirls at its frequency f times 1 +- I_p w/(2 sqrt(I_t k_t)); one seen from
         a frame of speed W at f +- W/(2 pi).

@@ -16,11 +16,13 @@ from dynamics.mechanism.mechanism import Mechanism
 from dynamics.mechanism.sampling import top_load_frequency, top_mesh_frequency, top_passing_frequency
 
 SHARE = 0.01
-"""Least motion of a seat by the housing's inertia, over its static one, that calls for it."""
+"""Least motion of a seat by the housing's inertia, over its static motion, at which a scene calls for the
+effect.
+"""
 
 
 class HousingModes(RotorEffect):
-    """The amplitudes of all modes of a housing, as freedoms beside those of the shafts in it."""
+    """The amplitudes of all modes of a housing, as freedoms in addition to those of the shafts in it."""
 
     name = "housing_modes"
     at_rest = False

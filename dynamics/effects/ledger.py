@@ -106,7 +106,7 @@ class _LedgerEntry:
 
 @dataclass(frozen=True)
 class EffectLedger:
-    """All decisions, and what this model leaves out."""
+    """All decisions on effects, and the effects that the model leaves out."""
 
     entries: tuple[_LedgerEntry, ...] = ()
 

@@ -167,7 +167,7 @@ class LoadedMesh:
         return bool(np.any(self.axes[axis] != 0.0))
 
     def not_read(self) -> str | None:
-        """Reason that the table cannot be read along its axes as bodies move; None where it can."""
+        """Reason why the table cannot be read along its axes as bodies move; None where it can."""
         if self.mesh.technique != "variable_torque":
             return "the constant-torque technique has one stiffness per position"
         if getattr(self.mesh.table, "deflection_derivative", None) is None:
@@ -175,7 +175,7 @@ class LoadedMesh:
         return None
 
     def change_along(self, axis: int) -> float:
-        """Return how the mean transmission error changes as the nominal force moves the bodies, m.
+        """Return the change of the mean transmission error as the nominal force moves the bodies, m.
 
         Along one axis of the table: misalignment (0) or center distance (1).
         """

@@ -58,7 +58,7 @@ def _mean_error(mesh: LoadedMesh, point: FloatArray) -> float:
 
 
 def _text(mesh: LoadedMesh, change: WarmMesh) -> str:
-    """Say what changes, and which of it the scene cannot follow."""
+    """Return the changes of a mesh in words, with those that the scene cannot follow."""
     table, coast = mesh.mesh.table, mesh.mesh.coast
     parts = [f"center distance {1e6 * change.distance_change:+.4g} µm against the gears"]
     if np.size(table.center_distance_change) == 1:

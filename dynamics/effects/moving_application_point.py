@@ -13,7 +13,7 @@ from dynamics.effects.loaded_parts import LoadedMesh
 from dynamics.mechanism.additions import LOAD_ARM
 from dynamics.mechanism.flank_gradients import common_face_width, misalignment_gradient
 
-CENTERED = 1e-9  # of the face width
+CENTERED = 1e-9  # distance from mid-face over the face width, below which a load is centered
 
 
 class MovingApplicationPoint(MeshEffect):

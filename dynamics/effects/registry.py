@@ -1,4 +1,4 @@
-"""The effects of the multibody model, one line each, and what is left out."""
+"""The effects of the multibody model, one line each, and those that it leaves out."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dynamics.effects.effect import RotorEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedRotor
 
-CENTERED = 1e-9  # of the shaft's length
+CENTERED = 1e-9  # distance from the center of mass over the shaft's length, below which a force is centered
 
 
 class Tilt(RotorEffect):
@@ -39,7 +39,7 @@ class Tilt(RotorEffect):
 
 
 def _why(rotor: LoadedRotor) -> str:
-    """Return what tilts the shaft; empty: nothing does."""
+    """Return the cause that tilts the shaft; empty: there is none."""
     body, forces = rotor.rotor, rotor.mechanism.scene.forces
     limit = CENTERED * body.shaft.length
     if any(mesh.axial * mesh.radius > 0.0 for mesh in rotor.meshes):

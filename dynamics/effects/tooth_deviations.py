@@ -20,7 +20,7 @@ from dynamics.types import FloatArray
 
 ASSUMED_CLASS = 6
 """Tolerance class (ISO 1328) assumed for gears whose table states no tooth deviations."""
-SAMPLES = 256
+SAMPLES = 256  # positions of a base pitch at which mesh order 1 is computed
 
 
 class ToothDeviations(MeshEffect):
@@ -41,8 +41,8 @@ class ToothDeviations(MeshEffect):
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the table covers more than one base pitch.
 
-        Its influence is how far a base pitch differs from their mean. Of a table of one pitch it is the
-        run-out of both gears of an assumed class, which nothing can switch on.
+        Its influence is how far a base pitch differs from their mean. For a table of one pitch the influence
+        is the run-out of both gears of an assumed class, which nothing can switch on.
         """
         made = table_as_made(mesh.mesh.table)
         if made.period == 1:

@@ -15,7 +15,7 @@ from dynamics.meshes.gear_mesh import CoastFlank
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.scene.scene import Scene
 
-MAX_TEETH = 100_000
+MAX_TEETH = 100_000  # largest number of teeth of a gear
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class MeshElement:
 
     @property
     def base_pitch(self) -> float:
-        """Transverse, m."""
+        """Transverse base pitch, m."""
         return 2.0 * math.pi * self.base_radius[0] / self.teeth[0]
 
 

@@ -65,7 +65,9 @@ class Elements(NamedTuple):
 
     law: IntArray
     entry: IntArray
-    """`law`, `entry`: Shape (E,) each."""
+    """`law`, `entry`: Number of each element's law, and index of the element in the arrays of the law. Shape
+    (E,) each.
+    """
     first: IntArray
     """First row of each element, and R. Shape (E + 1,)."""
     mesh: IntArray
@@ -73,10 +75,12 @@ class Elements(NamedTuple):
     offset: FloatArray
     """`offset`, `stiffness`: The stiffness is for error norms and first guesses. Shape (R,) each."""
     drift: FloatArray
-    """0 for flanks, whose coordinates the kinematic motion does not change. Shape (k, R)."""
+    """Rate of the coordinates per unit speed of each law; 0 for flanks, whose coordinates the kinematic
+    motion does not change. Shape (k, R).
+    """
     stiffness: FloatArray
     speed: FloatArray
-    """Shape (k, E, 2)."""
+    """Spin and speed of the frame per unit speed of each law. Shape (k, E, 2)."""
     carried: int
     turned: int
     """`carried`, `turned`: The first row with drift, and the first element with speed; R and E: none."""
@@ -141,7 +145,7 @@ def _call(law: Law, function: Callable[..., Any]) -> str:
 
 
 def _potential(law: Law, row: Compiled) -> str:
-    """Return energy and its derivative in the position, of what a function of energy returns."""
+    """Return the source of a call of `row.energy` for energy and its derivative in the position."""
     if row.energy is None:
         return "return 0.0, 0.0"
     call, parts = _call(law, row.energy), len(get_args(get_type_hints(row.energy)["return"]))
@@ -193,7 +197,7 @@ def is_linear(elements: Elements, e: int) -> bool:
 
 @inner
 def evaluate_linear(elements: Elements, local: LocalState, e: int) -> None:
-    """Do what `evaluate` does for an element that `is_linear`."""
+    """Evaluate an element that `is_linear`, as `evaluate` does."""
     linear_bearing(elements.laws.linear_bearing, elements.entry[e], local, elements.first[e])
 
 
@@ -220,7 +224,7 @@ def power_along_axes(elements: Elements, local: LocalState, e: int) -> tuple[flo
 
 @inner
 def power_by_frames(elements: Elements, local: LocalState, e: int) -> float:
-    """Return what the rotation of frames, and of cages, stores in what it turns, W."""
+    """Return the power that the rotation of frames and cages stores in an element, W."""
     if elements.mesh[e] < 0 or elements.law[e] not in TURNED:
         return 0.0
     return float(potential(elements, local, e)[1] * local.pace[elements.mesh[e]])

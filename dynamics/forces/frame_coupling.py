@@ -27,7 +27,7 @@ class FrameCouplingLaws(NamedTuple):
     """n. Shape (l,)."""
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: N/m, N s/m. Shape (l, 4, 4) each."""
+    """`stiffness`, `damping`: Stiffness, N/m, and damping, N s/m. Shape (l, 4, 4) each."""
 
 
 @inner

@@ -90,7 +90,7 @@ class Compiled(NamedTuple):
 
     @property
     def routines(self) -> tuple[Routine, ...]:
-        """All that is compiled apart, when a scene first has the law: flanks are part of every loop."""
+        """Routines that are compiled when a scene first has the law; flanks are part of every loop."""
         return tuple(call for call in (*self.inside, self.force, self.energy) if isinstance(call, Routine))
 
 

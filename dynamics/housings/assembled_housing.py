@@ -20,7 +20,7 @@ from dynamics.types import FloatArray, IntArray
 LOOSE_STIFFNESS = 1e-12
 """Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
 BLOCK = 3
-"""Consecutive freedoms that are ordered as one: those of a node, half those of a rigid face."""
+"""Consecutive freedoms that are ordered as one: three of a node, half of those of a rigid face."""
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class AssembledHousing:
     """Freedoms x; f in all."""
     mass: sp.csr_array
     stiffness: sp.csr_array
-    """`mass`, `stiffness`: With the mounts' stiffness. (f, f) sparse arrays."""
+    """`mass`, `stiffness`: Matrices M and K, the mounts' stiffness included. (f, f) sparse arrays."""
     mounts: tuple[sp.csr_array, sp.csr_array]
     """Stiffness and damping of the mounts alone. Tuple of two (f, f) sparse arrays."""
     seats: sp.csr_array

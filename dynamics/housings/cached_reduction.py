@@ -44,12 +44,12 @@ class _KeptMesh:
 def meshed_step(
     path: str | Path, element_size: float | None = None, cache: Path | None = None
 ) -> TetrahedralMesh:
-    """Return the mesh of a STEP file, from the cache if it is there.
+    """Return the mesh of a STEP file, from the cache if the cache has it.
 
     Parameters
     ----------
     path, element_size
-        As `mesh_step` takes them, and it raises the same.
+        Arguments of `mesh_step`, which decides the errors too.
     cache : Path, optional
         Directory of kept results; None: neither read nor written.
     """
@@ -76,7 +76,7 @@ def reduced_housing(
     limit: CostLimit | None = None,
     expected: Callable[[Cost], object] = lambda _cost: None,
 ) -> ReducedHousing:
-    """Return a housing's reduction with what it cost, from the cache if it is there.
+    """Return a housing's reduction with its cost, from the cache if the cache has it.
 
     Raises `InputError` as `reduce_housing`, or the predicted cost is above the limit; `SolveError` as
     `reduce_housing`.
@@ -87,7 +87,7 @@ def reduced_housing(
         Directory of kept results (see `host.default_cache_directory`) and of what is known of the host; None:
         neither read nor written.
     limit : CostLimit, optional
-        What computing it may cost. Default: 600 CPU s and 8 GB.
+        Limits of the cost of the reduction. Default: 600 CPU s and 8 GB.
     expected : callable, optional
         Called with the predicted cost before it is computed; not where it is in the cache.
     """

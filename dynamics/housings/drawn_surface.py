@@ -24,7 +24,7 @@ from dynamics.mesh_content import mesh_text
 from dynamics.solid_housing import MESH_FORMATS, MESH_SUFFIXES
 from dynamics.types import FloatArray, IntArray
 
-MAX_TRIANGLES = 20_000
+MAX_TRIANGLES = 20_000  # largest number of triangles of a drawn surface
 WANTED_TRIANGLES = 6_000
 """Most triangles of a drawn solid without small faces; a solid with them may have up to the maximum."""
 _FARTHEST = from_to(0.0, 1e3, "m")
@@ -140,7 +140,7 @@ def _bounding(tetrahedra: IntArray) -> IntArray:
 
 
 def _drawn(points: FloatArray, facets: IntArray, maximum: int, field: str) -> DrawnSurface:
-    """Return a surface of at most so many triangles, which is near the origin and as large as a housing."""
+    """Return a surface of at most `maximum` triangles; it is near the origin and as large as a housing."""
     used, facets = np.unique(facets, return_inverse=True)
     points, facets = points[used], facets.reshape(-1, 3)
     if not len(facets):

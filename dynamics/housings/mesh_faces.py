@@ -19,7 +19,7 @@ NEAR = 5e-3
 INWARD = 0.7
 """Least cosine between the normal of a bore's wall and the direction to its axis."""
 COVERED = 0.5
-"""Least part of a bore's wall that must be there: a split seat has half of it."""
+"""Least part of a bore's wall that has to exist: a split seat has half of it."""
 
 
 class Face(Protocol):

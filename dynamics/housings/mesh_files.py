@@ -25,12 +25,12 @@ MIN_SHAPE = 0.02
 """A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
 SIZE = from_to(5e-3, 50.0, "m")
 FIELD = "mesh_file"
-UNITS = {"m": 1.0, "mm": 1e-3}
+UNITS = {"m": 1.0, "mm": 1e-3}  # meters per unit of coordinates
 _MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
-_MESH_SECONDS = 60.0
-LINEAR_NODES = 4
+_MESH_SECONDS = 60.0  # most seconds in which the child process reads a file
+LINEAR_NODES = 4  # nodes of a linear tetrahedron
 TEXTS = ("Abaqus", "Nastran")
-CORNERS = 3
+CORNERS = 3  # corners of a triangle
 
 
 def element_shape(mesh: TetrahedralMesh) -> FloatArray:
@@ -91,7 +91,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
         ``.msh`` (gmsh), ``.inp`` (Abaqus, CalculiX), ``.bdf``, ``.nas``, ``.fem`` (Nastran), ``.vtu``,
         ``.vtk``.
     unit : str
-        Of its coordinates, "m" or "mm": files do not say it.
+        Unit of the coordinates, "m" or "mm": files do not state it.
     """
     scale = UNITS[one_of("unit", unit, list(UNITS))]
     return _checked(_content(Path(path)), scale)

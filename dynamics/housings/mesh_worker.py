@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from host import confine, end_after
 
 SURFACE_CELLS = ("triangle", "triangle6")
-NODES = {"tetra": 4, "tetra10": 10}
+NODES = {"tetra": 4, "tetra10": 10}  # nodes of the kinds of tetrahedra
 PHYSICAL, PROPERTY = "gmsh:physical", "nastran:ref"
 Nodes = NDArray[np.int64]
 

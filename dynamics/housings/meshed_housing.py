@@ -16,7 +16,7 @@ from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.solid_housing import LOSS_FACTOR, MODES, Material
 from dynamics.types import FloatArray, IntArray
 
-HIGHEST_RATIO = 1.0
+HIGHEST_RATIO = 1.0  # largest damping ratio of a mode
 
 
 class _Damping(Protocol):
@@ -76,7 +76,7 @@ class MeshedHousing:
     feet: tuple[Foot, ...] = ()
     """Without any the housing is free, and six rigid-body modes are kept besides `modes`."""
     points: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
-    """m; the motion of the node next to each is recovered."""
+    """Points at which motion is recovered, m: that of the nearest node."""
     modes: int = declared(80, MODES)
     damping: _Damping = USUAL_DAMPING
     """Default: `USUAL_DAMPING`."""

@@ -168,7 +168,7 @@ def receptance(
     Parameters
     ----------
     frequency : (n,) array
-        Hz.
+        Frequencies, Hz.
     residual : bool
         Whether the static flexibility of the modes left out is included. Without it the motion is the sum
         over the modes of `frequency` alone, in which seats are too stiff; it is for comparison.
@@ -240,7 +240,7 @@ def scene_housing(housing: ReducedHousing, name: str, bushings: tuple[str, ...] 
 
 
 def scene_axes(housing: ReducedHousing) -> FloatArray:
-    """Return the matrix T (r, r) with x = T y, x the reduced coordinates, y those of the `scene_housing`.
+    """Return the matrix T (r, r) with x = T y, from coordinates y of the `scene_housing` to reduced ones x.
 
     The motions of the seats in y are along the scene's axes; amplitudes of modes are the same in both.
     """
@@ -250,7 +250,7 @@ def scene_axes(housing: ReducedHousing) -> FloatArray:
 
 def _seat_rotation(seat: SeatFrame) -> FloatArray:
     """Return the motions of a seat along its own axes per its motions along the scene's, square."""
-    sine = math.hypot(float(seat.axes[0, 2]), float(seat.axes[1, 2]))  # of the angle between bore and z
+    sine = math.hypot(float(seat.axes[0, 2]), float(seat.axes[1, 2]))  # sine of the angle between bore and z
     if sine > PARALLEL:
         angle = Quantity(math.asin(min(sine, 1.0)), "rad", digits=3)
         bound = Text.of("along z, as the shafts of a scene; its bore is off by ", angle)

@@ -90,9 +90,9 @@ def housing_of_matrices(
     Parameters
     ----------
     seats : tuple of SeatFrame
-        In the order of the matrices' first rows.
+        Seats in the order of the matrices' first rows.
     damping : Damping, optional
-        By mode, where the matrices have none and there is mass. Default: `USUAL_DAMPING`.
+        Damping by mode, where the matrices have none and there is mass. Default: `USUAL_DAMPING`.
     """
     rows, motions = len(matrices.stiffness), sum(len(seat.motions) for seat in seats)
     if not 0 < motions <= rows:

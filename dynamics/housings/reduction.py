@@ -19,7 +19,7 @@ from dynamics.types import FloatArray, IntArray
 
 INDEPENDENT = 1e-12
 """Share of a deflection that is not in the modes kept, in modal mass, below which it adds nothing."""
-SINGULAR = 1e-12
+SINGULAR = 1e-12  # relative eigenvalue, below which a direction has no stiffness
 
 
 @dataclass(frozen=True)
@@ -83,10 +83,10 @@ def _require_converged(modes: FreeModes, count: int) -> None:
 
 
 def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
-    """Return rigid motions, modes and what the deflections add to them, unit modal masses, (f, r)."""
+    """Return rigid motions, modes and the independent parts of the deflections, unit modal masses, (f, r)."""
     basis = np.hstack([modes.rigid, modes.shape])
     rest = modes.deflection
-    for _ in range(2):  # the second time takes out what rounding left
+    for _ in range(2):  # the second pass removes the rounding of the first
         rest = rest - basis @ (basis.T @ (housing.mass @ rest))
     norm = np.einsum("fs,fs->s", modes.deflection, housing.mass @ modes.deflection)
     gram = rest.T @ (housing.mass @ rest) / np.sqrt(np.outer(norm, norm))

@@ -15,7 +15,7 @@ class RigidBody:
     """A body that does not deform."""
 
     mass: float
-    """kg."""
+    """Mass, kg."""
     center: FloatArray
     """Center of gravity, m. Shape (3,)."""
     inertia: FloatArray

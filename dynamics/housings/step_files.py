@@ -23,7 +23,7 @@ from dynamics.solid_housing import STEP_SUFFIXES
 from host import ChildFailed, ChildOutOfMemory, ask_child
 
 STEP_WORKER = Path(__file__).with_name("step_worker.py")
-STEP_SECONDS = 600.0
+STEP_SECONDS = 600.0  # usual limit of the time that gmsh takes for a STEP file, s
 WALL_ELEMENTS = 0.7
 """Elements over the mean wall thickness, 2 V/S of the body, unless a size is given: quadratic ones bend."""
 Made = TypeVar("Made")
@@ -75,11 +75,11 @@ class StepSolid:
 
     volume: float
     surface: float
-    """`volume`, `surface`: m^3, m^2."""
+    """`volume`, `surface`: Volume, m^3, and surface area, m^2."""
     bores: tuple[Bore, ...]
     """Round holes of which at least half is there; halves of a split one are one."""
     planes: tuple[FlatFace, ...]
-    """The largest first."""
+    """Flat faces, the largest first."""
 
 
 def step_solid(path: str | Path, seconds: float = STEP_SECONDS) -> StepSolid:

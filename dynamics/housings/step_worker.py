@@ -27,20 +27,20 @@ import numpy as np
 from host import Limits, confine, end_after, handlers_restored
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
-MILLIMETER = 1e-3
-ELEMENTS_A_TURN = 12
+MILLIMETER = 1e-3  # meters per unit of gmsh's models
+ELEMENTS_A_TURN = 12  # elements around a full turn of curvature
 DRAWN_A_TURN, DRAWN_ELEMENTS, DRAWN_SMALLEST = 16, 40, 400
 """Elements of a drawn surface: around a full turn of curvature; across the body at least where it is flat,
 and at most where it is curved.
 """
-FRONTAL_DELAUNAY = 6
+FRONTAL_DELAUNAY = 6  # number of the algorithm in gmsh
 WORST = 0.05
 """Quality of a tetrahedron (its inverse condition number, 1 if it is regular) below which a mesh is made
 again: Delaunay's method leaves slivers in the walls of castings."""
 
 
 def limits(seconds: float) -> Limits:
-    """Return what a process may take that meshes within so many seconds: memory as whoever started it."""
+    """Return the limits of a process that meshes within `seconds`; memory as for the parent process."""
     return Limits(memory_mb=None, cpu_seconds=int(seconds) + 1)
 
 
@@ -70,7 +70,7 @@ def _start_gmsh() -> Any:
 def step_answer(request: dict[str, Any]) -> dict[str, Any]:
     """Mesh the one solid of a file, measure it or draw it; raises MemoryError, or Exception by gmsh."""
     gmsh = _start_gmsh()
-    gmsh.clear()  # of an earlier file in the same process
+    gmsh.clear()  # the model of an earlier file in the same process
     try:
         gmsh.model.occ.importShapes(request["step"])
         gmsh.model.occ.synchronize()

@@ -53,7 +53,7 @@ class SeatFrame:
 
     name: str
     position: FloatArray
-    """m, in the mesh. Shape (3,)."""
+    """Position of the seat in the mesh, m. Shape (3,)."""
     axes: FloatArray
     """Columns: the seat's x, y, z in the mesh. z is the bore's axis; x is as near as it can be to the mesh's
     x, or to its y where the axis is along x. Shape (3, 3).
@@ -61,7 +61,7 @@ class SeatFrame:
     ring: Ring
     """Whether the seat is elastic or a rigid ring."""
     motions: tuple[str, ...]
-    """The directions of its freedoms, of `MOTIONS`."""
+    """Directions of the seat's freedoms, of `MOTIONS`."""
 
 
 def in_axes(frame: SeatFrame) -> FloatArray:
@@ -100,7 +100,7 @@ class Mount:
     N, N m per m, rad. Symmetric, positive semidefinite.
     """
     damping: Matrix | None = None
-    """N s/m ...; None: none."""
+    """Damping along the axes of the mesh, N s/m, and with six rows like the stiffness; None: none."""
 
     def __post_init__(self) -> None:
         rows = len(check_matrix("stiffness", self.stiffness, (3, 6), PRECISION))
@@ -119,7 +119,7 @@ class Foot:
     name: str
     face: Face
     mount: Mount | None = None
-    """None: fixed."""
+    """Mount under the foot; None: the foot is fixed."""
 
     def __post_init__(self) -> None:
         if not self.name:

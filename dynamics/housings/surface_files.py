@@ -28,7 +28,7 @@ def write_surface(
     triangles : (t, 3) or (t, 6) int array
         Corners, then mid-side nodes.
     fields : mapping of str to (p,) or (p, 3) array
-        At the nodes.
+        Values at the nodes.
     of_triangles : mapping of str to (t,) array, optional
         Constant on triangles.
     """

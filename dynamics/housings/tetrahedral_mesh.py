@@ -21,7 +21,7 @@ class TetrahedralMesh:
     """Quadratic tetrahedra with ten nodes."""
 
     points: FloatArray
-    """m; every point belongs to a tetrahedron. Shape (n, 3)."""
+    """Points of the mesh, m; every point belongs to a tetrahedron. Shape (n, 3)."""
     tetrahedra: IntArray
     """Four corners with positive volume, then the mid-side nodes of `EDGES`. Shape (e, 10)."""
     groups: Mapping[str, IntArray] = field(default_factory=dict)

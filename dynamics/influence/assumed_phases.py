@@ -1,4 +1,4 @@
-"""What the effect ledger says of phases that rest on assumptions: angles by what they change, thicknesses."""
+"""Phases that rest on assumptions, for the effect ledger: angles with their influence, and thicknesses."""
 
 from __future__ import annotations
 
@@ -19,15 +19,17 @@ from dynamics.mechanism.train_phases import AssumedAngle
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 
 SPEEDS = 16
-"""Of a run, at which a response is looked at."""
+"""Number of speeds of a run at which a response is computed."""
 ANGLES = 239
-"""Angles of a pitch at which a response is looked at: a prime, as orders then meet other phases at each."""
+"""Number of angles over a pitch at which a response is computed. It is a prime, so that every order meets a
+different phase at each angle.
+"""
 AUDIBLE = 0.01
-"""Amplitude of an order over the largest one below which its change is nobody's concern."""
+"""Least amplitude of an order, over the largest amplitude, of which a change is reported."""
 
 
 def with_assumed_phases(ledger: Json, system: System) -> Json:
-    """Return a ledger with what the phases of the meshes assume; as it is where the geometry says all.
+    """Return a ledger with the assumptions on phases of meshes; unchanged where geometry fixes all phases.
 
     The change by an angle is that of the force on all bearings together, the largest over the speeds of the
     run, from its least to its largest over all angles, of the order where that is most; by linear response.
@@ -56,7 +58,7 @@ def _change_text(change: Json) -> str:
 
 
 def _changes(system: System) -> list[Json]:
-    """Return the change of level by each angle, and why there is none where linear theory has no answer."""
+    """Return the change of level by each angle, or the reason why linear theory has no answer."""
     angles = system.phases.angles
     if not angles:
         return []

@@ -15,14 +15,14 @@ from dynamics.types import FloatArray
 Lines = Mapping[float, float]
 """Largest power or mean square over the speeds, weighted, by order."""
 MAX = 60.0
-"""dB; what changes by more is all of the quantity."""
+"""Largest change of level that is stated, dB: a larger one is all of the quantity."""
 ROUNDING = 1e-8
-"""Relative change of amplitude below which an estimate says nothing."""
+"""Relative change of amplitude below which an estimate is rounding."""
 
 
 @dataclass(frozen=True)
 class BearingForces:
-    """Forces on all bearings together, root of the sum of squares: what effects are sized by by default."""
+    """Forces on all bearings, root of the sum of squares: the quantity that sizes effects by default."""
 
     name: str = "bearing forces"
     unit: str = "dB"
@@ -38,7 +38,7 @@ class LevelChange:
 
     quantity: str = ""
     unit: str = "dB"
-    """`quantity`, `unit`: Whose level: `LevelQuantity`."""
+    """`quantity`, `unit`: Name and unit of the level, as `LevelQuantity` states them."""
     order: float = 0.0
     """Multiple of the frequency of the first mesh that turns."""
     decibels: float = 0.0
@@ -67,7 +67,7 @@ def loudest_lines(order: FloatArray, squares: FloatArray, known: Lines) -> dict[
 
 
 def level_change(with_effect: Lines, without: Lines, quantity: str, unit: str = "dB") -> LevelChange:
-    """Return what leaving an effect out changes: `with_effect` are the lines with it."""
+    """Return the change by leaving an effect out: `with_effect` are the lines with it."""
     both = {
         k: (math.sqrt(with_effect.get(k, 0.0)), math.sqrt(without.get(k, 0.0)))
         for k in {**with_effect, **without}
@@ -92,5 +92,5 @@ def in_decibels(relative: float) -> float:
 
 
 def in_relative(decibels: float) -> float:
-    """Return the relative change of an amplitude whose level rises by so many decibels."""
+    """Return the relative change of an amplitude whose level rises by `decibels`."""
     return float(10.0 ** (decibels / 20.0) - 1.0)

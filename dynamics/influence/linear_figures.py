@@ -22,7 +22,7 @@ from dynamics.types import ComplexArray, FloatArray
 COMPARED = 5
 """Mesh orders of bearing forces that are compared."""
 MODES, MET = 4, 3
-"""Modes and mesh orders whose meeting is looked at on a run-up."""
+"""Numbers of modes and mesh orders, at whose crossings a response is computed on a run-up."""
 POSITIONS = 128
 """Per base pitch at which tables are read."""
 
@@ -33,30 +33,34 @@ class LinearFigures:
 
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: Dynamic transmission error, m: over all speeds and loads together. Shape (m,)
-    each.
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak of the dynamic transmission error, over all speeds and
+    loads together, m. Shape (m,) each.
     """
     orders: FloatArray
     """Largest amplitudes of the mesh orders 1 to 5 of the dynamic transmission error, m. Shape (m, 5)."""
     bearing_orders: FloatArray
-    """Of the bearing forces, root of the sum of squares of the directions, N. Shape (b, 5)."""
+    """Largest amplitudes of the mesh orders 1 to 5 of the bearing forces, root of the sum of squares of the
+    directions, N. Shape (b, 5).
+    """
     bearing_loads: FloatArray
-    """Root of the sum of squares of the largest amplitudes that loads excite beside those orders, N. Shape
-    (b,).
+    """Largest amplitudes that loads excite at other orders, root of the sum of squares, N. Shape (b,).
     """
     parted: FloatArray
-    """How far a linear mesh would pull where flanks part, m; 0 where all stay pressed. Shape (m,)."""
+    """Largest tensile displacement of a linear mesh where flanks part, m; 0 where all stay pressed. Shape
+    (m,).
+    """
     freedoms: int
     rows: int
     """`freedoms`, `rows`: Size of the system: freedoms, and local coordinates of its force elements."""
     coasting: bool
     """Whether a mesh has its coast flank."""
     lines: Lines = field(default_factory=dict)
-    """Of the quantity that the scene is computed for, by order up to 10, as far as runs tell them."""
+    """Lines, by order up to 10, of the quantity for which the scene is computed, as far as a run states them.
+    """
 
     @property
     def bearing_force(self) -> FloatArray:
-        """Root of the sum of squares of mesh orders 1 to 5 and what loads excite, by bearing, (b,) N."""
+        """Force on each bearing in mesh orders 1 to 5 and by loads, root of the sum of squares, (b,) N."""
         return np.asarray(np.sqrt(np.sum(self.bearing_orders**2, axis=1) + self.bearing_loads**2))
 
 
@@ -122,7 +126,7 @@ def _resonances(at: Excited) -> FloatArray:
 
 
 def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResponse) -> FloatArray:
-    """Return what loads alone excite of every bearing's force, (b,) N."""
+    """Return the forces on every bearing that loads alone excite, (b,) N."""
     multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
     counted = np.arange(1, COMPARED + 1) * at.period.counted
     load_lines = np.isin(np.rint(response.order * at.period.counted), np.setdiff1d(multiples, counted))

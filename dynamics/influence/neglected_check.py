@@ -43,26 +43,32 @@ from model_studies.stage_clock import TimeTaken
 
 _Key = tuple[bytes | None, float, bool]
 _KNOWN: dict[_Key, dict[str, Influence]] = {}
-"""Sizes by content of the scene, the last ones: a scene is often run again with other steps or outputs."""
-KNOWN = 64
+"""Influences by content of the scene, for the last `KNOWN` scenes: a scene is often run again with other
+steps or outputs.
+"""
+KNOWN = 64  # most scenes whose influences stay in memory
 _SOLVED, _VARYING, _BEGUN = 4.5e-8, 2e-3, 0.01
-"""CPU seconds of a line at a speed by freedoms squared, of stiffness that varies at a speed, and of an effect
-beside its lines.
+"""CPU seconds of one line at one speed over the square of the freedoms, of varying stiffness at one speed,
+and of one effect apart from its lines.
 
 5 to 170 freedoms, 2 to 30 lines: within a factor of 2.
 """
 SCREENED = 3
-"""Meshes from which on effects are looked at with the mean stiffness first: one that varies takes ten times
-as long for six meshes."""
+"""Least number of meshes at which effects are first estimated with the mean stiffness: for six meshes the
+varying stiffness takes ten times as long.
+"""
 UNSEEN = 0.01
-"""dB; an effect that changes no more with the mean stiffness has that size."""
+"""Change of level, dB, up to which the estimate with the mean stiffness is the influence of an effect."""
 LINEAR = frozenset(effect.name for effect in EFFECTS if effect.linear)
 """Effects whose size linear theory estimates."""
 SHARE = 0.1
-"""Of a relative tolerance, for all neglected effects together: estimates may be wrong by a factor of two and
-more, and neglected effects must stay invisible."""
+"""Share of a relative tolerance that all neglected effects together may take. Estimates may be wrong by a
+factor of two and more, and neglected effects must stay invisible.
+"""
 LEVEL_SHARE = 0.5
-"""Of a tolerance of levels likewise: 97 of 100 changes of a level are estimated within a factor of two."""
+"""Share of a tolerance of levels that all neglected effects together may take. 97 of 100 changes of a level
+are estimated within a factor of two.
+"""
 ANY_PART = ""
 
 
@@ -76,34 +82,42 @@ class Influence:
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
-    """`mean`, `peak_to_peak`: Change of the dynamic transmission error, m. Shape (m,) each."""
+    """`mean`, `peak_to_peak`: Changes of mean and peak-to-peak of the dynamic transmission error, m. Shape
+    (m,) each.
+    """
     bearing_force: FloatArray = field(metadata=in_unit("n", "bearing"))
-    """Change of the mesh orders 1 to 5 of each bearing's force and what loads excite, together, N. Shape
-    (b,).
+    """Change of the mesh orders 1 to 5 of each bearing's force and of the part that loads excite, together,
+    N. Shape (b,).
     """
     relative_mean: float
     relative_peak_to_peak: float
-    """`relative_mean`, `relative_peak_to_peak`: The largest of them over the value with the effect."""
+    """`relative_mean`, `relative_peak_to_peak`: Largest change over all meshes, relative to the value with
+    the effect.
+    """
     relative_bearing_force: float
-    """The largest over the largest of all bearings."""
+    """Largest change over all bearings, relative to the largest bearing force."""
     freedoms: int
     rows: int
-    """`freedoms`, `rows`: That it adds: freedoms, and local coordinates of force elements."""
+    """`freedoms`, `rows`: Freedoms, and local coordinates of force elements, that the effect adds."""
     on: bool
-    """Whether the scene has it on anywhere."""
+    """Whether the effect is on in any part of the scene."""
     orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("m", "curve", "order"))
     """Change of the largest amplitudes along the run of mesh orders 1 to 5 of the transmission error, m.
     Shape (m, 5).
     """
     bearing_orders: FloatArray = field(default_factory=_no_orders, metadata=in_unit("n", "bearing", "order"))
-    """Of the bearing forces, N. Shape (b, 5)."""
+    """Change of the largest amplitudes along the run of mesh orders 1 to 5 of the bearing forces, N. Shape
+    (b, 5).
+    """
     relative_orders: FloatArray = field(default_factory=_no_orders)
     relative_bearing_orders: FloatArray = field(default_factory=_no_orders)
-    """`relative_orders`, `relative_bearing_orders`: The largest of each order over the largest amplitude of
-    that order with the effect. Shape (5,) each.
+    """`relative_orders`, `relative_bearing_orders`: Largest change of each order, relative to the largest
+    amplitude of that order with the effect. Shape (5,) each.
     """
     level: LevelChange = field(default_factory=LevelChange)
-    """Of what the scene is computed for, by default of all bearing forces together."""
+    """Change of level of the quantity for which the scene is computed, by default of all bearing forces
+    together.
+    """
     decides: bool = False
     """Whether the level alone decides on the effect."""
     beyond: str = ""
@@ -113,14 +127,14 @@ class Influence:
 
     @property
     def largest(self) -> float:
-        """The largest relative change of what is decided by: amplitudes of a level, or all."""
+        """Largest relative change that counts for the decision: of amplitudes of a level, or of all."""
         if self.decides:
             return self.level.relative
         return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
 
     @property
     def decibels(self) -> float:
-        """The largest change, dB: of the level and, unless it alone decides, of what `largest` compares."""
+        """Largest change, dB: of the level and, unless it alone decides, of the figures of `largest`."""
         level = abs(self.level.decibels) if self.level.relative > ROUNDING else 0.0
         return level if self.decides else max(level, in_decibels(self.largest))
 
@@ -188,7 +202,7 @@ def _chosen(scene: Scene, effect: str) -> bool:
 
 
 def forget_sizes() -> None:
-    """Forget all sizes, such as to measure what they take."""
+    """Forget all influences, for example to measure their cost."""
     _KNOWN.clear()
 
 
@@ -218,7 +232,7 @@ def response_influences(scene: Scene, speed: FloatArray, time: float = 0.0) -> d
 
 
 class ResponseCost(NamedTuple):
-    """CPU seconds of a linear response at a speed, and of a system with or without an effect; of how many."""
+    """CPU seconds of a linear response per speed, and per system with or without an effect; systems."""
 
     speed: float
     system: float
@@ -226,7 +240,7 @@ class ResponseCost(NamedTuple):
 
 
 def response_cost(system: System, speed: FloatArray, orders: int) -> ResponseCost:
-    """Return what a forced response at speeds (S,), rad/s, and its `response_influences` take.
+    """Return the cost of a forced response at speeds (S,), rad/s, and of its `response_influences`.
 
     Raises `InputError`, `SolveError` as the response.
     """
@@ -286,7 +300,7 @@ def _switchable(system: System) -> dict[str, bool]:
 def _influence_of(
     system: System, name: str, on: bool, current: LinearFigures, other: LinearFigures
 ) -> Influence:
-    """Return what a system loses without an effect: `current` are its figures, `other` those with it toggled.
+    """Return the influence of an effect: `current` are the figures, `other` the figures with it toggled.
 
     Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
     flank.
@@ -323,7 +337,7 @@ def _influence_of(
 
 
 def _beyond(system: System, linear: bool, parts: bool) -> str:
-    """Return what linear theory leaves out of a change, in words: of an effect that is `linear` or not.
+    """Return the part of a change that linear theory leaves out, in words; `linear`: of a linear effect.
 
     `parts`: whether flanks part.
     """
@@ -353,14 +367,14 @@ def _largest(change: FloatArray, value: FloatArray | float) -> float:
 
 @dataclass(frozen=True)
 class _Allowance:
-    """What a tolerance allows effects to change, in the unit of `size`."""
+    """Changes that a tolerance allows effects to make, in the unit of `size`."""
 
     text: str
-    """The tolerance."""
+    """Tolerance as text, with its unit."""
     alone: float
-    """Change from which on an effect is on that the scene does not call for."""
+    """Change by one effect, above which the effect is turned on though the scene does not call for it."""
     together: float
-    """What all neglected effects may change in sum."""
+    """Largest sum of the changes by all neglected effects."""
     size: Callable[[Influence], float]
     """Change by an effect."""
     parted: bool
@@ -368,7 +382,7 @@ class _Allowance:
 
     @classmethod
     def of(cls, scene: Scene) -> _Allowance | None:
-        """Return that of the tolerance of a scene, a relative one first; None: it has none."""
+        """Return the allowance of a scene's tolerance, a relative one first; None: there is no tolerance."""
         if scene.tolerance is not None:
             allowed = SHARE * scene.tolerance
             return cls(f"{scene.tolerance:g}", allowed, allowed, lambda influence: influence.largest, True)
@@ -381,16 +395,16 @@ class _Allowance:
 
 @dataclass(frozen=True)
 class Decision:
-    """A scene with what its tolerance decided."""
+    """A scene with the decisions by its tolerance."""
 
     scene: Scene
-    """Its `effects` say what to do."""
+    """Scene whose `effects` hold the decisions."""
     automatic: Mapping[str, str] = field(default_factory=dict)
-    """Effects that the tolerance decided against what the scene calls for, and why."""
+    """Effects on which the tolerance decided otherwise than the scene calls for, each with the reason."""
     influences: Mapping[str, Influence] = field(default_factory=dict)
     """Estimates; empty where there was no tolerance to decide by."""
     taken: TimeTaken = field(default_factory=TimeTaken)
-    """By deciding."""
+    """Time that the decision took."""
 
     @property
     def allowed(self) -> float:
@@ -453,7 +467,7 @@ def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str
 
 
 class NeglectedChecks:
-    """Gathers, block by block, what the estimates of neglected effects are compared with."""
+    """Quantities of a run, gathered by block, to compare with estimates of neglected effects."""
 
     def __init__(self, decision: Decision) -> None:
         self._decision = decision

@@ -12,11 +12,11 @@ from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 MOMENTS = 24
-"""At which a run is looked at."""
+"""Number of moments of a run at which its speeds and loads are taken."""
 
 
 MIN_SPEED = 1e-9
-"""Of the largest: what is slower is at rest."""
+"""Speed over the largest speed, below which a shaft is at rest."""
 
 
 ORDERS = 24
@@ -27,8 +27,9 @@ LOADS = 6
 """Loads at which a system is linearized where they vary along the run."""
 
 SPEEDS, FEWER = 32, 10
-"""Speeds and mesh orders at which a response is looked at, alike with and without an effect; levels of runs
-have as many orders."""
+"""Numbers of speeds and mesh orders at which a response is computed, the same with and without an effect;
+levels of runs have as many orders.
+"""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class OperatingCondition:
     orders: int = ORDERS
 
     def passing(self, speed: FloatArray) -> OperatingCondition:
-        """Return the condition with those of the speeds (k,) added that it passes, of no weight."""
+        """Return the condition with the speeds (k,) within its span added, with weight 0."""
         inside = speed[(speed > self.span[0]) & (speed < self.span[1])]
         speeds = np.concatenate([self.speed, inside])
         order = np.argsort(speeds)
@@ -58,7 +59,7 @@ class OperatingCondition:
 
 
 def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[OperatingCondition, ...]:
-    """Return what the run of `scene` passes from the part `settled` (0..1) of its duration on.
+    """Return the conditions of the run of `scene` from the part `settled` (0..1) of its duration on.
 
     `law` is the leading law. At rest nothing vibrates: such moments are
     left out.
@@ -86,7 +87,7 @@ def operating_conditions(scene: Scene, law: int, settled: float = 0.0) -> tuple[
 
 
 def conditions_at(speed: FloatArray, time: float) -> tuple[OperatingCondition, ...]:
-    """Return what a linear response at speeds (S,) > 0, rad/s, passes: at most `SPEEDS` of them."""
+    """Return the conditions of a linear response at speeds (S,) > 0, rad/s: at most `SPEEDS` of them."""
     rising = np.unique(speed)
     chosen = rising[np.unique(np.linspace(0, rising.size - 1, min(SPEEDS, rising.size)).round().astype(int))]
     still, alike = np.zeros(chosen.size), np.full(chosen.size, 1.0 / chosen.size)

@@ -1,4 +1,4 @@
-"""The effect ledger of a run or a study with the size of its effects: what all outputs read them from."""
+"""The effect ledger of a run or a study with the size of its effects, from which all outputs read them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def _sized(entry: Json, automatic: Mapping[str, str], influences: Mapping[str, I
 
 
 def left_out_effects(ledger: EffectLedger, influences: Mapping[str, Influence]) -> Json:
-    """Return what a receipt says of the effects that are off: the change of the level by each, the largest.
+    """Return the entry of a receipt on effects that are off: the change of the level by each, the largest.
 
     Nothing where none of them was estimated.
     """

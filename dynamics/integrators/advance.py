@@ -34,17 +34,17 @@ class Control(NamedTuple):
     """Settings of the step size control."""
 
     implicit: bool
-    """Which method."""
+    """Whether the steps are implicit; False: explicit."""
     adaptive: bool
     """False: every step is accepted, and all have the size of the level at the start."""
     audit: bool
     """Whether to integrate the powers."""
     order: int
-    """Of the embedded error estimate."""
+    """Order of the embedded error estimate."""
     tolerance: float
     """Error allowed per step, m."""
     force_tolerance: float
-    """What Newton's method may leave, N; 0: to rounding."""
+    """Largest force that Newton's method may leave unbalanced, N; 0: rounding alone."""
     step_limit: int
 
 
@@ -117,7 +117,7 @@ def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: 
 def prepare_samples(
     system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, out: States
 ) -> None:
-    """Compile what samples the steps."""
+    """Compile the routines that sample the steps."""
     store_if_due.prepare(work, sampler, ring, out)
     sample_step.prepare(system, work, sampler, ring, out)
 
@@ -209,7 +209,7 @@ def _accept(system: SystemArrays, work: Workspace, control: Control, level: int,
 
 @inner
 def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
-    """Make the end of the step the state; what rounding leaves of time and rates is kept for the next step.
+    """Make the end of the step the state; the rounding of time and rates goes into the next step.
 
     Else ten million steps would add up ten million roundings of the time and of a free train's speed.
     A motion that has died away is at rest: processors take a hundred times as long for numbers that
@@ -234,7 +234,7 @@ def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
 
 @inner
 def _watch_losses(work: Workspace) -> None:
-    """Keep the highest value of each loss, and how far it fell below it."""
+    """Update the highest value of each loss, and its largest fall below it."""
     for k in range(work.highest.size):
         value = work.work[LOSSES[k]]
         work.highest[k] = max(work.highest[k], value)

@@ -14,7 +14,7 @@ import numpy as np
 from dynamics.errors import ResultError
 from dynamics.kernels.by_address import by_value
 
-VERSION = 3
+VERSION = 3  # version of the content of checkpoints
 Arrays = dict[str, Any]
 
 

@@ -43,7 +43,7 @@ def _store() -> CodeStore:
 
 
 class StructureCode:
-    """What advances a run: the ordinary loops, or code for the structure of the run."""
+    """Compiled loops that advance a run: the ordinary ones, or code for the structure of the run."""
 
     def __init__(self, implicit: bool, tuples: Mapping[Any, Known], *, makes: bool = True) -> None:
         """Look for the code of a structure.

@@ -23,12 +23,12 @@ from dynamics.motion.motion import (
     add_motion,
 )
 
-STAGE_COUNT = 7
+STAGE_COUNT = 7  # stages of the method, the last at the end of the step
 
 
 @routine
 def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool) -> bool:
-    """Try one step from the state in `work`; fill what `implicit_step` fills; return True."""
+    """Try one step from the state in `work`; fill the fields that `implicit_step` fills; return True."""
     step, size = work.step_sizes[level], work.q.size
     for i in range(size):
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]

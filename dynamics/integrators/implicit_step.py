@@ -31,7 +31,7 @@ from dynamics.motion.local_accelerations import set_acceleration
 from dynamics.motion.motion import add_motion
 from dynamics.types import FloatArray
 
-STAGE_COUNT = 6
+STAGE_COUNT = 6  # stages of the method, the first explicit
 
 
 @routine

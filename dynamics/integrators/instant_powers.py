@@ -65,9 +65,9 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
 @inner
 def _by_frame_speed(system: SystemArrays, work: Workspace, e: int) -> float:
-    """Return what changing speeds w of a shaft and W of its frame store in rotating-frame element `e`, W.
+    """Return the power that changing speeds w of a shaft and W of its frame store in element `e`, W.
 
-    Of the term (c_3 w W + c_4 W^2) y^2/2 and of the load -W^2 l y.
+    The energies are the term (c_3 w W + c_4 W^2) y^2/2 and the load -W^2 l y.
     """
     entry, row, spin_rate, frame_rate = system.elements.entry[e], system.elements.first[e], 0.0, 0.0
     for k in range(work.motion.shape[0]):
@@ -107,7 +107,7 @@ def _in_elements(
             continue
         position += power_by_frames(elements, work.local, e)
         if law == UNBALANCE:
-            continue  # its work is what it stores
+            continue  # its work is the change of its energy
         for r in range(first, end):
             if law in (SPEED_TORQUE, APPLIED_FORCE):
                 supplied -= force[r] * (rate[r] + drift[r])
@@ -150,7 +150,7 @@ def _drive_torque(
 
 @inner
 def add_drive_work(system: SystemArrays, work: Workspace) -> None:
-    """Add what drives gave to the inertia of their own shafts over the step that ends in ``work.motion``.
+    """Add the work of drives on the inertia of their shafts over the step that ends in ``work.motion``.
 
     It is the kinetic energy gained, W I W/2: where a law has a kink, no stages' weights integrate its power.
     The end becomes the start of the next step.

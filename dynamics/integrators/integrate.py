@@ -41,7 +41,7 @@ class Trajectory(Ending):
 
     @property
     def v(self) -> FloatArray:
-        """Their rates, (T, n)."""
+        """Rates of the freedoms, (T, n)."""
         return self.states.v
 
 

@@ -10,7 +10,7 @@ from dynamics.integrators.linear_elimination import gauss_jordan
 from dynamics.integrators.workspace import Workspace
 from dynamics.kernels.compiled import inner
 
-ITERATION_LIMIT = 25
+ITERATION_LIMIT = 25  # most Newton iterations of a stage
 
 
 WEAK = 0.01
@@ -100,7 +100,7 @@ def _move(work: Workspace, span: float) -> None:
 
 @inner
 def _gain(work: Workspace, span: float, k: int, j: int) -> float:
-    """Return how the law of row k changes with what moves the coordinate j of its own element."""
+    """Return the derivative of the law of row k in the force that moves coordinate j of the same element."""
     slope = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
     return float(slope + work.local.inertial[k, j])
 

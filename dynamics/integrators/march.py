@@ -37,10 +37,10 @@ from model_studies.stage_clock import TimeTaken
 
 Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
-CHUNKS = 50
+CHUNKS = 50  # usual number of blocks of a run, between which progress is reported
 BLOCK_WORK = 25_000
 """Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
-FIRST_STEP = 1e-6
+FIRST_STEP = 1e-6  # size of the first step without a fixed one, s
 NO_SAMPLES = np.zeros(0, dtype=np.int64)
 STEP_SHARE = 0.07
 """Error allowed per step over the tolerance of the run.
@@ -63,16 +63,18 @@ class _SampleFigures:
     """`mesh_peak`, `mesh_rms`: Largest magnitude and rms of the driving flanks' forces. Shape (m,) each."""
     coast_peak: FloatArray
     coast_rms: FloatArray
-    """`coast_peak`, `coast_rms`: Of the coast flanks; zero where there is none. Shape (m,) each."""
+    """`coast_peak`, `coast_rms`: Largest magnitude and rms of the coast flanks' forces; zero where there is
+    none. Shape (m,) each.
+    """
     bearing_peak: FloatArray
     bearing_rms: FloatArray
-    """`bearing_peak`, `bearing_rms`: Of forces (and moments, N m) in the frame of each support. Shape (b, 3
-    or 6) each.
+    """`bearing_peak`, `bearing_rms`: Largest magnitude and rms of forces (and moments, N m) in the frame of
+    each support. Shape (b, 3 or 6) each.
     """
     removed: FloatArray
     folded: FloatArray
-    """`removed`, `folded`: Rms of what the filter took away from the mesh force; of its content near half the
-    inner rate, a bound on what may have folded into the output. Shape (m,) each.
+    """`removed`, `folded`: Rms of the part of the mesh force that the filter removes, and of its content near
+    half the inner rate, which bounds the part that may fold into the output. Shape (m,) each.
     """
 
     def to_json(self, system: System) -> Json:
@@ -173,7 +175,7 @@ def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
 
 
 class _Passed(NamedTuple):
-    """What compiled loops get, by address."""
+    """Arguments that compiled loops get by address."""
 
     arrays: SystemArrays
     work: Workspace
@@ -190,23 +192,23 @@ class March:
     work: Workspace
     """The state, changed in place."""
     ring: SampleRing
-    """The points that the anti-alias filter sees, likewise."""
+    """Points that the anti-alias filter sees, changed in place."""
     control: Control
     sampler: Sampler
     compiled: _Passed
     initial: FloatArray
     """Kinetic, bushing and mesh energy at the start, J; 0 without an audit. Shape (3,)."""
     samples: int
-    """Of the whole run."""
+    """Number of output samples of the whole run."""
 
     @property
     def state(self) -> tuple[Workspace, SampleRing]:
-        """All that changes on the way."""
+        """Arrays that change during the run."""
         return self.work, self.ring
 
     @property
     def structure(self) -> dict[Any, Known]:
-        """What `advance` gets by address, and what of it belongs to the structure of the run."""
+        """Arguments that `advance` gets by address, with what of each belongs to the structure of the run."""
         known = {"work": Known.DIMENSIONS, "ring": Known.DIMENSIONS}
         fixed = {function: known.get(name, Known.ALL) for name, function in self.compiled._asdict().items()}
         return {**fixed, by_address(self.widths.states(0)): Known.WIDTHS}
@@ -225,7 +227,7 @@ class Ending:
 
     status: RunStatus
     samples: int
-    """Of the output grid, as far as the run came."""
+    """Number of output samples that the run reached."""
     end: float
     """Time of the last step's end, s; the energies refer to it."""
     stored: FloatArray
@@ -233,15 +235,15 @@ class Ending:
     work: FloatArray
     """Works over the run, J, in the order of `Power`. Shape (7,)."""
     fallen: float
-    """How far a loss fell below its highest value at most, J."""
+    """Largest fall of a loss below its highest value before, J."""
     count: IntArray
     """Statistics, in the order of `Count`."""
     step_range: FloatArray
     """Smallest and largest accepted step, s. Shape (2,)."""
     taken: TimeTaken
-    """By the stepping; in a process's first run with reading or making the compiled code."""
+    """Time of the stepping. In the first run of a process it includes reading or making the compiled code."""
     figures: _SampleFigures
-    """Peaks and rms over the run, and what the anti-alias filter took away."""
+    """Peaks and rms over the run, and the rms of the part that the anti-alias filter removes."""
     modal_states: FloatArray
     """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
 
@@ -296,7 +298,8 @@ def march_on(
 ) -> RunStatus:
     """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration, rate = march.system.scene.duration, march.system.sampling.rate
-    work = BLOCK_WORK if progress is None and cancel is None else 0  # at least, samples times freedoms
+    # least work of a block, samples times freedoms
+    work = BLOCK_WORK if progress is None and cancel is None else 0
     minimum, longest = work / (max(march.work.q.size, 1) * rate), BLOCK / rate
     block = min(max(duration / CHUNKS, minimum), longest)
     code = StructureCode(march.control.implicit, march.structure)

@@ -143,7 +143,8 @@ def _excited_motions(system: System, stiffness: FloatArray, damping: FloatArray)
     """
     # shapes (n, n) have unit modal mass: the squared rate is twice the elastic energy
     squared_rate, shape = scipy.linalg.eigh(stiffness, system.arrays.mass)
-    stretch = system.arrays.direction[system.driving_rows] @ shape  # of the meshes, (meshes, n)
+    # stretch of the meshes by each mode, (meshes, n)
+    stretch = system.arrays.direction[system.driving_rows] @ shape
     mesh_energy = system.flanks.mean_stiffness[: len(stretch)] @ stretch**2  # twice the energy
     excited = mesh_energy > SHARE * np.abs(squared_rate)
     rate = np.sqrt(np.maximum(squared_rate[excited], 0.0))

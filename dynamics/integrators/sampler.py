@@ -51,21 +51,21 @@ class Sampler(NamedTuple):
     taps: FloatArray
     """Weights of the anti-alias filter. Shape (L,)."""
     high_pass: FloatArray
-    """Weights that pass what lies near half the inner rate. Shape (7,)."""
+    """Weights of a filter that passes the content near half the inner rate. Shape (7,)."""
     factor: int
     """Points of the inner grid per output sample."""
     rate: float
-    """Points per second."""
+    """Points of the inner grid per second."""
     static: PackedTables
     """Tables of the static transmission error."""
     nominal_force: FloatArray
-    """N. Shape (m,)."""
+    """Nominal mesh forces, N. Shape (m,)."""
     level: IntArray
     """Level intervals of these forces in the tables. Shape (m,)."""
     bearings: BearingForce
-    """Of the channels of a point; without signals where no output has them."""
+    """Bearing forces from the channels of a point; without signals where no output holds bearing forces."""
     bodies: int
-    """Freedoms that are not modal."""
+    """Number of freedoms that are not modal."""
     freedoms: int
     """Freedoms that samples have: all, or without the amplitudes of housings where nothing asks for them."""
     filtered: int
@@ -75,7 +75,7 @@ class Sampler(NamedTuple):
 
     @classmethod
     def of(cls, system: System, modal_samples: IntArray) -> Sampler:
-        """Gather what the compiled loop needs."""
+        """Gather the arrays that the compiled loop needs."""
         sampling = system.sampling
         static, nominal = system.flanks.static, system.flanks.nominal_force
         rows, n = system.arrays.direction.shape
@@ -135,16 +135,16 @@ class SampleRing(NamedTuple):
     a: FloatArray
     """`q`, `v`, `a`: Scratch: the state at a point, and accelerations. Shape (n,) each."""
     local: LocalState
-    """Of the elements there."""
+    """State of the force elements at a point."""
     motion: FloatArray
-    """Of the laws there. Shape (k, 4)."""
+    """Motion of the laws at a point. Shape (k, 4)."""
     quanta: IntArray
     """Scratch: quanta of free trains before a step's end. Shape (k,)."""
     peaks: _Peaks
     removed: FloatArray
     folded: FloatArray
-    """`removed`, `folded`: Sums over the output samples of the squares of what the filter took away from the
-    local forces, and of their content near half the inner rate. Shape (R,) each.
+    """`removed`, `folded`: Sums over the output samples of the squares of the part of the local forces that
+    the filter removes, and of their content near half the inner rate. Shape (R,) each.
     """
     high: FloatArray
     """Scratch: that content at one output sample. Shape (R,)."""
@@ -175,7 +175,7 @@ class SampleRing(NamedTuple):
 
 
 def carried_signals(arrays: SystemArrays, sampler: Sampler) -> int:
-    """Return how many signals a sample has in place of amplitudes, 2 s of `States`."""
+    """Return the number of signals that a sample has in place of amplitudes, 2 s of `States`."""
     return 0 if sampler.freedoms == arrays.mass.shape[0] else 2 * arrays.sparse.modal.row.size
 
 
@@ -387,7 +387,7 @@ def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: 
 def _see_removed(
     ring: SampleRing, high_pass: FloatArray, center: int, point: int, out: States, row: int
 ) -> None:
-    """Add up the squares of what the filter took away and of what lies near half the inner rate."""
+    """Add up the squares of the part that the filter removes, and of the content near half the inner rate."""
     taps, high = ring.point.shape[0], ring.high
     for r in range(high.size):
         removed = ring.point[center, r] - out.filtered[row, r]

@@ -14,7 +14,7 @@ ROUNDING = 4.0 * 2.0**-52
 
 
 SMOOTH = 1e-9
-"""Jump of an acceleration over what the law's pieces make of it, below which it is rounding."""
+"""Jump of an acceleration over the acceleration by the law's pieces, below which it is rounding."""
 
 
 @inner

@@ -20,7 +20,7 @@ def set_motion(system: SystemArrays, work: Workspace, time: float, position: Flo
 
 @inner
 def add_stages(weights: FloatArray, stage: int, step: float, rates: FloatArray, values: FloatArray) -> None:
-    """Add what the stages before `stage` contribute by their `rates` (stages, n) to `values` (n,)."""
+    """Add the contributions of the stages before `stage` by their `rates` (stages, n) to `values` (n,)."""
     for s in range(stage):
         share = step * weights[stage, s]
         for i in range(values.size):

@@ -19,9 +19,9 @@ STATE = (
     *("time", "time_rest", "error", "q", "v", "v_rest", "a", "quanta"),
     *("speed", "power", "work", "highest", "fallen", "counts"),
 )
-"""What a workspace carries from step to step beside what is per row of the force elements."""
+"""Fields of a workspace that go from step to step, apart from those per row of the force elements."""
 MAX_SAVED = 128
-"""In memory at once: when there are more, every second one is forgotten."""
+"""Most states in memory at once. When there are as many, every second one is dropped."""
 
 
 @dataclass(frozen=True)
@@ -29,24 +29,24 @@ class _SavedState:
     """State of a march between two steps."""
 
     state: dict[str, FloatArray]
-    """Fields `STATE` of its workspace."""
+    """Fields `STATE` of the workspace."""
     force: FloatArray
     """Local forces at the last step's end. Shape (R,)."""
     point: FloatArray
-    """Of its ring. Shape (L, C)."""
+    """Points of the sample ring. Shape (L, C)."""
     figures: tuple[FloatArray, ...]
-    """Running figures of its ring: the two last values, peaks and squares (..., P), sums (R,)."""
+    """Running figures of the sample ring: the last two values, peaks and squares (..., P), sums (R,)."""
     modal_states: FloatArray
-    """Of its ring. Shape (W, 2, b)."""
+    """Modal states of the sample ring. Shape (W, 2, b)."""
 
     @property
     def time(self) -> float:
-        """Of the last step's end, s."""
+        """Time of the last step's end, s."""
         return float(self.state["time"][0])
 
     @property
     def samples(self) -> int:
-        """Output samples so far."""
+        """Number of output samples before the state."""
         return int(self.state["counts"][Count.OUTPUT])
 
 
@@ -62,7 +62,7 @@ def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
 
 
 class Trail:
-    """The saved states of a march of `system` after its blocks; `taken`: where it goes on for another run."""
+    """The saved states of a march of `system` after its blocks; `taken`: the start of another run."""
 
     def __init__(self, system: System) -> None:
         self.system = system
@@ -95,7 +95,7 @@ class StartValue:
     """Gives the other march's output samples from one to before another."""
 
     def into(self, march: March, sink: StateSink) -> None:
-        """Start `march` there; `sink` gets the samples before it."""
+        """Start `march` from the saved state; `sink` gets the samples before it."""
         self.start(march)
         for first, stop in blocks(self.at.samples):
             room = sink.room(first, stop - first)
@@ -104,7 +104,7 @@ class StartValue:
             sink.keep(first, stop - first)
 
     def widened(self, states: States, march: March) -> States:
-        """Return samples of the other march as those of `march`; elements beside its own carried no force."""
+        """Return samples of the other march as those of `march`, whose further elements exert no force."""
         rows = march.ring.local.force.size
         to, width = self._channels(march), states.filtered.shape[1]
         filtered = np.zeros((states.q.shape[0], march.sampler.filtered))
@@ -114,7 +114,7 @@ class StartValue:
         return states._replace(filtered=filtered, minimum=minimum, largest=largest)
 
     def start(self, march: March) -> None:
-        """Start `march` from there; elements that it has beside those of the other one carry no force."""
+        """Start `march` from the saved state; its further elements exert no force."""
         work, at = march.work, self.at
         for name, values in at.state.items():
             getattr(work, name)[...] = values
@@ -135,7 +135,7 @@ class StartValue:
             target[..., to] = known
 
     def _channels(self, march: March) -> IntArray:
-        """Return the channels of `march` that those of the other one are."""
+        """Return the channels of `march` that hold the channels of the other march."""
         rows, channels = march.ring.local.force.size, march.ring.point.shape[1]
         return np.concatenate([self.rows_of, np.arange(rows, channels)])
 

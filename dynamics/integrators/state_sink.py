@@ -117,7 +117,7 @@ class StateSpool:
         return States(q, v, carried, quanta.view(np.int64), *rest)
 
     def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
-        """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.
+        """Replace `samples` records of the narrower widths `before` by their conversion.
 
         From the last block to the first: a wider record never reaches a narrower one that is still to come.
         """
@@ -134,12 +134,12 @@ class StateSpool:
         write_checkpoint(self._checkpoint, state, **values)
 
     def begin(self) -> None:
-        """Forget whatever is there."""
+        """Forget all records."""
         self._checkpoint.unlink(missing_ok=True)
         self._file.truncate(0)
 
     def resume(self, samples: int) -> None:
-        """Cut off what came after the checkpoint.
+        """Cut off the records after the checkpoint.
 
         Raises
         ------

@@ -22,13 +22,13 @@ from dynamics.motion.force_balance import (
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
-ITERATION_LIMIT = 50
-RESIDUAL_LIMIT = 1e-10  # of the largest force
-CLOSE_LIMIT = 1e-12  # of a rest that is compared with one beside it
-MIN_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
+ITERATION_LIMIT = 50  # most Newton iterations to equilibrium
+RESIDUAL_LIMIT = 1e-10  # unbalanced force over the largest force, at which the search ends
+CLOSE_LIMIT = 1e-12  # the same for a rest that is compared with a neighboring one
+MIN_TOUCH = 1e-3  # over the first level: force of the first guess without a load
 ROUNDED = 4.0  # times the rounding of all terms of a balance
-TURNS = 8  # of a first guess, whose meshes turn on as it loads them
-LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
+TURNS = 8  # iterations of a first guess, whose meshes turn on under their load
+LOST_CONTACT = 1e-6  # force over the largest, below which an endless search has lost contact
 
 
 @dataclass(frozen=True)
@@ -82,11 +82,11 @@ class RestsBeside:
 
     time: float
     displacement: FloatArray
-    """Of the system at rest, m and rad. Shape (n,)."""
+    """Displacement of the system at rest, m and rad. Shape (n,)."""
     force: FloatArray
-    """Of its elements, N. Shape (R,)."""
+    """Local forces of the elements at rest, N. Shape (R,)."""
     residual: float
-    """Largest unbalanced force there, N."""
+    """Largest unbalanced force at rest, N."""
     compliance: FloatArray
     """Displacements per force on the freedoms. Shape (n, n)."""
 
@@ -110,7 +110,7 @@ class RestsBeside:
 
 
 def _external(system: System, time: float) -> FloatArray:
-    """Return loads and inertia of the imposed motion on the freedoms (n,), those of mean loads."""
+    """Return the forces of mean loads and of the inertia of the imposed motion on the freedoms (n,)."""
     arrays = system.arrays
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     inertial = observe_laws(arrays, np.array([time]))[3, :, 0] @ arrays.inertial
@@ -146,7 +146,7 @@ def _newton(
 
 
 def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
-    """Return `values`, forces (n,) or their derivatives (n, n), less what they accelerate free trains with.
+    """Return forces (n,) or their derivatives (n, n), less the part that accelerates free trains.
 
     Torques and friction that do not balance turn a free train faster or slower as a whole.
     """
@@ -242,7 +242,7 @@ def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
 
 
 def _rounding(arrays: SystemArrays, balance: ForceBalance, q: FloatArray, external: FloatArray) -> float:
-    """Return what rounding of displacements, coordinates and forces leaves unbalanced, N.
+    """Return the unbalanced force by rounding of displacements, coordinates and forces, N.
 
     Every term of the balance counts by its size: light loads on stiff teeth are their small difference.
     """

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-IMPLICIT_DIAGONAL = 0.25
+IMPLICIT_DIAGONAL = 0.25  # diagonal coefficient of every implicit stage
 IMPLICIT_NODES = np.array([0.0, 1 / 2, 83 / 250, 31 / 50, 17 / 20, 1.0])
 IMPLICIT_WEIGHTS = np.array([82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, 1 / 4])
 IMPLICIT_EMBEDDED = np.array(
@@ -40,7 +40,7 @@ IMPLICIT_STAGES = np.array(
         [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, 1 / 4],
     ]
 )
-IMPLICIT_EMBEDDED_ORDER = 3
+IMPLICIT_EMBEDDED_ORDER = 3  # order of the embedded solution
 
 EXPLICIT_NODES = np.array([0.0, 1 / 5, 3 / 10, 4 / 5, 8 / 9, 1.0, 1.0])
 EXPLICIT_WEIGHTS = np.array([35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0])
@@ -58,4 +58,4 @@ EXPLICIT_STAGES = np.array(
         [35 / 384, 0.0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84, 0.0],
     ]
 )
-EXPLICIT_EMBEDDED_ORDER = 4
+EXPLICIT_EMBEDDED_ORDER = 4  # order of the embedded solution

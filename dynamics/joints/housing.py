@@ -65,7 +65,7 @@ def read_archive(file: Path, field: str) -> dict[str, FloatArray]:
     file : Path
         A file of `numpy.savez`.
     field : str
-        What names it, for errors.
+        Name of the field, for errors.
     """
     try:
         with ZipFile(file) as archive:
@@ -209,7 +209,7 @@ def read_housing(path: str | Path, name: str, bushings: tuple[str, ...]) -> Hous
         ``.csv``: the rows of the stiffness matrix, numbers with commas between, ``#`` before remarks.
         ``.npz``: an array ``stiffness`` and, if given, ``damping`` and ``mass``.
     bushings : tuple of str
-        In the order of the matrix.
+        Names of the bushings, in the order of the matrix.
     """
     matrices = {
         part: tuple(tuple(float(value) for value in np.ravel(row)) for row in np.atleast_2d(matrix))

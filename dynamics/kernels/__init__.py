@@ -1,3 +1,3 @@
-"""Compiled functions: what compiles them, tuples handed over by address, the state that laws share."""
+"""Compiled functions: their compiler, tuples handed over by address, the state that laws share."""
 
 import host.analysis  # noqa: F401 (says what to install)

@@ -144,7 +144,7 @@ def _address_of(array: Any) -> int:
     """Return where the items of an array begin."""
     try:
         return addressof(_NO_BYTES.from_buffer(array))  # a fifth of the time of `__array_interface__`
-    except TypeError:  # of an array that cannot be written, or is not contiguous
+    except TypeError:  # for an array that cannot be written, or is not contiguous
         if array.flags.c_contiguous:
             return int(array.__array_interface__["data"][0])
     raise TypeError(f"compiled functions take C-contiguous arrays, not strides of {array.strides}")

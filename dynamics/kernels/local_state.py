@@ -13,22 +13,22 @@ class LocalState(NamedTuple):
     """The state that laws read and write at one instant; P = the largest p."""
 
     position: FloatArray
-    """Of the meshes, base pitches; then how far frames have turned against each other, revolutions. Shape (m
-    + f,).
+    """Position of the meshes, base pitches; then angles of frames against each other, revolutions. Shape
+    (m + f,).
     """
     pace: FloatArray
-    """Their rates in the kinematic motion, per second. Shape (m + f,)."""
+    """Rates of the positions in the kinematic motion, per second. Shape (m + f,)."""
     full_turns: FloatArray
     """Whole revolutions of the laws when `turns_phase` was written; NaN: never. Shape (k,)."""
     turns_phase: FloatArray
-    """What they add to the positions. Shape (m + f, k)."""
+    """Part of each position by the whole revolutions of each law. Shape (m + f, k)."""
     coordinate: FloatArray
     rate: FloatArray
     """`coordinate`, `rate`: y (m) and y' (m/s), those of the deviations from the kinematic motion. Shape (R,)
     each.
     """
     drift: FloatArray
-    """What the kinematic motion adds to the rates, m/s. Shape (R,)."""
+    """Part of the rates by the kinematic motion, m/s. Shape (R,)."""
     acceleration: FloatArray
     """y'' with that of the kinematic motion, m/s^2; kept only for unbalances. Shape (R,)."""
     clock: FloatArray
@@ -46,7 +46,7 @@ class LocalState(NamedTuple):
     inertial: FloatArray
     """Row r: df_r/dy'', kg, of unbalances. Shape (R, P)."""
     hint: IntArray
-    """Where the last look-up ended: the next starts there. Shape (E,)."""
+    """Table interval at which the last look-up ended and the next one starts. Shape (E,)."""
 
     @classmethod
     def empty(

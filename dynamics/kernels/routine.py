@@ -102,7 +102,7 @@ def _typing(called: Routine) -> type:
 def _lowering(called: Routine) -> Callable[..., Any]:
     def call(context: Any, builder: Any, sig: Any, args: Any) -> Any:
         convention = context.call_conv
-        slot = builder.module.globals.get(called.symbol)  # there once it has been called in this module
+        slot = builder.module.globals.get(called.symbol)  # the module has it after the first call
         slot = slot or cgutils.add_global_variable(builder.module, WORD, called.symbol)
         address = builder.load(slot)
         with cgutils.if_unlikely(builder, builder.icmp_unsigned("==", address, WORD(0))):

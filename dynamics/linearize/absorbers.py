@@ -28,20 +28,20 @@ class _Absorber:
 
     name: str
     kind: str
-    """`name`, `kind`: Of the part; one of `KINDS`."""
+    """`name`, `kind`: Name of the part, and its kind, one of `KINDS`."""
     rows: FloatArray
-    """Shape (k, n)."""
+    """Gradient of the coordinates in the freedoms. Shape (k, n)."""
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: N/m, N s/m. A symmetric stiffness takes no power over a cycle, and is 0 where
-    it is known to be. Shape (k, k) each.
+    """`stiffness`, `damping`: Stiffness and damping of the part, N/m, N s/m. A symmetric stiffness takes no
+    power over a cycle; where it is known to be symmetric, it is 0 here. Shape (k, k) each.
     """
 
 
 def element_absorbers(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
 ) -> Iterator[_Absorber]:
-    """Yield the force elements but those of rotating frames."""
+    """Yield the force elements except those of rotating frames."""
     arrays, elements = system.arrays, system.arrays.elements
     rest = np.zeros(arrays.mass.shape[0])
     local = local_state(arrays, time, linear.equilibrium.displacement, rest)
@@ -73,7 +73,7 @@ def _element_part(system: System, element: int) -> tuple[str, str]:
 
 
 def bearing_absorbers(system: System) -> Iterator[_Absorber]:
-    """Yield linear bearings: those that are springs, and groups with matrices, on a massless housing one."""
+    """Yield linear bearings: springs one by one, and bearings with matrices by group."""
     supports, seats, keep = system.supports, system.seats, system.freedoms.keep
     grounded = ~supports.carried
     for index in np.flatnonzero(grounded):

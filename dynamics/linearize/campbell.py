@@ -16,11 +16,12 @@ from dynamics.linearize.operating_speeds import law_speeds
 from dynamics.linearize.whirl_modes import SAME, WhirlModes, terms_at, whirl_modes_with, whirl_sense
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
+TIE = 0.05  # weight of frequencies against shapes: it decides between modes of equal shape
 INTERVALS, FINEST = 8, 32
-"""Equal parts of a range of speeds over which modes are followed, and into how many it is divided at most."""
+"""Number of equal parts of a range of speeds over which modes are followed, and most parts of each of them.
+"""
 ALIKE = 0.9
-"""Likeness of a mode and the one that continues it from which on nothing between them need be looked at."""
+"""Likeness of a mode and its continuation, from which on no speed between them is needed."""
 
 
 @dataclass(frozen=True)
@@ -28,20 +29,24 @@ class WhirlBranches:
     """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate."""
 
     speed: FloatArray
-    """Of the leading law, rad/s. Shape (S,)."""
+    """Speeds of the leading law, rad/s. Shape (S,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
-    """`frequency`, `damping_ratio`: Damped, Hz; -Re/|eigenvalue|. Shape (S, A) each."""
+    """`frequency`, `damping_ratio`: Damped natural frequency, Hz, and damping ratio -Re/|eigenvalue|. Shape
+    (S, A) each.
+    """
     whirl: FloatArray
-    """Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
-    plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation). Shape (S,
-    A).
+    """Whirl of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in
+    a plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation). Shape
+    (S, A).
     """
     shape: ComplexArray
-    """The largest entry in meters is 1. Shape (S, A, n)."""
+    """Mode shapes, whose largest entry in meters is 1. Shape (S, A, n)."""
     strain_energy: FloatArray
     kinetic_energy: FloatArray
-    """`strain_energy`, `kinetic_energy`: Shares, mean over a cycle. (S, A, p), (S, A, n) arrays."""
+    """`strain_energy`, `kinetic_energy`: Shares of springs and freedoms in the energies of a mode, mean over
+    a cycle. (S, A, p), (S, A, n) arrays.
+    """
 
 
 def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:

@@ -14,14 +14,14 @@ from dynamics.linearize.operating_speeds import LARGEST_DENOMINATOR
 from dynamics.mechanism.phases import repeating_phases
 from dynamics.types import FloatArray
 
-AGREEMENT = 1e-12
+AGREEMENT = 1e-12  # relative error of a proportion of integers that counts as exact
 
 
 @dataclass(frozen=True)
 class CommonPeriod:
-    """After how many base pitches all meshes are in phase again, with the laws' speeds in fixed proportion.
+    """Base pitches after which all meshes are in phase again, with the laws' speeds in fixed proportion.
 
-    Frames that a coupling crosses have turned by whole revolutions then, too, and loads by angle repeat.
+    After them, frames that a coupling crosses have turned by whole revolutions, and loads by angle repeat.
     """
 
     law: int
@@ -29,7 +29,7 @@ class CommonPeriod:
     proportion: FloatArray
     """Speed of each law over that of `law`. Shape (k,)."""
     revolutions: Fraction
-    """Of the law's shaft in one common period."""
+    """Revolutions of the law's shaft in one common period."""
     pitches: tuple[int, ...]
     """Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: at rest."""
 
@@ -80,7 +80,7 @@ def common_period(system: System) -> CommonPeriod:
     ]
     turns += [phase.turns / abs(rate) for rate, phase in turning if rate]
     if not any(rates):
-        turns.append(Fraction(1))  # of the leading shaft, by which orders then count
+        turns.append(Fraction(1))  # one turn of the leading shaft, by which orders then count
     revolutions = Fraction(
         math.lcm(*(turn.numerator for turn in turns)), math.gcd(*(turn.denominator for turn in turns))
     )

@@ -1,4 +1,4 @@
-"""Critical speeds: where multiples of a mesh frequency meet the frequency of a mode."""
+"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from dynamics.linearize.operating_speeds import mesh_frequencies
 from dynamics.linearize.speed_matrices import SpeedMatrices, speed_matrices
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
-ITERATIONS = 12
-HALVINGS = 12
+CLOSE = 1e-9  # last step of a crossing over the eigenvalue; the error is of the order of its square
+ITERATIONS = 12  # most Newton steps to a crossing
+HALVINGS = 12  # most halvings of an interval with a crossing
 ALIKE = 0.5  # modal assurance with the mode at either speed
 
 
@@ -26,16 +26,18 @@ class CriticalSpeeds:
     """Crossings, C of them by rising speed."""
 
     speed: FloatArray
-    """Of the leading law, rad/s. Shape (C,)."""
+    """Speed of the leading law at each crossing, rad/s. Shape (C,)."""
     frequency: FloatArray
     damping_ratio: FloatArray
-    """`frequency`, `damping_ratio`: Of the mode there, Hz. Shape (C,) each."""
+    """`frequency`, `damping_ratio`: Frequency, Hz, and damping ratio of the mode at the crossing. Shape (C,)
+    each.
+    """
     mode: IntArray
     mesh: IntArray
     order: IntArray
     """`mode`, `mesh`, `order`: Branch, mesh, and multiple of its mesh frequency. Shape (C,) each."""
     residual: FloatArray
-    """Of the eigenvalue problem there, as an error of the frequency, Hz. Shape (C,)."""
+    """Residual of the eigenvalue problem at the crossing, as an error of the frequency, Hz. Shape (C,)."""
 
 
 def critical_speeds(

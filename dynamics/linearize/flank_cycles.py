@@ -17,9 +17,10 @@ from dynamics.motion.observation import local_state, static_deflections
 from dynamics.types import FloatArray
 
 SAMPLES, MIN_SAMPLES, MAX_POSITIONS = 512, 64, 8192
-ITERATIONS = 60
-SOLVED = 1e-12  # of the force: where the search for a deflection ends
-MIN_FORCE = 1e-3  # of the first level: an unloaded flank just touches
+"""Positions per base pitch: usual, least; most positions over the period of a table."""
+ITERATIONS = 60  # most iterations to a deflection
+SOLVED = 1e-12  # error over the force, at which the search for a deflection ends
+MIN_FORCE = 1e-3  # over the first level: force with which an unloaded flank just touches
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class FlankCycle:
     """A driving flank of p rows at T positions, uniform over one period of its table."""
 
     rows: slice
-    """Of its local coordinates."""
+    """Rows of the flank's local coordinates."""
     coordinate: FloatArray
     force: FloatArray
     """`coordinate`, `force`: Local coordinates in m: the transmission error that carries the static mesh

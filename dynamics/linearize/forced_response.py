@@ -32,6 +32,7 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import FloatArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
 KINDS = (*SPRING_KINDS, "load", "frame")
 NOTHING_EXCITES = "such that one excites: transmission errors and loads are constant"
@@ -50,14 +51,14 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
             "1", "change of the largest amplitude with the other excitation, relative", "mesh", "order"
         ),
     )
-    """By how much the largest dynamic transmission error over the speeds changes if the blocked force excites
-    instead of the static error, relative to the largest of all harmonics: what a theory of first order in the
-    ripple cannot tell. Shape (m, H).
+    """Change of the largest dynamic transmission error over the speeds, if the blocked force excites instead
+    of the static error, relative to the largest of all harmonics. It is of second order in the ripple, which
+    linear theory neglects. Shape (m, H).
     """
     natural_frequency: FloatArray = field(
         default_factory=lambda: np.empty(0), metadata=stored("Hz", "undamped natural frequency", "mode")
     )
-    """With the mean mesh stiffness. Shape (n,)."""
+    """Undamped natural frequencies with the mean mesh stiffness, Hz. Shape (n,)."""
     power_source: tuple[str, ...] = ()
     power_input: FloatArray = field(
         default_factory=lambda: np.empty((0, 0, 0)),
@@ -80,13 +81,15 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N2", "by how much it may be off", "bearing", "speed"),
     )
-    """`bearing_floor`, `bearing_floor_error`: Empty where no orders are left out. Shape (b, S) each."""
-    facts: Json = field(default_factory=dict)
+    """`bearing_floor`, `bearing_floor_error`: Mean square bearing force of the orders left out, and its
+    error, N^2. Empty where no orders are left out. Shape (b, S) each.
+    """
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`."""
 
     @property
     def bearing_mean_square(self) -> FloatArray:
-        """Mean square of the force on each bearing, all orders together, those left out too, (b, S), N^2."""
+        """Mean square of the force on each bearing, all orders together, with those left out, (b, S), N^2."""
         listed = 0.5 * np.sum(np.abs(self.bearing_force[:, :3]) ** 2, axis=(1, 3))
         return np.asarray(listed + self.bearing_floor if self.bearing_floor.size else listed)
 
@@ -96,7 +99,7 @@ class ForcedResponse(HarmonicResponse, ArrayFile):
 
     @property
     def power(self) -> PowerBalance:
-        """Where the power of the vibration comes from and goes to, with the residual of the balance."""
+        """Sources and sinks of the power of the vibration, with the residual of the balance."""
         return PowerBalance(
             self.power_source, self.power_input, self.power_sink, self.power_sink_kind, self.power_loss
         )
@@ -115,7 +118,7 @@ def forced_response(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+        Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -157,7 +160,7 @@ def forced_response(
         **power.fields,
         bearing_floor=floor,
         bearing_floor_error=floor_error,
-        facts=_metadata(at, time, seconds)
+        metadata=_metadata(at, time, seconds)
         | lines.to_json(response.floor is not None)
         | {"effect_ledger": ledger}
         | system.corrections,
@@ -165,7 +168,7 @@ def forced_response(
 
 
 def _require_memory(at: Excited, speeds: int, harmonics: int) -> None:
-    """Refuse what cannot be held: by speed and harmonic motions, forces, and the power of each part."""
+    """Refuse a response too large for memory: by speed and harmonic motions, forces, and powers of parts."""
     system = at.system
     freedoms, bearings, meshes = system.arrays.mass.shape[0], len(system.supports.name), len(at.cycles)
     loaded = 3 * freedoms if load_cycles(system, at.period) else 0
@@ -184,7 +187,7 @@ def _metadata(at: Excited, time: float, seconds: Json) -> Json:
 
 
 def _difference(static: FloatArray, blocked: FloatArray) -> FloatArray:
-    """Return how unlike the largest transmission errors (m, H) by static errors and blocked forces are."""
+    """Return the relative difference of largest transmission errors (m, H) by the two excitations."""
     return np.asarray(np.abs(blocked - static) / np.max(static, initial=1e-300))
 
 
@@ -195,17 +198,19 @@ class _Peak:
     quantity: str
     """"mesh_force" or "bearing_force"."""
     name: str
-    """Of the mesh or bearing."""
+    """Name of the mesh or bearing."""
     order: float
     speed: float
     frequency: float
-    """`order`, `speed`, `frequency`: Multiple of the mesh frequency; rad/s; Hz."""
+    """`order`, `speed`, `frequency`: Multiple of the mesh frequency; speed, rad/s; frequency, Hz."""
     amplitude: float
-    """N; of a bearing the root of the sum of squares of x, y and z."""
+    """Amplitude of the force, N; of a bearing the root of the sum of squares of x, y and z."""
     amplification: float
-    """Dynamic over static transmission error there; of a bearing that of the mesh where it is largest."""
+    """Dynamic over static transmission error at the peak; of a bearing that of the mesh with the largest
+    ratio.
+    """
     natural_frequency: float
-    """The nearest, Hz."""
+    """Natural frequency nearest to the peak, Hz."""
 
 
 def peaks(response: ForcedResponse) -> tuple[_Peak, ...]:

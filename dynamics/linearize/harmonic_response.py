@@ -34,6 +34,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 GRID = ("speed", "order")
 MAX_SAMPLES, MAX_PER_LINE, MAX_PARTED = 16_384, 1_000, 300
+"""Most samples of a period, in all and per order, and most orders, up to which `extremes` is exact."""
 
 
 def _none() -> ComplexArray:
@@ -55,14 +56,17 @@ class HarmonicResponse:
     order: FloatArray = field(
         metadata=stored("1", "multiple of the frequency of the first mesh that turns", "order")
     )
-    """Those that are excited; fractions where tables or trains repeat after several pitches. Shape (H,)."""
+    """Excited multiples of the frequency of the first mesh that turns; fractions where tables or trains
+    repeat after several pitches. Shape (H,).
+    """
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
     static_transmission_error: ComplexArray = field(
         metadata=stored("m", "complex amplitude of the excitation", "mesh", "order")
     )
-    """`static_transmission_error`, `load_moment`, `friction_force`: At the static mesh forces: what excites.
-    The moment is that of the load as it travels, about the axis of a misalignment, the friction that along
-    the sliding at the pitch point; 0 of flanks without such rows. Empty in older files. Shape (m, H) each.
+    """`static_transmission_error`, `load_moment`, `friction_force`: Excitations at the static mesh forces.
+    The moment is that of the load as it travels along the face, about the axis of a misalignment. The
+    friction acts along the sliding at the pitch point. Flanks without such rows have 0. Empty in older files.
+    Shape (m, H) each.
     """
     dynamic_transmission_error: ComplexArray = field(metadata=stored("m", "complex amplitude", "mesh", *GRID))
     mesh_force: ComplexArray = field(metadata=stored("N", "complex amplitude, transverse", "mesh", *GRID))
@@ -71,8 +75,8 @@ class HarmonicResponse:
             "N or N m", "complex amplitude on the ground or the pin", "bearing", "direction", *GRID
         )
     )
-    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m. Shape
-    (b, 3, S, H).
+    """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
+    Shape (b, 3, S, H).
     """
     displacement: ComplexArray = field(metadata=stored("m or rad", "complex amplitude", "freedom", *GRID))
     mean_force: FloatArray = field(metadata=stored("N", "static mesh force", "mesh"))
@@ -82,9 +86,11 @@ class HarmonicResponse:
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least of mean and harmonics together", "mesh", "speed")
     )
-    """Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
+    """Least mesh force by mean and harmonics together, N. Where it is negative flanks part, and no linear
+    answer holds. Shape (m, S).
+    """
     residual: float = 0.0
-    """Largest force left by the linear solves, of the largest exciting force."""
+    """Largest force left by the linear solves, over the largest exciting force."""
     load_moment: ComplexArray = field(
         default_factory=_none, metadata=stored("N m", "complex amplitude of the excitation", "mesh", "order")
     )
@@ -92,7 +98,9 @@ class HarmonicResponse:
         default_factory=_none, metadata=stored("N", "complex amplitude of the excitation", "mesh", "order")
     )
     floor: LineFloor | None = None
-    """What the lines left out of a long period do together; None where none is, and of files."""
+    """Floor of the lines of a long period that are left out, in sum; None where none is left out, and in a
+    response from a file.
+    """
 
     @property
     def in_contact(self) -> BoolArray:
@@ -118,7 +126,7 @@ def harmonic_response(
     Parameters
     ----------
     speed : (S,) array
-        Of the first drive that turns, rad/s, either sign.
+        Speeds of the first drive that turns, rad/s, either sign.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -146,7 +154,7 @@ def harmonic_response(
 
 
 def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -> tuple[Excited, Lines]:
-    """Return what excites `system`, and the `strongest_lines` up to `orders` at `speed` (S,), rad/s.
+    """Return the excitation of `system`, and the `strongest_lines` up to `orders` at `speed` (S,), rad/s.
 
     Raises
     ------
@@ -161,7 +169,7 @@ def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -
 
 
 def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
-    """Return what the lines left out do together at `speed` (S,); None without any, or if a frame turns."""
+    """Return the floor of the lines left out at `speed` (S,); None without any, or if a frame turns."""
     if not lines.left_out.size or at.turning:
         return None
     pace = np.array([1.0 / at.period.duration(float(value)) for value in speed])
@@ -185,7 +193,7 @@ def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
 def varied_floor(
     at: Excited, speed: FloatArray, lines: Lines, response: HarmonicResponse
 ) -> LineFloor | None:
-    """Return `floor_of`, and what a stiffness that varies may change of it, by bearing and speed.
+    """Return `floor_of`, with its change by a varying stiffness, by bearing and speed.
 
     The lines left out take no part in what it makes of those kept. Where it changes forces by a part r, that
     of those kept, powers P of those left out and Q of those kept change by 2 r (P + sqrt(P Q)) + r^2 P.
@@ -206,7 +214,7 @@ def varied_floor(
 
 
 def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
-    """Say what a vibration at `speed` (S,) does to meshes and bearings."""
+    """Return the response of meshes and bearings to a vibration at `speed` (S,)."""
     system, linear = at.system, at.linear
     dte = along_rows(steady.displacement, system.arrays.direction[system.driving_rows])
     mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
@@ -251,7 +259,7 @@ def _static_loads(at: Excited, harmonics: IntArray) -> ComplexArray:
 
 
 def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
-    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less what excites."""
+    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less the excitation."""
     system, u, omega, viscous = at.system, steady.displacement, steady.omega, at.at_rest.viscous
     force = np.empty((len(at.cycles), *omega.shape), dtype=complex)
     for f, cycle in enumerate(at.cycles):
@@ -269,9 +277,9 @@ def along_rows(u: ComplexArray, rows: FloatArray) -> ComplexArray:
 
 
 def bearing_forces(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
-    """Return what motions (S, H, n) at omega (S, H) add to the forces of bearings, (b, 3 or 6, S, H).
+    """Return the bearing forces (b, 3 or 6, S, H) by motions (S, H, n) at omega (S, H).
 
-    Those of a motion less those of none, real and imaginary parts apart.
+    The forces are those with the motion less those without, for real and imaginary part one after the other.
     """
     system, rest = at.system, np.zeros((1, u.shape[2]))
     elements, rows = system.arrays.elements, system.arrays.direction.T

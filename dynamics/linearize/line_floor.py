@@ -1,4 +1,4 @@
-"""The floor of a long period: what the lines that a response leaves out do together, by transfer functions.
+"""The floor of a long period: the lines that a response leaves out, in sum, by transfer functions.
 
 Lines of different frequency add up in power. Over the frequency a unit force does the same at every speed, as
 long as no frame turns: its transfer functions are solved once, on frequencies that are close where modes are.
@@ -19,27 +19,31 @@ from dynamics.linearize.steady_vibration import Excited, flank_forces
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
 WIDEST = 0.01
-"""Of a step between frequencies, of the frequency: no wider where no mode is near."""
+"""Widest step between two frequencies, over the frequency, where no mode is near."""
 OF_MODE = 0.25
-"""Of the damping ratio of a mode, or of the distance from it where that is larger: a step's at most."""
+"""Largest step over the damping ratio of the nearest mode, or over the relative distance from it where that
+is larger.
+"""
 LINE_ERROR = 1.0 / 7.0
-"""Of a second difference, that a straight line misses at most: an eighth of a parabola, more of others."""
-MIN_RATIO = 1e-4
+"""Largest error of a straight line between two frequencies, over second derivative times square of the step:
+1/8 for a parabola, more for other curves.
+"""
+MIN_RATIO = 1e-4  # damping ratio that stands for a smaller one
 COUNTED = 1e-10
-"""Of the power of all lines, that a direction of the rows has to have."""
+"""Least share of a direction of the rows in the power of all lines, from which the direction is an input."""
 BINS = 8
-"""In a third octave, in which powers are returned."""
+"""Number of bins in a third octave, in which powers are returned."""
 
 
 class FloorPower(NamedTuple):
     """Power or mean square of lines left out at S speeds in K bins of frequency."""
 
     frequency: FloatArray
-    """Mean of those lines in a bin that have power, Hz. Shape (S, K)."""
+    """Mean frequency of the lines with power in a bin, Hz. Shape (S, K)."""
     power: FloatArray
     missed: FloatArray
-    """`power`, `missed`: And by how much it may be off, of its unit: what straight lines between the
-    frequencies miss at most, and what a stiffness that varies may change. Shape (S, K) each.
+    """`power`, `missed`: Power or mean square, and its largest error in the same unit: by straight lines
+    between the frequencies, and by a varying stiffness. Shape (S, K) each.
     """
 
     @classmethod
@@ -60,20 +64,20 @@ class LineFloor:
     pace: FloatArray
     """Frequency of the common period at the speeds, Hz. Shape (S,)."""
     harmonic: IntArray
-    """Its multiples that the lines are. Shape (L,)."""
+    """Multiples of that frequency at which the lines are. Shape (L,)."""
     inputs: ComplexArray
-    """Complex peak amplitudes. Shape (e, L)."""
+    """Inputs in the lines, complex peak amplitudes. Shape (e, L)."""
     frequency: FloatArray
-    """Hz, rising; those of the lines at all speeds lie among them. Shape (G,)."""
+    """Frequencies of the transfer functions, Hz, rising. They cover the lines at all speeds. Shape (G,)."""
     bearing_force: ComplexArray
     """Forces of bearings per input. Shape (b, 3 or 6, G, e)."""
     changed: FloatArray
-    """What a stiffness that varies may change of the mean squares of forces, relative. Shape (b, S)."""
+    """Relative change of the mean squares of forces that a varying stiffness may make. Shape (b, S)."""
 
     def power(self, matrix: ComplexArray, changed: FloatArray | None = None) -> FloorPower:
         """Return a power or mean square of all lines: y^H M y of their inputs y, by `matrix` M (G, e, e).
 
-        What a stiffness that varies may change of it is `changed` (S,), that of the worst bearing if None.
+        `changed` (S,) is its relative change by a varying stiffness; None: the change of the worst bearing.
         """
         changed = np.max(self.changed, axis=0, initial=0.0) if changed is None else changed
         form, products = _real_terms(matrix), _products(self.inputs)
@@ -112,7 +116,7 @@ class LineFloor:
         return np.floor((10.0 * np.log10(hertz) + 0.5) * BINS).astype(np.int64)
 
     def _bent(self, matrix: ComplexArray) -> ComplexArray:
-        """Return what a straight line from a frequency to the next misses midway, of forms (G, e, e)."""
+        """Return the error of a straight line midway between two frequencies, for forms (G, e, e)."""
         step = np.diff(self.frequency)[:, None, None]
         bend = 2.0 * np.diff(np.diff(matrix, axis=0) / step, axis=0) / (step[1:] + step[:-1])
         curvature_error = np.square(np.maximum(step[1:], step[:-1])) * bend * LINE_ERROR
@@ -120,7 +124,7 @@ class LineFloor:
 
 
 def _of_three(size: FloatArray) -> FloatArray:
-    """Return the largest of sizes (G,) and those beside them: where a form bends back, its bend is 0."""
+    """Return the largest of each size (G,) and its neighbors: the curvature of an inflection is 0."""
     wide = np.pad(size, 1, mode="edge")
     return np.maximum(np.maximum(wide[:-2], wide[2:]), size)
 
@@ -140,7 +144,7 @@ def _products(inputs: ComplexArray) -> list[FloatArray]:
 
 
 class FloorInputs(NamedTuple):
-    """Directions in which lines excite the rows of the flanks, and by how much."""
+    """Directions in which lines excite the rows of the flanks, with their amplitudes."""
 
     row: FloatArray
     """Generalized forces per input. Shape (e, n)."""
@@ -149,7 +153,7 @@ class FloorInputs(NamedTuple):
 
 
 def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
-    """Return what excites in lines (L,): in as few directions as hold their power."""
+    """Return the excitation in lines (L,), in as few directions as hold its power."""
     force = flank_forces(at, left_out)[1]
     size = np.max(np.abs(force), axis=1, keepdims=True)
     rows = np.flatnonzero(size)

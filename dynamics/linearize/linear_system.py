@@ -23,7 +23,8 @@ SPRING_KINDS = ("mesh", "bearing", "coupling", "drive", "shaft", "housing")
 class LinearSystem:
     """M dq'' + C dq' + K dq = 0 for small dq about the equilibrium, n freedoms, m flanks.
 
-    How forces change with the flanks' positions is left out: of the order of a deflection over a base pitch.
+    The change of forces with the flanks' positions is left out: it is of the order of a deflection over a
+    base pitch.
     """
 
     freedom: tuple[str, ...]
@@ -35,7 +36,7 @@ class LinearSystem:
     stiffness: FloatArray
     """`mass`, `damping`, `stiffness`: M, C, K; symmetric. Shape (n, n) each."""
     rigid: FloatArray
-    """Motions that nothing resists: those of trains without a drive. Shape (k, n)."""
+    """Motions that no spring resists: rotations of trains without a drive. Shape (k, n)."""
     spring: tuple[str, ...]
     """Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
     (once per principal stiffness), elastic drives, elastic coordinates of shafts.
@@ -43,7 +44,7 @@ class LinearSystem:
     strain: FloatArray
     """Strain of each spring per freedom, m or rad. Shape (p, n)."""
     spring_stiffness: FloatArray
-    """N/m or N m/rad. Shape (p,)."""
+    """Stiffnesses of the springs, N/m or N m/rad. Shape (p,)."""
     equilibrium: StaticSolution
 
 
@@ -101,7 +102,7 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
 def _matrices(system: System, time: float, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
     """Names, strains per freedom, and stiffness matrices of bearings and couplings at `time`.
 
-    Those of bearings that are not linear are by their `tangent` (R, P) at the equilibrium.
+    Bearings that are not linear have their `tangent` (R, P) at the equilibrium.
     """
     seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
     bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]

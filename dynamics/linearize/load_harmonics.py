@@ -24,7 +24,7 @@ ALONG: Waves = {Fraction(0): np.ones(1, dtype=complex)}
 def load_harmonics(
     system: System, period: CommonPeriod, speed: FloatArray, harmonics: IntArray, time: float
 ) -> ComplexArray:
-    """Return what forces and unbalances exert on the freedoms at `speed` (S,), (S, H, n), N and N m.
+    """Return the forces of loads and unbalances on the freedoms at `speed` (S,), (S, H, n), N and N m.
 
     Without any (1, H, n): nothing at all speeds.
     Complex peak amplitudes of the multiples `harmonics` (H,) of the common period's frequency; loads by time

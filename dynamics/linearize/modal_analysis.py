@@ -23,11 +23,12 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 
-MAX_ORDERS = 100
+MAX_ORDERS = 100  # largest multiple of a mesh frequency
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 AT_REST = ("frequency", "damping_ratio", "shape", "strain_energy", "kinetic_energy")
-"""What an analysis keeps of `Modes`."""
+"""Fields of `Modes` that an analysis keeps of the modes at rest."""
 
 
 def resolved_to(system: System, speed: FloatArray, orders: int, highest: float | None) -> float:
@@ -48,10 +49,11 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
 class ModalAnalysis(ArrayFile):
     """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.
 
-    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds. What
-    modes at rest are: `Modes`; over speed: `WhirlBranches`, NaN where one does not oscillate; where they
-    cross orders: `CriticalSpeeds`. Points of the axes of shafts (`ShaftAxes`): none in files of versions that
-    did not keep them. Points of the surfaces of housings: none where no surface moves.
+    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
+    Fields of modes at rest are those of `Modes`, fields over speed those of `WhirlBranches` (NaN where a mode
+    does not oscillate), fields of crossings with orders those of `CriticalSpeeds`. Points of the axes of
+    shafts (`ShaftAxes`): none in files of versions that did not keep them. Points of the surfaces of
+    housings: none where no surface moves.
     """
 
     SCHEMA = "lineofaction modal analysis"
@@ -107,7 +109,7 @@ class ModalAnalysis(ArrayFile):
     critical_residual: FloatArray = field(
         metadata=stored("Hz", "frequency of the mode less that of the order", "crossing")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
     `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
     resolved).
@@ -140,7 +142,7 @@ class ModalAnalysis(ArrayFile):
         return _summed([" ".join(part) for part in freedom_parts(self.freedom)], kinetic_energy)
 
     def kind(self, strain_energy: FloatArray, kinetic_energy: FloatArray) -> str:
-        """Say in words what one mode is: how it moves, and what holds it.
+        """Return a mode in words: its motion, and the springs that hold it.
 
         "torsional on mesh", "lateral-torsional on bearing" ...: whatever has a third of the energy is named;
         "free" for a motion that nothing resists.
@@ -166,7 +168,7 @@ def modal_analysis(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive or free rotation that turns, rad/s, increasing, >= 0; empty: none.
+        Speeds of the first drive or free rotation that turns, rad/s, increasing, >= 0; may be empty.
     orders : int
         Multiples of the mesh frequencies whose crossings with modes are found.
     time : float
@@ -174,8 +176,8 @@ def modal_analysis(
     progress : callable, optional
         Called with the fraction done; an exception in it ends the analysis.
     highest_frequency : float, optional
-        Hz to which flexible shafts are resolved, independent of the scene's output; left out: the highest of
-        the `orders` at the highest of the speeds, or of the scene if none is given.
+        Frequency to which flexible shafts are resolved, Hz, independent of the scene's output. Left out: the
+        highest of the `orders` at the highest of the speeds, or of the scene if no speed is given.
 
     Raises
     ------
@@ -249,7 +251,7 @@ def _analysis(
         mesh_frequency=mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
         **vars(branches),
         **{f"critical_{name}": values for name, values in vars(crossings).items()},
-        facts=metadata,
+        metadata=metadata,
         axis_shaft=axes.shaft,
         axis_position=axes.position,
         axis_motion=system.freedoms.keep(axes.motion),

@@ -12,7 +12,9 @@ from dynamics.arrays.modal_freedoms import ModalFreedoms
 from dynamics.types import ComplexArray, FloatArray
 
 ROUNDING = 1e-12
-"""Of the entries of modal freedoms, that the rows of their elements may fail to explain."""
+"""Largest error, over the largest entry of a matrix, with which the rows of the elements have to explain the
+entries of the modal freedoms; it is rounding.
+"""
 Values = TypeVar("Values", FloatArray, ComplexArray)
 
 
@@ -29,8 +31,8 @@ class _ModalElimination:
     outward: FloatArray
     inward: FloatArray
     along: FloatArray
-    """`outward`, `inward`, `along`: Of K and C: forces on bodies by z, on z by the bodies, on z by z. (2, a,
-    s), (2, s, a), (2, s, s) arrays.
+    """`outward`, `inward`, `along`: Parts of K and C: forces on bodies by z, on z by the bodies, on z by z.
+    (2, a, s), (2, s, a), (2, s, s) arrays.
     """
 
     def solve(
@@ -83,7 +85,7 @@ class _ModalElimination:
 
 
 def turning_terms(w: FloatArray | ComplexArray, swept: Sequence[FloatArray]) -> ComplexArray | float:
-    """Return what gyroscopic and frame terms (S, n, n) add to the matrix at `w` (S, H, 1, 1), rad/s."""
+    """Return the gyroscopic and frame terms (S, n, n) of the matrix at `w` (S, H, 1, 1), rad/s."""
     return np.asarray(1j * w * swept[0][:, None] + swept[1][:, None]) if swept else 0.0
 
 
@@ -131,7 +133,7 @@ def modal_elimination(
 
 
 def solved(matrix: Values, right: Values) -> Values:
-    """Solve for all of a stack; what nothing bounds is not a number, and the caller refuses it."""
+    """Solve for all of a stack; an unbounded solution is not a number, and the caller refuses it."""
     try:
         return np.linalg.solve(matrix, right).astype(right.dtype, copy=False)
     except np.linalg.LinAlgError:

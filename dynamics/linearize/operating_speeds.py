@@ -13,8 +13,8 @@ from dynamics.errors import InputError
 from dynamics.mechanism.kinematics import proportional_speeds
 from dynamics.types import FloatArray
 
-MAX_SPEEDS = 100_000
-LARGEST_DENOMINATOR = 10_000
+MAX_SPEEDS = 100_000  # most speeds of a response
+LARGEST_DENOMINATOR = 10_000  # largest integer in a proportion of speeds
 
 
 def leading_law(system: System) -> int:

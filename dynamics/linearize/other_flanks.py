@@ -1,4 +1,4 @@
-"""Other flanks of one mesh of an assembled scene: what they excite, and how it changes with their table.
+"""Other flanks of one mesh of an assembled scene: their excitation, and its change with their table.
 
 The scene is assembled once. Another table moves the equilibrium, from which the rest follows; which effects
 act is not decided anew.
@@ -24,11 +24,11 @@ from dynamics.types import IntArray
 
 @dataclass(frozen=True)
 class OtherFlanks:
-    """A scene about its loaded equilibrium, and the mesh whose flanks are others."""
+    """A scene about its loaded equilibrium, and the mesh that gets other flanks."""
 
     at: Excited
     mesh: int
-    """Its index in the scene."""
+    """Index of the mesh in the scene."""
     orders: int
     harmonics: IntArray
     """Multiples of the common period's frequency. Shape (H,)."""
@@ -64,7 +64,7 @@ class OtherFlanks:
 
     @property
     def excitation(self) -> FlankExcitation:
-        """What the flanks excite."""
+        """Excitation by the flanks."""
         return excitation_of(self.at, self.harmonics)
 
     def changes(self, tables: Sequence[MeshTable]) -> list[FlankExcitation]:

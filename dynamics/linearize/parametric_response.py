@@ -27,11 +27,11 @@ def parametric_response(
     Parameters
     ----------
     speed, rate : (S,) arrays
-        Of the leading law, rad/s, and how fast it changes, rad/s^2.
+        Speed of the leading law, rad/s, and its rate of change, rad/s^2.
     orders : int
         Harmonics of each mesh.
     gyroscopic : bool
-        With gyroscopic and frame terms.
+        Whether gyroscopic and frame terms count.
     varying : bool
         False: with mean tangents, whose errors have the static means.
     """

@@ -21,13 +21,13 @@ class PartialFractions:
     stiffness: FloatArray
     mass: FloatArray
     damping: FloatArray
-    """`stiffness`, `mass`, `damping`: Shape (n, n) each."""
+    """`stiffness`, `mass`, `damping`: Matrices of the system. Shape (n, n) each."""
     root: ComplexArray
     """Eigenvalues r of the motion of first order, rad/s. Shape (2 n,)."""
     shape: ComplexArray
     """X: displacements of its modes. Shape (n, 2 n)."""
     share: ComplexArray
-    """Y: what forces excite of each mode. Shape (2 n, n)."""
+    """Modal participation Y: excitation of each mode by forces. Shape (2 n, n)."""
 
     @classmethod
     def of(cls, stiffness: FloatArray, mass: FloatArray, damping: FloatArray) -> PartialFractions | None:
@@ -37,7 +37,8 @@ class PartialFractions:
         if count < MIN or not scale > 0.0:
             return None
         mobility = np.linalg.inv(mass)
-        motion = np.zeros((2 * count, 2 * count))  # of displacements times the scale, and rates
+        # derivative of the state: displacements times the scale, and rates
+        motion = np.zeros((2 * count, 2 * count))
         motion[:count, count:] = scale * np.eye(count)
         motion[count:, :count] = -mobility @ stiffness / scale
         motion[count:, count:] = -mobility @ damping
@@ -50,7 +51,7 @@ class PartialFractions:
         return cls(stiffness, mass, damping, root.astype(complex), shape[:count].astype(complex), share)
 
     def solve(self, omega: FloatArray | ComplexArray, right: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Return the displacements (S, H, n, f) under `right`, and how far the first ones miss it.
+        """Return the displacements (S, H, n, f) under `right`, and the residual of the first ones.
 
         `omega` (S, H), rad/s, `right` (S or 1, H, n, f).
         """

@@ -1,4 +1,4 @@
-"""Power balance of a harmonic vibration: what excitation puts in and what parts lose, by harmonic."""
+"""Power balance of a harmonic vibration: power put in by excitations and lost in parts, by harmonic."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ class PowerBalance:
     source: tuple[str, ...]
     """Meshes, by their transmission errors; `LOADS`: forces and unbalances, where they excite."""
     input: FloatArray
-    """By each, negative where it brakes the vibration. Shape (p, S, H)."""
+    """Power put in by each source, W; negative where the source brakes the vibration. Shape (p, S, H)."""
     sink: tuple[str, ...]
     kind: tuple[str, ...]
     """`sink`, `kind`: Parts and what they are, one of `KINDS`."""
     loss: FloatArray
-    """In each. A mesh whose friction feeds the vibration has a negative one. Shape (a, S, H)."""
+    """Power lost in each sink, W; negative in a mesh whose friction feeds the vibration. Shape (a, S, H)."""
 
     @property
     def fields(self) -> dict[str, Any]:
-        """The fields of `ForcedResponse` that hold it."""
+        """The powers as fields of `ForcedResponse`, by name."""
         powers = {"source": self.source, "input": self.input, "sink": self.sink}
         powers |= {"sink_kind": self.kind, "loss": self.loss}
         return {f"power_{name}": value for name, value in powers.items()}
@@ -53,7 +53,7 @@ class PowerBalance:
         return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
 
     def by_kind(self) -> dict[str, FloatArray]:
-        """Return what parts of a kind lose together, all harmonics, (S,)."""
+        """Return the power that the parts of a kind lose together, all harmonics, (S,)."""
         total = np.sum(self.loss, axis=2)
         return {
             kind: np.sum(total[[part_kind == kind for part_kind in self.kind]], axis=0)

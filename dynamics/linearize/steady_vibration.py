@@ -1,4 +1,4 @@
-"""Steady vibration about the static equilibrium: what excites it, and the displacements at every harmonic."""
+"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 Terms = tuple[FloatArray, FloatArray]
 EXCITATIONS = ("static_error", "blocked_force")
 BLOCK = 1_000_000  # entries of the matrices solved at once
-NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+NOTHING = 1e-12  # force over the largest exciting force, below which harmonics are left out
 ROUNDED = 1e-3
 """Largest part of the exciting force that rounding of the elastic forces may be."""
 SWEPT = 0.34
@@ -35,16 +35,16 @@ SWEPT = 0.34
 
 @dataclass(frozen=True)
 class Excited:
-    """A system about its equilibrium under the loads at a time, and what excites it there."""
+    """A system about its equilibrium under the loads at a time, and its excitation."""
 
     system: System
     time: float
-    """s."""
+    """Time at which the loads are taken, s."""
     period: CommonPeriod
     linear: LinearSystem
-    """With the mean tangents of the flanks."""
+    """Linear system with the mean tangents of the flanks."""
     at_rest: LocalState
-    """The elements there."""
+    """State of the force elements at the equilibrium."""
     cycles: tuple[FlankCycle, ...]
     turning: bool = False
     """Whether rotating-frame elements act: gyroscopic and frame terms belong to the system."""
@@ -57,18 +57,18 @@ class Steady:
     harmonics: IntArray
     """Multiples of the common period's frequency. Shape (H,)."""
     omega: FloatArray
-    """rad/s. Shape (S, H)."""
+    """Circular frequencies, rad/s. Shape (S, H)."""
     static: ComplexArray
     """Static transmission errors, m. Shape (m, H)."""
     force: ComplexArray
-    """What excites the driving flanks' rows, N. Shape (1 or S, R', H)."""
+    """Exciting forces on the rows of the driving flanks, N. Shape (1 or S, R', H)."""
     displacement: ComplexArray
-    """m and rad. Shape (S, H, n)."""
+    """Displacements, m and rad. Shape (S, H, n)."""
     residual: float
-    """Largest force left by the linear solves, of the largest exciting force."""
+    """Largest force left by the linear solves, over the largest exciting force."""
     receptance: ComplexArray
-    """Displacements per force on f rows, those of `swept_vibration` of the driving flanks; empty where not
-    requested. Shape (S, H, n, f).
+    """Displacements per force on f rows: in `swept_vibration` those of the driving flanks;
+    empty where not requested. Shape (S, H, n, f).
     """
 
 
@@ -98,7 +98,7 @@ def steady_vibration(
     excitation: str = "static_error",
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
-    """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
+    """Return the vibration at `speed` (S,) in the excited ones of `harmonics` (H,)."""
     harmonics = excited_harmonics(at, speed, harmonics, (excitation,))
     return _vibration(at, speed, harmonics, excitation, progress=progress)[0]
 
@@ -106,7 +106,7 @@ def steady_vibration(
 def excited_harmonics(
     at: Excited, speed: FloatArray, harmonics: IntArray, excitations: Sequence[str] = EXCITATIONS
 ) -> IntArray:
-    """Return those of `harmonics` (H,) that flanks, by any of `excitations`, or loads excite."""
+    """Return the harmonics (H,) that at least one of `excitations`, or a load, reaches."""
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     excited_lines = _is_excited(np.moveaxis(loads / at.linear.scale, 1, 2))
     for excitation in excitations:
@@ -127,11 +127,11 @@ def with_blocked(
 def _is_excited(force: ComplexArray) -> BoolArray:
     """Return which of H harmonics excite: of forces (..., H)."""
     largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
-    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # what is not a number excites
+    return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # NaN counts as excited
 
 
 def _pushed(at: Excited, force: ComplexArray) -> ComplexArray:
-    """Return the generalized forces (1, H, n) of those on the driving flanks' rows, (R', H)."""
+    """Return the generalized forces (1, H, n) by forces on the driving flanks' rows, (R', H)."""
     return np.asarray(force.T @ at.system.arrays.direction[: force.shape[0]])[None]
 
 
@@ -168,7 +168,7 @@ def _vibration(
     second: str = "",
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Steady, FloatArray]:
-    """Return the vibration in all `harmonics`, and what `_solve` returns of the `second` excitation."""
+    """Return the vibration in all `harmonics`, and the largest motion under the `second` excitation."""
     static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     other = _pushed(at, flank_forces(at, harmonics, second)[1]) + loads if second else None
@@ -292,7 +292,8 @@ def _solve(
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
         swept = _swept(terms[part], per_meter)
-        with np.errstate(divide="ignore", invalid="ignore"):  # of an undamped mode at its very frequency
+        # an undamped mode at its natural frequency divides by 0
+        with np.errstate(divide="ignore", invalid="ignore"):
             if by_modes is not None:
                 solution, miss = by_modes.solve(omega[part], exciting)
                 if not np.max(miss, initial=0.0) <= PRECISE * maximum:
@@ -318,7 +319,7 @@ def _solve(
 
 
 def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:
-    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act there."""
+    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act on them."""
     acts = any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term)
     return 0 if acts else first
 
@@ -343,7 +344,7 @@ def _right_sides(force: ComplexArray, rows: FloatArray | None, second: ComplexAr
 def _dense(
     parts: ComplexArray, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray], right: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """Return the displacements (S, H, n, f) under `right`, and how far the first ones miss it.
+    """Return the displacements (S, H, n, f) under `right`, and the residual of the first ones.
 
     `parts` are K, M, C (3, n, n); `swept` are gyroscopic and frame terms (S, n, n), or nothing.
     """

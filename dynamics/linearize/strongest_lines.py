@@ -1,7 +1,7 @@
 """The lines of a long common period that a response is solved in: the strongest of every mesh order.
 
-Over a hunting cycle of 1 541 base pitches ten mesh orders are 15 410 lines. Those of the mesh, of both shafts
-and their sidebands are some 90 an order; what lies between them is products of small ones.
+Over a hunting cycle of 1 541 base pitches ten mesh orders are 15 410 lines. Lines of the mesh, of both shafts
+and their sidebands are some 90 per order; the lines between them are products of small ones.
 """
 
 from __future__ import annotations
@@ -23,15 +23,16 @@ MAX_AMPLITUDES = 6e6
 
 
 class Lines(NamedTuple):
-    """What a response is solved in."""
+    """Lines in which a response is solved, and those that it leaves out."""
 
     harmonics: IntArray
     """Multiples of the common period's frequency, rising. Shape (H,)."""
     left_out: IntArray
-    """The others that excite, rising. Shape (L,)."""
+    """Other excited multiples, rising. Shape (L,)."""
     share: float = 0.0
-    """Root of the sum of the squares of the forces that these excite over that of all, of the mesh order and
-    the row of the flanks where it is largest: between the lines kept stands a floor of many weak ones.
+    """Root of the sum of squares of the forces in the lines left out, over that of all lines, for the mesh
+    order and the row of the flanks with the largest ratio. Between the lines that count stands a floor of
+    many weak ones.
     """
 
     def to_json(self, in_totals: bool) -> Json:
@@ -71,7 +72,7 @@ def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Line
 
 
 def require_memory(speeds: int, lines: int, numbers: int, freedoms: int) -> None:
-    """Refuse more speeds than can be held with so many complex `numbers` for each of them and each line.
+    """Refuse more speeds than memory holds with `numbers` complex numbers for each speed and line.
 
     Raises `InputError`: there are too many.
     """
@@ -88,7 +89,7 @@ def _share(part: FloatArray, total: FloatArray) -> FloatArray:
 
 
 def _always(at: Excited, harmonics: IntArray, speed: float) -> IntArray:
-    """Return where the mesh orders and those of loads are."""
+    """Return the indices of the mesh orders and of the orders of loads."""
     always = np.isin(harmonics, load_multiples(at.system, at.period, speed, at.time))
     for pitches in at.period.pitches:
         if pitches:

@@ -49,7 +49,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 from model_studies.cached_file import cached_in
 
 BLOCK = 4_000_000  # complex displacements held at once
-SAME = 1e-9  # of the gradients of rows that are the same
+SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
 VERSION = 1
 """Raised with every change of the numbers of a transfer function, or of what is kept with them."""
 
@@ -58,17 +58,19 @@ _SOLVED = 6e-8
 
 
 class FlankExcitation(NamedTuple):
-    """What flanks do at their equilibrium, and the tangents there; m meshes, R rows, H harmonics."""
+    """Excitation by flanks at their equilibrium, and the tangents there; m meshes, R rows, H harmonics."""
 
     static: ComplexArray
     """Static transmission errors, m. Shape (m, H)."""
     force: ComplexArray
-    """What excites the rows, N: it pushes a deflection up with the transmission error; on the further rows of
-    a mesh the moment of the load as it travels along the face, over a length, and friction. Shape (R, H).
+    """Exciting force on the rows, N. On the row of the deflection it raises the deflection with the
+    transmission error. On the further rows of a mesh it is the moment of the load as it travels along the
+    face, over a length, and the friction. Shape (R, H).
     """
     tangent: FloatArray
     viscous: FloatArray
-    """`tangent`, `viscous`: N/m and N s/m; those of flanks are means over the positions. Shape (R, R) each.
+    """`tangent`, `viscous`: Stiffness and damping of the rows, N/m and N s/m; those of flanks are means over
+    the positions. Shape (R, R) each.
     """
     mean_force: FloatArray
     """Static mesh forces, N. Shape (m,)."""
@@ -83,11 +85,11 @@ class TransferredResponse:
     order: FloatArray
     frequency: FloatArray
     bearing_force: ComplexArray
-    """As that of `HarmonicResponse`. Shape (b, 3 or 6, S, H)."""
+    """Bearing force as in `HarmonicResponse`. Shape (b, 3 or 6, S, H)."""
     mesh_force: ComplexArray
-    """N, transverse. Shape (m, S, H)."""
+    """Transverse mesh force, N. Shape (m, S, H)."""
     least_mesh_force: FloatArray
-    """Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
+    """Least mesh force, N. Where it is negative flanks part, and no linear answer holds. Shape (m, S)."""
 
     @property
     def in_contact(self) -> BoolArray:
@@ -113,7 +115,7 @@ class FlankTransfer(ArrayFile):
     freedom: tuple[str, ...]
     orders: int
     time: float
-    """`orders`, `time`: As requested: harmonics of the first mesh, and when loads are taken, s."""
+    """`orders`, `time`: Requested harmonics of the first mesh, and time at which loads are taken, s."""
     harmonics: IntArray = field(metadata=stored("1", "multiple of the common period's frequency", "order"))
     speed: FloatArray = field(metadata=stored("rad s-1", "speed of the leading shaft", "speed"))
     order: FloatArray = field(
@@ -121,28 +123,34 @@ class FlankTransfer(ArrayFile):
     )
     frequency: FloatArray = field(metadata=stored("Hz", "frequency of the harmonic", "speed", "order"))
     first: IntArray = field(metadata=stored("1", "first row of each part, and their number", "bound"))
-    """Where the rows begin of each mesh, then of each bearing that is not linear, and their number. Those of
-    a mesh are of its deflection, then of misalignment, center distance, sliding and rolling as far as it has
-    them. Shape (k + 1,).
+    """First row of each mesh, then of each bearing that is not linear, and the number of rows. The rows of a
+    mesh are its deflection, then misalignment, center distance, sliding and rolling as far as it has them.
+    Shape (k + 1,).
     """
     gradient: FloatArray = field(metadata=stored("1", "gradient of the rows", "row", "freedom"))
-    """Of the rows in the freedoms. Shape (R, n)."""
+    """Gradients of the rows in the freedoms. Shape (R, n)."""
     force: ComplexArray = field(metadata=stored("N", "what excites the rows", "row", "order"))
     tangent: FloatArray = field(metadata=stored("N m-1", "tangents of the rows", "row", "row"))
     viscous: FloatArray = field(metadata=stored("N s m-1", "damping of the rows", "row", "row"))
-    """`force`, `tangent`, `viscous`: Those of the scene's flanks, as of `FlankExcitation`."""
+    """`force`, `tangent`, `viscous`: Excitation, stiffness and damping of the rows with the scene's flanks,
+    as in `FlankExcitation`.
+    """
     motion: ComplexArray = field(
         metadata=stored("m or m N-1", "motion of the rows", "row", "speed", "order", "input")
     )
-    """Of the rows: m, and m/N. Shape (R, S, H, 1 + R)."""
+    """Motion of the rows, m under the flanks of the scene, then m/N per force on each row. Shape
+    (R, S, H, 1 + R).
+    """
     bearing_force: ComplexArray = field(
         metadata=stored("N or 1", "forces of bearings", "bearing", "direction", "speed", "order", "input")
     )
-    """N or N m, and per N. Shape (b, 3 or 6, S, H, 1 + R)."""
+    """Bearing forces, N or N m under the flanks of the scene, then per N on each row. Shape
+    (b, 3 or 6, S, H, 1 + R).
+    """
     residual: float = 0.0
 
     def excitation(self, system: System) -> FlankExcitation:
-        """Return what the flanks of a design excite: the assembled scene with other tables of its meshes.
+        """Return the excitation by the flanks of a design: the scene with other tables of its meshes.
 
         Raises
         ------
@@ -173,7 +181,7 @@ class FlankTransfer(ArrayFile):
     def excitation_errors(
         self, system: System, flanks: FlankExcitation, mesh: int, errors: tuple[FloatArray, ...]
     ) -> list[FlankExcitation]:
-        """Return by how much flanks excite differently for three errors of what a mesh excites.
+        """Return the change of the excitation by three errors of the excitation of one mesh.
 
         `errors` (H,) of amplitudes are those of the transmission error, m, of the arm of the load, m, and of
         the friction along the sliding over the largest. Flanks without such a row err by nothing there.
@@ -271,13 +279,14 @@ def flank_transfer(
 ) -> FlankTransfer:
     """Return the transfer functions of a scene about its loaded equilibrium.
 
-    Of tables of long periods in the `strongest_lines` of its own flanks, the mesh orders always among them.
+    With tables of long periods the lines are the `strongest_lines` of the scene's flanks, the mesh orders
+    always among them.
 
     Parameters
     ----------
     system : System
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing, > 0.
+        Speeds of the first drive that turns, rad/s, increasing, > 0.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     time : float
@@ -313,7 +322,7 @@ def flank_transfer(
 
 
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
-    """Return what `flank_transfer` of the same takes, CPU s: within a factor of 2 where it takes 0.05.
+    """Return the cost of `flank_transfer` with these arguments, CPU s: within a factor of 2 from 0.05 s on.
 
     Raises `InputError`, `SolveError` as it.
     """
@@ -322,7 +331,7 @@ def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:
 
 
 def possible_lines(at: Excited, orders: int, speed: FloatArray) -> IntArray:
-    """Return the `strongest_lines` of those that tables or loads may excite, in multiples of the period's."""
+    """Return the `strongest_lines` that tables or loads may excite, as multiples of the period's."""
     return strongest_lines(at, _harmonics(at, orders, float(speed[-1])), speed).harmonics
 
 
@@ -337,7 +346,7 @@ def _harmonics(at: Excited, orders: int, speed: float) -> IntArray:
 
 
 def _require_memory(at: Excited, speeds: int, lines: int) -> None:
-    """Refuse what cannot be held: motions of rows and forces of bearings per input, while they are joined."""
+    """Refuse a transfer too large for memory: motions of rows and forces of bearings per input."""
     rows, bearings = _rows(at).size, len(at.system.supports.name)
     freedoms = at.system.arrays.mass.shape[0]
     require_memory(speeds, lines, 2 * (1 + rows) * (rows + 6 * bearings), freedoms)
@@ -355,7 +364,7 @@ def _rows(at: Excited) -> IntArray:
 
 
 def excitation_of(at: Excited, harmonics: IntArray) -> FlankExcitation:
-    """Return what the flanks of a system about its equilibrium excite in `harmonics` (H,)."""
+    """Return the excitation by the flanks of a system about its equilibrium in `harmonics` (H,)."""
     arrays, start = at.system.arrays, at.linear.equilibrium
     static, excited_rows = flank_forces(at, harmonics)
     rows = _rows(at)

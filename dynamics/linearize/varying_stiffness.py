@@ -24,9 +24,9 @@ from dynamics.linearize.steady_vibration import (
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 CONVERGED = 1e-9
-"""Residual of the balance, of what makes force with the mean stiffness."""
+"""Residual of the balance, over the displacements that make force with the mean stiffness."""
 RESTART, CYCLES = 60, 10
-"""Iterations of GMRES before it starts anew, and how often it may."""
+"""Iterations of GMRES before a restart, and most restarts."""
 DIRECT = 300
 """Unknowns up to which the balance is solved by a factorization a speed, all speeds together.
 
@@ -48,14 +48,14 @@ def varied(at: Excited, steady: Steady) -> tuple[Steady, FloatArray]:
     Parameters
     ----------
     steady : Steady
-        With mean tangents; its receptances are those of all rows of the driving flanks.
+        Vibration with mean tangents; its receptances belong to all rows of the driving flanks.
 
     Returns
     -------
     Steady
-        Its `force` has what the varying tangents take; bit-equal where none vary.
+        Vibration whose `force` includes that of the varying tangents; bit-equal where none vary.
     (m, S) array
-        By how much the mean transmission errors differ from the mean static ones, m.
+        Mean transmission errors less the mean static ones, m.
 
     Raises
     ------
@@ -119,14 +119,14 @@ class _Varying:
 
     rows: slice
     line_index: IntArray
-    """Where its lines are among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
+    """Indices of the table's lines among the mean and the harmonics of the vibration. Shape (Q + 1,)."""
     line: IntArray
     """Multiples of the table's own frequency, 0 first. Shape (Q + 1,)."""
     tangent: FloatArray
-    """Less its mean, over the table's period in time, N/m. Shape (N, p, p)."""
+    """Tangents less their mean, over the table's period in time, N/m. Shape (N, p, p)."""
 
     def pressed(self, made: ComplexArray) -> ComplexArray:
-        """Return the Fourier coefficients (Q + 1, p) of the forces by those of what makes them."""
+        """Return the Fourier coefficients (Q + 1, p) of the forces by those of the coordinates."""
         samples = len(self.tangent)
         spectrum = np.zeros((samples // 2 + 1, made.shape[1]), dtype=complex)
         spectrum[self.line] = made
@@ -140,7 +140,7 @@ class VaryingStiffness:
     """The tangents of flanks about an equilibrium less their means, in H harmonics."""
 
     parts: tuple[_Varying, ...]
-    """Of the flanks whose tangents vary."""
+    """Flanks whose tangents vary."""
     still: FloatArray
     """Static receptance of the rows of all driving flanks, m/N. Shape (R', R')."""
 
@@ -175,7 +175,7 @@ class VaryingStiffness:
 
 @dataclass(frozen=True)
 class DirectBalance:
-    """The balance as a real matrix of what moves tangents that vary, N unknowns, for all speeds together.
+    """The balance as a real matrix of the N coordinates that move varying tangents, for all speeds together.
 
     The unknowns of a flank are the real parts 0 to Q, then the imaginary parts 1 to Q, of the coordinates
     that its tangents depend on.
@@ -186,18 +186,18 @@ class DirectBalance:
     harmonic: IntArray
     row: IntArray
     imaginary: BoolArray
-    """`harmonic`, `row`, `imaginary`: Which coefficient of the motion an unknown is: harmonic (0 the mean),
-    row, and which part of it. Shape (N,) each.
+    """`harmonic`, `row`, `imaginary`: Coefficient of the motion that an unknown is: its harmonic
+    (0 the mean), its row, and whether it is the imaginary part. Shape (N,) each.
     """
 
     @property
     def size(self) -> int:
-        """N."""
+        """Number N of unknowns."""
         return self.harmonic.size
 
     @classmethod
     def of(cls, parts: tuple[_Varying, ...], harmonics: int, rows: int) -> DirectBalance:
-        """Lay out the unknowns of `parts` among so many `harmonics`, the mean included, and `rows`."""
+        """Lay out the unknowns of `parts` among `harmonics`, the mean included, and `rows`."""
         columns = [column for part in parts for column in _unknowns(part)]
         harmonic, row, imaginary = (np.array(side) for side in zip(*columns, strict=True))
         if harmonic.size > DIRECT:
@@ -332,7 +332,7 @@ def _real(harmonics: ComplexArray) -> FloatArray:
 
 
 def _complex(real: FloatArray, count: int, rows: int) -> ComplexArray:
-    """Return the Fourier coefficients (count, R') of what `_real` made."""
+    """Return the Fourier coefficients (count, R') of the real vector that `_real` returns."""
     harmonics = real[: count * rows].reshape(count, rows).astype(complex)
     harmonics[1:] += 1j * real[count * rows :].reshape(count - 1, rows)
     return harmonics

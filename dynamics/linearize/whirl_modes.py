@@ -21,14 +21,14 @@ from dynamics.types import ComplexArray, FloatArray, IntArray
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
 
 
-LATERAL, TILT = (0, 1), (3, 4)
+LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
 
 
 OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
 
 
 STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
-SAME = 1e-6  # of a frequency: nearer modes count as repeated
+SAME = 1e-6  # relative difference of frequencies, below which modes count as repeated
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
-    """Return what dampers across frames add to the stiffness, (n, n), at the frames' angles at t = 0."""
+    """Return the stiffness (n, n) by dampers across frames, at the frames' angles at t = 0."""
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
     local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
     swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))

@@ -21,7 +21,7 @@ LARGEST_DENOMINATOR = 1000
 AGREEMENT = 1e-9
 """Relative difference of an order from such a multiple that the printing of its digits leaves."""
 FAINT = 1e-12
-"""Of the largest: smaller amplitudes of a tabulated turn are rounding."""
+"""Amplitude over the largest one, below which a harmonic of a tabulated turn is rounding."""
 CONSTANT = TimeLaw.constant(1.0)
 
 
@@ -34,10 +34,10 @@ class SpeedCurve:
     """
 
     speed: tuple[float, ...]
-    """Where pieces join, rad/s, strictly increasing."""
+    """Speeds at which pieces join, rad/s, strictly increasing."""
     coefficient: tuple[Cubic, ...]
-    """Ascending in the speed above the piece's start, N m, N m s, ...; one piece more than joints. The first
-    piece, below the first joint, counts from that joint too.
+    """Coefficients of the pieces, ascending in the speed above the piece's start, N m, N m s, ...; one piece
+    more than joints. The first piece, below the first joint, counts from that joint too.
     """
 
     def __post_init__(self) -> None:

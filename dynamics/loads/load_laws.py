@@ -15,7 +15,7 @@ from dynamics.loads.load_course import BySpeed, Course, Orders
 from dynamics.loads.time_law import TimeLaw
 from dynamics.types import BoolArray, FloatArray, IntArray
 
-BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2
+BY_TIME, BY_SPEED, BY_ANGLE = 0, 1, 2  # kinds of factors: the variable that they depend on
 
 
 class ForceCourseLaws(NamedTuple):
@@ -26,15 +26,15 @@ class ForceCourseLaws(NamedTuple):
     """
 
     kind: IntArray
-    """What the factor depends on. Shape (l,)."""
+    """Variable of the factor: time, speed or angle. Shape (l,)."""
     size: FloatArray
     lever: FloatArray
     sense: FloatArray
-    """`size`, `lever`, `sense`: N; last row over rotation, m; +1 or -1: the sense in which the speed counts.
-    Shape (l,) each.
+    """`size`, `lever`, `sense`: Size of the force, N; last row over rotation, m; sense in which the speed
+    counts, +1 or -1. Shape (l,) each.
     """
     rows: IntArray
-    """1, 2 or 3 rows that carry force. Shape (l,)."""
+    """Number of rows that carry force, 1, 2 or 3. Shape (l,)."""
     phase: IntArray
     frame: IntArray
     """`phase`, `frame`: Phases among the positions, in turns: of the factor, of the frame; -1: none. Shape
@@ -46,15 +46,15 @@ class ForceCourseLaws(NamedTuple):
     order: FloatArray
     amplitude: FloatArray
     angle: FloatArray
-    """`first_order`, `order`, `amplitude`, `angle`: Of factors by angle; rad. (l + 1,) int, (O,), (O,), (O,)
-    arrays.
+    """`first_order`, `order`, `amplitude`, `angle`: First order of each load in the flat arrays, then the
+    orders of factors by angle, their amplitudes and their angles, rad. (l + 1,) int, (O,), (O,), (O,) arrays.
     """
     constant: FloatArray
     """Constant part of factors by angle. Shape (l,)."""
     mean: FloatArray
     """Mean of s cos a and s sin a over a turn, of factors by angle. Shape (l, 2)."""
     steady: BoolArray
-    """Whether means act in place of what changes with an angle. Shape (1,)."""
+    """Whether means act in place of forces that change with an angle. Shape (1,)."""
 
     @classmethod
     def packed(cls, courses: Sequence[Course], **others: Any) -> ForceCourseLaws:
@@ -101,7 +101,7 @@ def _pieces(course: Course) -> tuple[FloatArray, FloatArray]:
 
 @routine
 def applied_force(laws: ForceCourseLaws, entry: int, local: LocalState, row: int) -> None:
-    """Write forces, which resist as all do, and how they change with the speed."""
+    """Write forces, positive where they resist, and their change with the speed."""
     rows, size, steady = laws.rows[entry], laws.size[entry], laws.steady[0]
     kind, factor, slope = laws.kind[entry], 0.0, 0.0
     if kind == BY_ANGLE:

@@ -15,12 +15,12 @@ from dynamics.types import FloatArray
 
 
 class SpeedTorqueLaws(NamedTuple):
-    """Curves."""
+    """Torque-speed curves of l shafts."""
 
     torque: Cubics
-    """N m by rad/s."""
+    """Torque over speed, N m over rad/s."""
     radius: FloatArray
-    """At which torques count as forces and angles as displacements, m. Shape (l,)."""
+    """Radius by which torques become forces and angles become displacements, m. Shape (l,)."""
 
     @classmethod
     def packed(cls, parts: Sequence[SpeedTorque], radius: float) -> SpeedTorqueLaws:

@@ -18,9 +18,9 @@ class TimeLaw:
     """Values at times, joined by straight lines or by smooth steps, constant before and after."""
 
     time: tuple[float, ...]
-    """s, strictly increasing."""
+    """Times, s, strictly increasing."""
     value: tuple[float, ...]
-    """Of the same length; rad/s for a speed, N m for a torque."""
+    """Values at the times, as many as times; rad/s for a speed, N m for a torque."""
     shape: str = "linear"
     """``"linear"``: straight between the points. ``"smooth"``: cubic, with zero slope at each of them."""
 

@@ -39,7 +39,7 @@ class UnbalanceLaws(NamedTuple):
 def unbalance(laws: UnbalanceLaws, entry: int, local: LocalState, row: int) -> None:
     """Write forces and their derivatives in rates and accelerations; the forces resist, as all do.
 
-    How they change with the angle is left to the phase.
+    Their change with the angle is left to the phase.
     """
     rate, acceleration, lever = local.rate, local.acceleration, laws.lever[entry]
     amount = 0.0 if laws.steady[0] else laws.amount[entry]

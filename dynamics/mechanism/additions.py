@@ -1,4 +1,4 @@
-"""What effects may add to a mechanism, by name: freedoms, laws, what follows the motion."""
+"""Additions of effects to a mechanism, by name: freedoms, laws, and terms that follow the motion."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ BEARING_LAWS = "bearing_laws"
 ELEMENT_PASSING = "passing_elements"
 """Rolling elements one by one, at the angle of their cage."""
 HOUSING_AMPLITUDES = "housing_amplitudes"
-"""Modes of housings with mass; without them their static compliance."""
+"""Modes of housings with mass; without them the housings have their static compliance."""
 SPEED_DEPENDENCE = "speed_dependence"
 """Terms of the linear system that change with the speed."""
 LOAD_ARM = "load_arm"
-"""Of a mesh force about the axis of a misalignment."""
+"""Axial distance of a mesh force from the axis about which the mesh is misaligned."""
 MISALIGNMENT = "misalignment"
 CENTER_DISTANCE_CHANGE = "center_distance_change"
 TEETH_AS_MADE = "teeth_as_made"
@@ -23,9 +23,9 @@ TEETH_AS_MADE = "teeth_as_made"
 
 @dataclass(frozen=True)
 class Additions:
-    """What the effects of a scene may add."""
+    """Additions that the effects of a scene may make, and those that it requests."""
 
     possible: frozenset[str]
     """Names of `FREEDOMS` and of this module that an effect adds which is not switched off."""
     requested: frozenset[str]
-    """Those of effects that are switched on."""
+    """Additions of the effects that are switched on."""

@@ -1,4 +1,4 @@
-"""One base pitch for gears that mesh: what the printing of radii rounds is corrected, more is refused."""
+"""One base pitch for gears that mesh: the rounding of printed radii is corrected, more is refused."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Corrections = dict[str, tuple[float, float]]
 
 
 def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
-    """Return `scene` with one base pitch per train of meshing gears, and what was corrected.
+    """Return `scene` with one base pitch per train of meshing gears, and the corrections.
 
     Radii are printed to one digit after the point, so the pitch of a train is that of least squares of all
     its base radii: each counts in proportion to its teeth. Raises `InputError`: the base pitches of two gears
@@ -45,7 +45,7 @@ def _pairs(scene: Scene) -> tuple[object, ...]:
 
 @cached_by(_pairs)
 def _corrections(scene: Scene) -> Corrections:
-    """Return what has to be corrected; raises `InputError`."""
+    """Return the necessary corrections; raises `InputError`."""
     _check(scene)
     corrected: Corrections = {}
     for train in _trains(scene):

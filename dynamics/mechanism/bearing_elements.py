@@ -1,4 +1,4 @@
-"""Where the laws of bearings act, and the load and mass that are expected of every bearing.
+"""Points of action of the laws of bearings, and the expected load and mass of every bearing.
 
 A law of a bearing adds forces of p rows to the bearing's linear springs; a row is a direction in which such a
 force acts. Strains are the five displacements x, y, z, tilt_x, tilt_y of a shaft's section against what

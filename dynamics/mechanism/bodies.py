@@ -17,7 +17,7 @@ from dynamics.mechanism.rotor import Rotor
 from dynamics.types import FloatArray
 
 ROUNDING = 1e-9
-"""Of the damping of two modes: what couples them by less is rounding."""
+"""Coupling of two modes over the damping of both, below which it is rounding."""
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,17 @@ class _ModalHousing:
 
     name: str
     bearings: tuple[str, ...]
-    """That sit in it."""
+    """Names of the bearings that sit in the housing."""
     stiffness: FloatArray
     """Squares of the natural circular frequencies, rising, 1/s^2. Shape (m,)."""
     damping: FloatArray
-    """1/s. Shape (m, m)."""
+    """Damping over the modal amplitudes, 1/s. Shape (m, m)."""
     shape: FloatArray
     """x, y, z (m), tilt_x, tilt_y (rad) of each seat per amplitude, of unit modal mass. Shape (s, 5, m)."""
     rows: FloatArray
-    """The same of every row of the housing's matrices, modal coordinates among them. Shape (r, m)."""
+    """Motion of every row of the housing's matrices per amplitude, modal coordinates among them. Shape
+    (r, m).
+    """
 
     @property
     def kinds(self) -> tuple[str, ...]:

@@ -21,9 +21,9 @@ ROTATION = FREEDOMS.index("rotation")
 
 
 def carried_motion(rotors: Bodies, free: IntArray) -> FloatArray:
-    """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
+    """Return the motion (N, N) of all freedoms where only the freedoms `free` are independent.
 
-    What is not free goes with the carrier on a planet and with nothing else.
+    A freedom of a planet that is not free follows the carrier; other freedoms follow none.
     """
     motion = np.eye(column_count(rotors))
     for index, rotor in enumerate(rotors):

@@ -27,7 +27,7 @@ class Seats:
 
     name: tuple[str, ...]
     support: IntArray
-    """Of each among the supports. Shape (s,)."""
+    """Index of each bearing among the supports. Shape (s,)."""
     frame: tuple[int | None, ...]
     """Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
     on planet bearings, whose pins stay in the carrier's.
@@ -40,10 +40,11 @@ class Seats:
     """
     stiffness: FloatArray
     damping: FloatArray
-    """`stiffness`, `damping`: Of bearing and housing in series. Shape (5 s, 5 s) each."""
+    """`stiffness`, `damping`: Stiffness and damping of bearing and housing in series. Shape (5 s, 5 s) each.
+    """
     preload: FloatArray
-    """On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts. Shape
-    (5 s,).
+    """Preload on the shaft at d = 0, N and N m. On a planet it includes the force of a pin off its nominal
+    position. Shape (5 s,).
     """
 
     @property
@@ -56,7 +57,7 @@ class Seats:
 def seated(scene: Scene, rotors: Bodies) -> frozenset[str]:
     """Return the names of the bearings that are more than three springs to what holds them.
 
-    Those in a housing without mass, or whose mass is neglected, have its matrix in series.
+    Bearings in a housing without mass, or with neglected mass, have the housing's matrix in series.
     """
     housed = {name for housing in condensed_housings(scene, rotors) for name in housing.bushings}
     full = {part.name for part in (*scene.ground_bearings, *scene.planet_bearings) if part.full}
@@ -147,7 +148,7 @@ def seat_compliance(housing: Housing, stiffness: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Connections:
-    """What joins rotors to the ground and to each other linearly."""
+    """Linear connections of rotors to the ground and to each other."""
 
     supports: Supports
     """Bushings, then planet bearings."""

@@ -14,7 +14,7 @@ from dynamics.mechanism.columns import column_count, section_rows
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-ROTATION = 5
+ROTATION = 5  # index of the rotation about the axis among six strains
 
 
 ACROSS = (0, 1, 3, 4)
@@ -66,7 +66,7 @@ def gather_couplings(scene: Scene, rotors: Bodies) -> CouplingRows:
 
 
 def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
-    """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
+    """Return the part of a coupling's `matrix` (6, 6) that no frame turns: all, or motion along the axis."""
     if not scene.crosses_frames(coupling):
         return matrix
     across = matrix.copy()

@@ -1,4 +1,4 @@
-"""The flanks that touch in a mesh: where they leave their base circles when they touch at the pitch point.
+"""The flanks that touch in a mesh: their angles on the base circles when they touch at the pitch point.
 
 Angles of flanks are in pitches of their gear about +z, at the gear's mid-face.
 """
@@ -13,7 +13,7 @@ from dynamics.scene.scene import Scene
 from dynamics.shafts import GearBody
 
 HALF = 0.5
-"""Thickness over pitch of teeth whose thickness nobody states, on the operating pitch circle."""
+"""Thickness over pitch on the operating pitch circle, for teeth of unstated thickness."""
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,11 @@ class FlankAtMesh:
 
     gear: int
     sense: int
-    """+1 or -1, in which the gear turns about +z."""
+    """Sense in which the gear turns about +z, +1 or -1."""
     side: int
-    """+1 or -1, towards which the flank looks about +z."""
+    """Side to which the flank faces about +z, +1 or -1."""
     at_pitch_point: float
-    """Its angle where it touches at the pitch point, pitches."""
+    """Angle of the flank when it touches at the pitch point, pitches."""
 
     @property
     def key(self) -> tuple[int, int]:
@@ -66,7 +66,7 @@ def _flank(scene: Scene, gear: GearBody, line: LineOfAction, sense: int, side: i
 
 
 def _widening(gear: GearBody, pressure_angle: float) -> float:
-    """Return by what a tooth is wider to either side at the base circle than at a pressure angle, rad.
+    """Return the half growth of a tooth's angular thickness from a pressure angle to the base circle, rad.
 
     The teeth of a ring gear point inwards: they are narrower there.
     """

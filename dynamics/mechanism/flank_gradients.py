@@ -1,4 +1,4 @@
-"""How deflection, misalignment and center distance of a flank follow from its bodies' freedoms."""
+"""Gradients of deflection, misalignment and center distance of a flank in the freedoms of its bodies."""
 
 from __future__ import annotations
 

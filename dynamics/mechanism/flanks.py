@@ -23,7 +23,7 @@ class Flanks:
     """Resolved force laws of the driving flanks of m meshes, and after them of the coast flanks in use."""
 
     nominal_force: FloatArray
-    """Transverse, N. Shape (m,)."""
+    """Nominal transverse mesh force, N. Shape (m,)."""
     mean_stiffness: FloatArray
     """Tangent stiffness of the table at the typical force, mean over the positions, N/m. Shape (m,)."""
     used: tuple[PlainTable, ...]
@@ -35,7 +35,7 @@ class Flanks:
     static: PackedTables
     """The driving flanks' tables themselves, whatever the technique: the static reference."""
     tables: tuple[PlainTable, ...]
-    """Those of `law`, each at its mesh's constant operating point."""
+    """Tables of `law`, each at its mesh's constant operating point."""
 
 
 def flank_laws(mechanism: Mechanism) -> Flanks:

@@ -1,4 +1,4 @@
-"""The freedoms of a system: which there are, and how the six of every rotor follow from them."""
+"""The freedoms of a system, and the six freedoms of every rotor as they follow from them."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Freedoms:
     kg^1/2).
     """
     column: IntArray
-    """Of each among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after all of these,
-    then the amplitudes of housings. Shape (n,).
+    """Column of each freedom among the N freedoms of all bodies: 6 rotor + kind, elastic coordinates after
+    all of these, then the amplitudes of housings. Shape (n,).
     """
     motion: FloatArray
     """All freedoms of all rotors per freedom: one at its index; planets go with their carrier where nothing

@@ -15,7 +15,7 @@ from dynamics.mechanism.train_speeds import TrainSpeeds
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-STANDSTILL = 1e-12  # of the fastest law: slower is at rest
+STANDSTILL = 1e-12  # speed over that of the fastest law, below which a part is at rest
 STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
 
 
@@ -68,7 +68,7 @@ def at_steady_speeds(scene: Scene, scale: float = 1.0) -> Scene:
 
 
 def _train(scene: Scene) -> tuple[object, ...]:
-    """Return what the kinematic motion follows from: of meshes the gears alone."""
+    """Return the parts that fix the kinematic motion: of meshes the gears alone."""
     gears = (name for mesh in scene.meshes for name in (mesh.name, mesh.driver, mesh.driven))
     return (scene.shafts, scene.gears, scene.couplings, scene.drives, scene.free_rotations, *gears)
 
@@ -185,7 +185,7 @@ def _speeds_over_time(scene: Scene) -> FloatArray:
 
 
 def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
-    """Sign of the fastest speed of what turns at `row` times the laws; 0 if it is at rest."""
+    """Sign of the fastest speed of a part that turns at `row` times the laws; 0 if it is at rest."""
     speed = np.array([float(value) for value in row]) @ course
     fastest = float(speed[np.argmax(np.abs(speed))])
     return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)

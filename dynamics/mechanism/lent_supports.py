@@ -13,11 +13,11 @@ from dynamics.mechanism.coupling_rows import full_matrix
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
 
-RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)
+RADIAL, AXIAL, TILT = (0, 1), (2,), (3, 4)  # indices of strains: x and y, z, tilt_x and tilt_y
 
 
 def with_couplings(scene: Scene, rotors: Sequence[Rotor]) -> tuple[Rotor, ...]:
-    """Return the rotors with what their couplings hold where no bearing does.
+    """Return the rotors with the supports by couplings where no bearing holds them.
 
     A coupling's matrix holds a shaft in a direction if bearings (or further couplings) hold the shaft behind
     it there. Shafts that nothing holds stay where they are, as shafts without bearings do.

@@ -1,4 +1,4 @@
-"""The line of action of a mesh, and how a flank's deflection and operating point follow from its bodies."""
+"""The line of action of a mesh, and gradients of a flank's deflection and operating point in its bodies."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class LineOfAction:
     the axial part of a helical mesh. Shape (3,).
     """
     working_pressure_angle: float
-    """rad."""
+    """Working pressure angle, rad."""
 
     def gradient(self, center: FloatArray) -> FloatArray:
         """Return the (6,) wrench of `force` about `center`: the derivative of the approach along the line.

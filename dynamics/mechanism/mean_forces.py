@@ -11,11 +11,11 @@ from dynamics.mechanism.nominal_forces import levers, load_moments, shaft_accele
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-BETWEEN_KNOTS = 8  # moments at which a law is looked at between two of its knots
+BETWEEN_KNOTS = 8  # moments between two knots of a law
 
 
 def mean_forces(mechanism: Mechanism) -> FloatArray:
-    """Return what balances loads and imposed accelerations at moments that show how they run, (m, T) in N.
+    """Return the mesh forces that balance loads and imposed accelerations at telling moments, (m, T) in N.
 
     Negative: the coast flank carries it. Where the balance leaves a choice, the one of least forces.
     """
@@ -33,7 +33,7 @@ def mean_forces(mechanism: Mechanism) -> FloatArray:
 
 
 def _telling_moments(scene: Scene) -> FloatArray:
-    """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
+    """Return times at which loads and drives show their course: knots, just before them, and between."""
     courses = [force.course for force in scene.forces if isinstance(force.course, TimeLaw)]
     laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads), *courses]
     times = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])

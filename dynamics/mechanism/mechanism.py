@@ -1,4 +1,4 @@
-"""The mechanism of a scene: its bodies, how they move if all gears were conjugate, what loads them."""
+"""The mechanism of a scene: its bodies, their motion if all gears were conjugate, their loads."""
 
 from __future__ import annotations
 
@@ -44,28 +44,28 @@ class Mechanism:
     lines: tuple[LineOfAction, ...]
     """One per mesh."""
     nominal_force: FloatArray
-    """Transverse, N. Shape (m,)."""
+    """Nominal transverse mesh force, N. Shape (m,)."""
     bearing_duty: dict[str, BearingDuty]
-    """What is expected of each bearing."""
+    """Expected duty of each bearing."""
     bearings: tuple[BearingElement, ...]
-    """Where the laws of bearings act that are not linear."""
+    """Points of action of the bearings that are not linear."""
     corrected: Corrections
     """Base radii of gears as given and as used, m."""
     additions: Additions
-    """What the effects may add."""
+    """Additions of the effects to the mechanism."""
     passing: frozenset[str] = frozenset()
     """Rolling bearings whose elements pass one by one."""
     phases: TrainPhases = NO_PHASES
-    """Positions of the meshes, and what they rest on beyond the geometry."""
+    """Positions of the meshes, and the assumptions on them beyond the geometry."""
 
     @property
     def rotational_inertia(self) -> FloatArray:
-        """Of each rotor with the planets it takes along, (r,), kg m^2."""
+        """Rotational inertia of each rotor with the planets it takes along, (r,), kg m^2."""
         return rotational_inertia(self.rotors)
 
     @property
     def largest_speed(self) -> FloatArray:
-        """Of each shaft in the kinematic motion, (s,), rad/s."""
+        """Largest speed of each shaft in the kinematic motion, (s,), rad/s."""
         extreme = np.array([abs(part.speed.extreme) for part in self.scene.references])
         return np.asarray(np.abs(self.kinematics.float_ratio) @ extreme)
 

@@ -13,7 +13,7 @@ from dynamics.types import FloatArray
 
 
 def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, *, coasts: bool) -> FloatArray:
-    """Return the transverse force of each mesh, N: as given, or what balances the load torques at t = 0.
+    """Return the transverse force of each mesh, N: as given, or as it balances the load torques at t = 0.
 
     `inertia` (shafts,) in kg m^2 is that of each shaft about its axis and, on a carrier, of the planets about
     the carrier's: a train without a drive accelerates where its torques do not balance. `coasts`: whether the

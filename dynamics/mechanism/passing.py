@@ -1,4 +1,4 @@
-"""What passes at which order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
+"""Excitations by their order of a shaft: teeth in mesh, planets, turns of shafts, elements of bearings."""
 
 from __future__ import annotations
 
@@ -16,28 +16,28 @@ from dynamics.types import FloatArray
 
 MESH, SIDEBAND, SHAFT, BEARING = "mesh", "sideband", "shaft", "bearing"
 TURNS, PASSINGS = 4, 3
-"""Harmonics of shafts (unbalance, misalignment, ovality) and of bearings that are looked at."""
+"""Number of harmonics that are listed: of shafts (unbalance, misalignment, ovality), and of bearings."""
 SAME = 1e-9
-"""Relative difference of orders that are one."""
+"""Relative difference of orders, below which they are the same."""
 
 
 @dataclass(frozen=True)
 class Excitation:
-    """What repeats at a fixed order of a shaft."""
+    """An excitation that repeats at a fixed order of a shaft."""
 
     kind: str
     """`MESH`, `SIDEBAND`, `SHAFT` or `BEARING`."""
     name: str
-    """Of the mesh, shaft or bearing; `part` of a bearing is the ring or element that is passed, of a sideband
-    the side.
+    """`name`, `part`: Name of the mesh, shaft or bearing. The part is the ring or element of a bearing that
+    is passed, or the side of a sideband.
     """
     part: str
     rate: float
     """Repetitions per revolution of the shaft that orders are of, > 0."""
     harmonics: int
-    """Multiples of the rate that are looked at, from 1."""
+    """Number of multiples of the rate that are listed, from 1."""
     shift: tuple[float, ...] = ()
-    """Added to the order of each harmonic, of sidebands; empty: nothing."""
+    """Shift of the order of each harmonic, for sidebands; empty: no shift."""
 
     def order(self, harmonic: int) -> float:
         """Return the order of a harmonic."""
@@ -46,7 +46,7 @@ class Excitation:
 
 @dataclass(frozen=True)
 class Passing:
-    """A harmonic of an excitation beside the order of a complaint."""
+    """A harmonic of an excitation near the order of a complaint."""
 
     excitation: Excitation
     harmonic: int
@@ -62,9 +62,9 @@ class Passing:
 
 
 def excitations(scene: Scene, kinematics: Kinematics, shaft: str, harmonics: int) -> tuple[Excitation, ...]:
-    """Return what passes per revolution of `shaft`: meshes to their `harmonics`, shafts, rolling bearings.
+    """Return the excitations of `shaft`: meshes to their `harmonics`, shafts, rolling bearings.
 
-    All drives keep the proportion of their extreme speeds. What is at rest does not pass.
+    All drives keep the proportion of their extreme speeds. Parts at rest excite nothing.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def shaft_rates(scene: Scene, kinematics: Kinematics, shaft: str) -> dict[str, f
 
 
 def _rates(scene: Scene, kinematics: Kinematics) -> tuple[FloatArray, FloatArray]:
-    """Return how fast meshes pass (m,) and shafts turn (s,) with their senses, in one unit."""
+    """Return the rates of meshes (m,), and the speeds of shafts (s,) with their senses, in one unit."""
     law = proportional_speeds(scene)
     return np.abs(kinematics.float_mesh_rate @ law), np.asarray(kinematics.float_ratio @ law)
 
@@ -167,7 +167,7 @@ def _central_gear(scene: Scene, mesh: GearMesh) -> GearBody | None:
 
 
 def _of_bearings(scene: Scene, turns: FloatArray) -> Iterator[Excitation]:
-    """Yield what a flaw of each ring and of one element repeats at, the outer ring at rest, without slip."""
+    """Yield the excitation by a flaw of each ring and of one element; the outer ring is at rest."""
     for bearing in scene.rolling_bearings:
         row, turn = bearing.row, float(turns[scene.shaft_index(bearing.shaft)])
         gamma = row.slenderness

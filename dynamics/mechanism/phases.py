@@ -21,16 +21,16 @@ LARGEST_DENOMINATOR = 1_000_000
 
 @dataclass(frozen=True)
 class LoadPhase:
-    """An angle in turns."""
+    """An angle in turns, by which a load repeats or turns."""
 
     rate: tuple[Fraction, ...]
     """Turns per turn of each law; exact."""
     turns: int
-    """Turns after which what reads it repeats."""
+    """Turns after which the load repeats."""
     shaft: int | None
     """The shaft whose own rotation adds to it."""
     position: float = 0.0
-    """Where along that shaft, m."""
+    """Axial position on that shaft, m."""
 
 
 def angle_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce, course: Orders) -> LoadPhase:
@@ -40,7 +40,7 @@ def angle_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce, cours
 
 
 def frame_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> LoadPhase | None:
-    """Return how a force turns against the frame in which its shaft is described; None: it does not."""
+    """Return the angle of a force against the frame of its shaft; None: the force does not turn."""
     if not any((*force.force[:2], *force.moment[:2])):
         return None  # along the axis alone
     frame = scene.frame_index(scene.shaft_index(force.shaft))
@@ -53,7 +53,7 @@ def frame_phase(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> Lo
 
 
 def _turns(kinematics: Kinematics, shaft: int | None) -> tuple[Fraction, ...]:
-    """Return the turns of a shaft per turn of each law; None: what stands still."""
+    """Return the turns of a shaft per turn of each law; None: the fixed frame."""
     return (Fraction(0),) * len(kinematics.law_shaft) if shaft is None else kinematics.ratio[shaft]
 
 

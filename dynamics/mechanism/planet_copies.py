@@ -17,7 +17,7 @@ from dynamics.meshes import GearMesh
 from dynamics.scene.scene import Scene, on_axis
 from dynamics.shafts import DiscBody, GearBody, Shaft
 
-TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears
+TOOTH_FIT = 1e-6  # in teeth: largest misfit of a planet's teeth in all central gears by its angle
 
 Turn = Fraction | float
 Part = TypeVar("Part", GearBody, DiscBody, PlanetBearing)
@@ -37,16 +37,16 @@ def with_planets(
     Parameters
     ----------
     scene : Scene
-        With one planet.
+        Scene with one planet.
     shaft : str
         Its shaft; it stays where it is. The others are called ``"<name> 2"``, ``"<name> 3"`` and so on, and
         likewise their gears, discs, bearings with their laws, and meshes.
     number : int
         Number of planets in all.
     angles : sequence of floats, optional
-        Of all planets from the first about +z, rad, the first one 0. Left out: equally spaced.
+        Angles of all planets from the first about +z, rad, the first one 0. Left out: equally spaced.
     pin_errors : sequence of (radial, tangential), optional
-        Of all pins, m, instead of those of the first planet's bearings.
+        Errors of all pins, m, in place of those of the first planet's bearings.
     """
     integer("number", number, 1, 100)
     carrier = _carrier(scene, shaft)
@@ -192,7 +192,7 @@ def _turned_shaft(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, in
 
 
 def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int) -> GearMesh:
-    """Return the mesh of a copy; its position follows from the teeth, as that of the first planet does."""
+    """Return the mesh of a copy; its position follows from the teeth, as for the first planet."""
     driver, driven = (numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
     return replace(mesh, name=numbered(mesh.name, index), driver=driver, driven=driven, position_offset=None)
 

@@ -10,7 +10,7 @@ from dynamics.joints import Housing
 from dynamics.scene.scene import Scene
 
 FREQUENCY = 2.0 * math.pi * 1000.0
-"""Of the amplitudes of a resting housing, rad/s; no motion at rest depends on it."""
+"""Circular frequency that gives a resting housing its mass, rad/s; no motion at rest depends on it."""
 
 
 def under_laws(scene: Scene) -> tuple[Housing, ...]:

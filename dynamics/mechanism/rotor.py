@@ -24,23 +24,25 @@ class Rotor:
 
     shaft: Shaft
     inertia: Inertia
-    """Of shaft, gears and discs about their common center of mass."""
+    """Inertia of shaft, gears and discs about their common center of mass."""
     center: FloatArray
-    """That center in the fixed frame, m: the point whose displacements are the freedoms. Shape (3,)."""
+    """Common center of mass in the fixed frame, m: the point whose displacements are the freedoms. Shape
+    (3,).
+    """
     bushings: tuple[Bushing, ...]
-    """Its supports on the ground, with damping filled in."""
+    """Supports of the rotor on the ground, with damping filled in."""
     planet_bearings: tuple[PlanetBearing, ...]
-    """Its supports on the carrier's pin, with damping filled in."""
+    """Supports of the rotor on the carrier's pin, with damping filled in."""
     frame: int | None
-    """Rotor of the carrier in whose rotating frame it is described."""
+    """Rotor of the carrier in whose rotating frame this rotor is described."""
     carrier: int | None
-    """The same for a planet: a rotor off the carrier's axis, which the carrier takes along."""
+    """Rotor of the carrier that takes this rotor along, if it is a planet: a rotor off the carrier's axis."""
     curved: tuple[tuple[FloatArray, float], ...] = ()
-    """Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where no
-    bearing does, with their levers. Tuple of ((5, 5) array, float).
+    """Typical stiffness of nonlinear bearing laws, and of couplings that hold the rotor where no bearing
+    does, with their levers. Tuple of ((5, 5) array, float).
     """
     elastic: ElasticShaft | None = None
-    """How its shaft bends and twists; None: rigid."""
+    """Elastic bending and twist of the shaft; None: rigid."""
 
     @cached_property
     def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
@@ -105,7 +107,7 @@ class Rotor:
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
-    """Gather what belongs to `shaft`."""
+    """Gather the parts on `shaft` into a rotor."""
     parts = [*shaft.bodies, *((body.inertia, body.position) for body in scene.mounted(shaft.name))]
     mass = sum(part.mass for part, _ in parts)
     along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
@@ -130,7 +132,7 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
 
 
 def _damped(support: Support, share: float, tilting: float) -> Support:
-    """Fill in the damping that follows from the damping ratio; that of a matrix in proportion to it.
+    """Fill in the damping by the damping ratio; the damping of a matrix is proportional to the matrix.
 
     `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
     where the matrix holds tilt alone.

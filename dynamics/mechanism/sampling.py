@@ -17,7 +17,7 @@ from dynamics.types import FloatArray, Json
 PER_BAND = 2.56
 """Output rate over the highest frequency that is passed, as vibration analyzers choose it."""
 STOP_BAND = 80.0
-"""Attenuation of what would fold, dB."""
+"""Attenuation of frequencies that would fold, dB."""
 DESIGN = STOP_BAND + 3.0
 """Attenuation required of Kaiser's formulas: they miss by up to 2 dB."""
 INNER_PER_PITCH = 64.0
@@ -26,8 +26,8 @@ MIN_FACTOR = 3
 """Inner samples at the least, per output sample and per sample that would pass the highest resolved mode."""
 PASSING_ORDERS = 4
 """Multiples of the passing of elements that matter: the fifth is below 3 % of the first on loaded rows."""
-SPEED_POINTS = 257
-DIGITS = 3  # of a rate that is chosen
+SPEED_POINTS = 257  # times of a run at which speeds are evaluated, in addition to the knots of laws
+DIGITS = 3  # significant digits of an automatic rate
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Sampling:
         return replace(self, stop_band=0.0, inner_rate=self.rate, taps=3)
 
     def to_json(self) -> Json:
-        """Return what the receipt says."""
+        """Return the entry of the receipt."""
         return {**asdict(self), "edge": self.edge}
 
 
@@ -92,7 +92,7 @@ def _filter_taps(taps: int, factor: int) -> FloatArray:
     at = np.arange(taps) - taps // 2
     if factor == 0:
         return np.asarray(at == 0, dtype=float)
-    shape = 0.1102 * (DESIGN - 8.7)  # of a stop band above 50 dB (Kaiser 1974)
+    shape = 0.1102 * (DESIGN - 8.7)  # shape of the window for a stop band above 50 dB (Kaiser 1974)
     weight = np.sinc(at / factor) * np.kaiser(taps, shape)
     return np.asarray(weight / np.sum(weight))
 
@@ -148,7 +148,7 @@ def top_passing_frequency(scene: Scene, kinematics: Kinematics) -> float:
 
 
 def _highest(scene: Scene, rate: FloatArray) -> float:
-    """Return the highest frequency over the run of what turns at `rate` (r, k) per turn of each law, Hz."""
+    """Return the highest frequency over the run of turns at `rate` (r, k) per turn of each law, Hz."""
     speed = _speeds(scene, scene.duration)
     return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
 
@@ -164,7 +164,7 @@ def _speeds(scene: Scene, duration: float) -> FloatArray:
 
 
 def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:
-    """Return how to sample the run of `scene`; `mode` is its highest resolved mode, Hz.
+    """Return the sampling of the run of `scene`; `mode` is its highest resolved mode, Hz.
 
     Raises `InputError`: the run would have too many samples.
     """

@@ -1,4 +1,4 @@
-"""The axes of all shafts by points along them: how each moves per freedom."""
+"""The axes of all shafts by points along them, with the motion of each point per freedom."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class ShaftAxes:
 
 
 def shaft_axes(scene: Scene, rotors: Bodies) -> ShaftAxes:
-    """Return the axes: at the nodes of an elastic shaft, at the ends of a rigid one and at what is on it."""
+    """Return the axes: at the nodes of an elastic shaft, at the ends and parts of a rigid one."""
     shaft, position, motion = [], [], []
     for index, rotor in enumerate(rotors):
         on = [gear.position for gear in scene.gears if gear.shaft == rotor.shaft.name]

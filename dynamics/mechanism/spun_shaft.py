@@ -1,4 +1,4 @@
-"""Gyroscopic moments along a shaft that bends: which of its motions the spin couples, and how strongly."""
+"""Gyroscopic moments along a shaft that bends: the motions that the spin couples, and their inertia."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dynamics.types import FloatArray
 
 MIN_SHIFT = 1e-4
 """Relative shift of a natural frequency below which a part of the moments is left out of time integration."""
-TILT_X, TILT_Y = 3, 4
+TILT_X, TILT_Y = 3, 4  # indices of the tilts among the freedoms of a rotor
 
 
 def spun_inertia(rotor: Rotor) -> FloatArray:
@@ -41,7 +41,7 @@ def pair_rows(rotors: Bodies, index: int) -> FloatArray:
 
 
 def spun_pairs(rotors: Bodies, index: int, speed: float) -> list[tuple[FloatArray, float]]:
-    """Return rows (2, N) and polar inertias of which P is the sum, without what shifts no frequency.
+    """Return rows (2, N) and polar inertias whose sum is P, without those that shift no frequency.
 
     `speed` is the largest of the run, rad/s; infinite where it is not known.
     """

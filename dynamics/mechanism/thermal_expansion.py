@@ -1,8 +1,8 @@
-"""A scene at its steady temperatures: the parts that it then has, in the place of those as drawn.
+"""A scene at its steady temperatures: warm parts in place of the parts as drawn.
 
 All parts expand freely and alike in all directions. Parts whose sizes matter to 1e-4 stay as drawn: lengths,
-radii, base pitches. What is left are differences: play and axial force of bearings, center distance, backlash
-and misalignment of meshes.
+radii, base pitches. Differences remain: play and axial force of bearings, center distance, backlash and
+misalignment of meshes.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def _wall(warm: Temperatures, bearing: RollingBearing) -> Cylinder:
 
 
 def _outgrown(scene: Scene, warm: Temperatures, bearing: Bushing | RollingBearing) -> float:
-    """Return how far the shaft moves along z against the housing at a bearing by their expansion, m.
+    """Return the expansion of the shaft along z relative to the housing at a bearing, m.
 
     Where it is held along z it moves by nothing on the average: one bearing locates it, a pair shares.
     """

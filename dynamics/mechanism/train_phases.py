@@ -33,7 +33,7 @@ class AssumedAngle:
     """An angle between two gears of one speed that no part of the scene states: tooth centers in line."""
 
     shaft: str
-    """That of the second gear; the first is on it, or on a shaft coupled to it."""
+    """Shaft of the second gear; the first gear is on it, or on a shaft coupled to it."""
     gears: tuple[str, str]
     moves: FloatArray
     """Base pitches by which the position of each mesh moves per pitch of the second gear. Shape (m,)."""
@@ -41,7 +41,7 @@ class AssumedAngle:
 
 @dataclass(frozen=True)
 class TrainPhases:
-    """Positions of all meshes where no law has turned yet, and what they rest on beyond the geometry."""
+    """Positions of all meshes before any law has turned, and the assumptions on them beyond the geometry."""
 
     position: FloatArray
     """Base pitches; stated ones as they are, others within the period of their table. Shape (m,)."""
@@ -59,7 +59,7 @@ def _parts(scene: Scene) -> tuple[object, ...]:
 
 @cached_by(_parts)
 def train_phases(scene: Scene, senses: tuple[int, ...]) -> TrainPhases:
-    """Return the positions of all meshes, and what they rest on beyond the geometry.
+    """Return the positions of all meshes, and the assumptions on them beyond the geometry.
 
     A train starts where its first mesh touches at the pitch point, or where that is stated; what the teeth
     require comes next, then assumed thicknesses and angles. `senses` (m,) are those of the drivers. Raises
@@ -69,7 +69,7 @@ def train_phases(scene: Scene, senses: tuple[int, ...]) -> TrainPhases:
 
 
 class _Train:
-    """The gears of a scene in mesh: their flanks, which of them are placed, and what was assumed for it."""
+    """The gears of a scene in mesh: their flanks, the placed ones among them, and the assumptions made."""
 
     def __init__(self, scene: Scene, senses: tuple[int, ...]) -> None:
         self.scene = scene
@@ -85,10 +85,12 @@ class _Train:
                 self.thickness.setdefault(flank.gear, base_thickness(scene, flank, index, line))
                 self.count[flank.gear] = self.count.get(flank.gear, 0) + 1
         self.used = {flank.key for pair in self.pairs for flank in pair}
-        self.angle: dict[tuple[int, int], float] = {}  # of flanks, by gear and side
-        self.moves: dict[int, dict[int, float]] = {}  # of gears: pitches per pitch of each assumed angle
+        self.angle: dict[tuple[int, int], float] = {}  # angle of each placed flank, by gear and side
+        # motion of each gear, pitches per pitch of each assumed angle
+        self.moves: dict[int, dict[int, float]] = {}
         self.assumed_angles: list[tuple[int, int]] = []
-        self.assumed_thickness: dict[int, None] = {}  # in the order in which they were assumed
+        # gears of assumed thickness, in the order of the assumptions
+        self.assumed_thickness: dict[int, None] = {}
 
     def assign(self, key: tuple[int, int], angle: float, moves: dict[int, float]) -> None:
         """Place a flank."""
@@ -124,7 +126,7 @@ class _Train:
 
 
 def _off(pitches: float) -> float:
-    """Return what pitches are more than the nearest whole number."""
+    """Return the difference of pitches from the nearest whole number."""
     return pitches - round(pitches)
 
 
@@ -145,7 +147,7 @@ def _phases(train: _Train) -> TrainPhases:
 
 
 def _assign_train(train: _Train, meshes: list[int]) -> None:
-    """Place the meshes of a train, its first one where it is stated or at the pitch point."""
+    """Place the meshes of a train, the first at its stated position or at the pitch point."""
     start = train.scene.meshes[meshes[0]].position_offset
     _state(train, meshes[0], start or 0.0)
     for index in meshes[1:]:
@@ -263,7 +265,7 @@ def _assume_thickness(train: _Train) -> bool:
 
 
 def _follow_shaft(train: _Train) -> bool:
-    """Place a gear by another one of its speed; return whether there was one."""
+    """Place a gear by another gear of the same speed; return whether there was one."""
     for first, second, angle in _neighbors(train):
         if train.is_placed(first) and not train.is_placed(second):
             ratio = train.scene.gears[second].teeth / train.scene.gears[first].teeth

@@ -67,7 +67,7 @@ def _along_axis(mesh: GearMesh, name: str, shift: float) -> float:
 
 
 def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
-    """Return what temperatures change of a mesh.
+    """Return the changes of a mesh by temperatures.
 
     With s = +1 for external gears and -1 for the pinion in a ring gear, and r their pitch radii, a warm pair
     meshes like the cold one whose axes are e_h a - sum(s r e) farther apart; each flank then yields by
@@ -91,7 +91,7 @@ def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
 
 
 def _wall_strain(scene: Scene, warm: Temperatures, index: int) -> tuple[float, float]:
-    """Return the strain of what carries both shafts of a mesh at its gears, and its derivative along z, 1/m.
+    """Return the strain of the part that carries both shafts of a mesh, and its slope along z, 1/m.
 
     A carrier is as warm as its shaft. Of the housing it is linear along each shaft through its seats, and
     the mean of both shafts.

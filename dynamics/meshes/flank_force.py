@@ -16,9 +16,9 @@ class FlankLaws(NamedTuple):
     """Force laws of m flanks."""
 
     table: PackedTables
-    """Their elastic forces."""
+    """Tables of the elastic forces."""
     damping: FloatArray
-    """N s/m in full contact. Shape (m,)."""
+    """Damping in full contact, N s/m. Shape (m,)."""
     reach: FloatArray
     """Elastic force in N from which the damping acts in full; below, it fades smoothly to zero at lift-off.
     Shape (m,).

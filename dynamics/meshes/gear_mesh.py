@@ -8,7 +8,7 @@ from bounds import Declared, Kind, between, declared, described, one_of, up_to
 from dynamics.checks import declared_fields, finite, not_negative
 from dynamics.meshes.mesh_table import MeshTable, check_table
 
-DEFAULT_DAMPING_RATIO = 0.05
+DEFAULT_DAMPING_RATIO = 0.05  # damping ratio of a mesh where a scene states none
 TECHNIQUES = ("constant_torque", "variable_torque")
 _TECHNIQUE = Declared(Kind.CHOICE, "", one_of(TECHNIQUES), "Technique of the mesh force", "variable_torque")
 _DAMPING = Declared(
@@ -30,15 +30,15 @@ class CoastFlank:
     """Contact on the coast flanks."""
 
     backlash: float
-    """m, >= 0, along the transverse line of action (an arc of the base circles), at the scene's center
-    distance; 0 is that of nominal gears.
+    """Backlash along the transverse line of action (an arc of the base circles) at the scene's center
+    distance, m, >= 0; 0 is that of nominal gears.
     """
     thickness: float = 0.5
     """Thickness of the driver's teeth over the pitch, both on the operating pitch circle."""
     table: MeshTable | None = None
-    """Of the pair driven on its coast flanks, positions counted in the driver's sense then, 0 where the
-    reference pair touches at the pitch point, faces seen from the other end. None: that of the driving flank,
-    which assumes symmetric teeth, modifications included.
+    """Table of the pair driven on its coast flanks. Positions count in the sense in which the driver then
+    turns and are 0 where the reference pair touches at the pitch point; faces are seen from the other end.
+    None: the table of the driving flank, which assumes symmetric teeth and modifications.
     """
 
     def __post_init__(self) -> None:

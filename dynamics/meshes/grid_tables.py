@@ -28,12 +28,13 @@ class GridTables(NamedTuple):
     axis_first: IntArray
     """First knot of misalignment and center distance in `axis`. Shape (k, 2)."""
     axis: FloatArray
-    """Their knots, m. Flat."""
+    """Knots of misalignment and center distance of all tables, m. Flat."""
     first: IntArray
     """First number of each table. Shape (k,)."""
     number: FloatArray
-    """By misalignment, center distance, position, level, channel and order of differentiation: in
-    misalignment and center distance (where they have a second knot), then in position. Flat.
+    """Numbers of all tables by misalignment, center distance, position, level, channel and order of
+    differentiation: in misalignment and center distance (where they have a second knot), then in position.
+    Flat.
     """
 
     @classmethod

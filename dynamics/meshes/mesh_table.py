@@ -14,7 +14,7 @@ from dynamics.types import FloatArray
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
 LEVERS = ("load_arm", "sliding_share", "sliding_lever")
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
-LARGEST_PERIOD = 1_000_000
+LARGEST_PERIOD = 1_000_000  # most base pitches after which a table repeats
 
 
 @runtime_checkable
@@ -34,7 +34,7 @@ class MeshTable(Protocol):
     deflection : (M, D, P, L) array
         Transmission error in m at each level, strictly increasing along the levels.
     deflection_slope : (M, D, P, L) array
-        Its derivative in position, m per base pitch.
+        Derivative of the deflection in position, m per base pitch.
     stiffness, stiffness_slope : (M, D, P, L) arrays
         Tangent stiffness dF/d(deflection) in N/m at the knots and its derivative in position.
 

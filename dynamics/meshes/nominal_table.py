@@ -1,4 +1,4 @@
-"""The table of nominal teeth from that of gears as made: the mean over all base pitches."""
+"""The table of nominal teeth by the table of gears as made: the mean over all base pitches."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ ALIKE = 1e-9
 
 @dataclass(frozen=True)
 class NominalTable(PlainTable):
-    """A table of one base pitch, and that of the gears `as_made` of which it is the mean."""
+    """A table of one base pitch, and the table of the gears `as_made` whose mean it is."""
 
     as_made: MeshTable | None = None
 
 
 @identity_cached
 def nominal_table(table: MeshTable) -> MeshTable:
-    """Return the mean of `table` over its base pitches; itself where it repeats at each, or knots differ."""
+    """Return the mean of `table` over its base pitches; `table` if it has one or its knots differ."""
     position = np.asarray(table.position, dtype=float)
     if table.period == 1 or position.size % table.period:
         return table

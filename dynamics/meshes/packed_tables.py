@@ -13,7 +13,7 @@ from dynamics.meshes.level_energies import ORDER, energy_below
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
-BUCKETS_PER_KNOT = 4
+BUCKETS_PER_KNOT = 4  # equal buckets of position per knot, from which a look-up starts
 MIN = 4  # knots of a table that can be decimated
 
 
@@ -34,7 +34,7 @@ class PackedTables(NamedTuple):
     knot: FloatArray
     """Knots less `shift`, from 0 to the period inclusive (P + 1 of them). Flat."""
     per_width: FloatArray
-    """1 over the width of the interval that begins at each knot; 0 at the period. Flat."""
+    """Inverse of the width of the interval that begins at each knot; 0 at the period. Flat."""
     bucket: IntArray
     """The interval in which each of the equal buckets of the period begins: finding it takes no search."""
     row: FloatArray
@@ -44,10 +44,10 @@ class PackedTables(NamedTuple):
     level: FloatArray
     """Forces, N. Flat."""
     energy: FloatArray
-    """See `energy_below`. Shape (sum of P L, 10)."""
+    """Coefficients of the energy, see `energy_below`. Shape (sum of P L, 10)."""
 
     def decimated(self, every: int = 2) -> PackedTables:
-        """Return the tables on each `every`-th knot of position, with the values and slopes they have there.
+        """Return the tables on each `every`-th knot of position, with the values and slopes at these knots.
 
         Tables of fewer than LEAST knots in what is left stay as they are.
         """

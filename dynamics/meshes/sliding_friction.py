@@ -7,9 +7,10 @@ from typing import NamedTuple
 from dynamics.kernels.compiled import inner
 
 CREEP_SPEED = 1e-3
-"""m/s: friction has its full size from this sliding speed on, and a smooth one through zero below it. Flanks
-that stick in truth creep at up to it; a pair of 4 mm module at 10 rpm slides ten times as fast at the
-ends of contact."""
+"""Sliding speed from which on friction has its full size, m/s; below, it passes smoothly through zero. Flanks
+that stick in truth creep at up to it. A pair of 4 mm module at 10 rpm slides ten times as fast at the ends of
+contact.
+"""
 
 
 class Lever(NamedTuple):

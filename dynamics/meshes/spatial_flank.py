@@ -39,9 +39,9 @@ class SpatialFlankLaws(NamedTuple):
     """Force laws of k flanks in space."""
 
     grid: GridTables
-    """Their elastic forces and load arms."""
+    """Tables of the elastic forces and load arms."""
     damping: FloatArray
-    """N s/m in full contact. Shape (k,)."""
+    """Damping in full contact, N s/m. Shape (k,)."""
     reach: FloatArray
     """Elastic force in N from which the damping acts in full. Shape (k,)."""
     row: IntArray
@@ -49,9 +49,11 @@ class SpatialFlankLaws(NamedTuple):
     of rolling follows that of sliding. Shape (k, 3).
     """
     fixed: FloatArray
-    """Their values in m where the table is used at one operating point. Shape (k, 2)."""
+    """Fixed misalignment and center-distance change, m, where the table is used at one operating point. Shape
+    (k, 2).
+    """
     follows: IntArray
-    """1 where the force follows the row, 0 where it stays at the fixed value. Shape (k, 2)."""
+    """Whether the force follows the row (1), or stays at the fixed value (0). Shape (k, 2)."""
     per_face: FloatArray
     """1/(face width), 1/m; 0: the force acts at mid-face. Shape (k,)."""
     mid_face: FloatArray
@@ -59,7 +61,7 @@ class SpatialFlankLaws(NamedTuple):
     friction: FloatArray
     """Friction force over the transverse force of a pair. Shape (k,)."""
     radius: FloatArray
-    """Of the row of rolling, m. Shape (k,)."""
+    """Coordinate of the row of rolling over the rotation, m. Shape (k,)."""
     running: BoolArray
     """Whether friction has the directions of running gears, at rest as well, instead of those of the sliding
     velocity: for studies of small motions about gears that run. Shape (k,).

@@ -12,9 +12,9 @@ from dynamics.types import FloatArray
 SMOOTHING = 0.01
 """Half width of the smoothed change of direction at the pitch point, base pitches; as in computed tables."""
 POSITIONS = 64
-"""Of a base pitch, at least."""
+"""Least number of positions in a base pitch."""
 POINTS = 33
-"""Over the face of helical teeth, at which contact is looked for."""
+"""Number of points over the face of helical teeth at which contact is searched."""
 ADDENDUM = 1.0
 """Modules on the operating pitch circle: tips of standard teeth (ISO 53)."""
 
@@ -24,9 +24,9 @@ class StandardTeeth:
     """The teeth of a pair as far as sliding depends on them; SI."""
 
     teeth: tuple[int, int]
-    """Of pinion and wheel."""
+    """Numbers of teeth of pinion and wheel."""
     base_radius: float
-    """Of the pinion."""
+    """Base radius of the pinion, m."""
     working_pressure_angle: float
     base_helix_angle: float
     face_width: float
@@ -47,7 +47,7 @@ class StandardTeeth:
         return -before, beyond
 
     def _beyond(self, teeth: int, sign: float) -> float:
-        """Return how far the tip circle of a gear meets the line of action from the pitch point, m."""
+        """Return the distance from the pitch point to a tip circle along the line of action, m."""
         base = self.base_radius * teeth / self.teeth[0]
         pitch_radius = base / math.cos(self.working_pressure_angle)
         tip = pitch_radius * (1.0 + sign * 2.0 * ADDENDUM / teeth)
@@ -55,7 +55,7 @@ class StandardTeeth:
 
 
 def sliding_positions(position: FloatArray) -> FloatArray:
-    """Return positions (P,) of a table with those added that its sliding needs."""
+    """Return positions (P,) of a table, and the further ones that its sliding needs."""
     return np.union1d(position, np.arange(POSITIONS) / POSITIONS)
 
 

@@ -127,7 +127,7 @@ def level_below(table: PackedTables, flank: int, force: float) -> int:
 
 @inner
 def deflection_from(table: PackedTables, flank: int, position: float, force: float, k: int) -> float:
-    """Return what `table_deflection` does for a force in the level interval `k`."""
+    """Return the deflection at a force in the level interval `k`, as `table_deflection` does."""
     row, u, _ = position_interval(table, flank, position)
     first = table.offset[flank, 4]
     low, wanted = cubic_value(table.row, row + k, 0, u), force - table.level[first + k]

@@ -1,1 +1,1 @@
-"""States of an assembled system: its motion, what is observed of it, the balance of its forces."""
+"""States of an assembled system: its motion, the quantities observed on it, the balance of its forces."""

@@ -1,4 +1,4 @@
-"""All forces in one state and their derivatives, and loads at their means: what statics starts from."""
+"""All forces in one state and their derivatives, and loads at their means, from which statics starts."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ class ForceBalance:
     """Forces on n freedoms in a state (q, v) at a time, without inertia."""
 
     force: FloatArray
-    """What accelerates: M q'' = external - C v - K q - G^T f, N and N m. Shape (n,)."""
+    """Accelerating force, M q'' = external - C v - K q - G^T f, N and N m. Shape (n,)."""
     stiffness: FloatArray
     damping: FloatArray
     """`stiffness`, `damping`: K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q
-    and v. How forces change with the meshes' positions is left out: of the order of a deflection over a base
-    pitch. Shape (n, n) each.
+    and v. The change of forces with the meshes' positions is left out: it is of the order of a deflection
+    over a base pitch. Shape (n, n) each.
     """
     local: LocalState
-    """Of the elements."""
+    """State of the force elements."""
 
 
 def force_balance(

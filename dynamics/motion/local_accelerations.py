@@ -12,11 +12,13 @@ from dynamics.motion.motion import ACCELERATION
 from dynamics.types import FloatArray
 
 ITERATIONS = 30
-"""Each leaves of the error the part that the center of mass is off the axis, over the radius of gyration."""
+"""Most iterations. Each leaves, of the error, the ratio of the center of mass's distance from the axis to the
+radius of gyration.
+"""
 
 
 SETTLED = 1e-14
-"""Of the forces: the last change."""
+"""Change of the forces in the last iteration, over the forces."""
 
 
 @inner

@@ -15,8 +15,8 @@ from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
 # Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
-FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
-MOTION_COLUMNS = 4
+FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3  # columns of the motion of a law
+MOTION_COLUMNS = 4  # number of these columns
 QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""
@@ -79,7 +79,7 @@ def set_phases(
 
 @inner
 def set_drift(elements: Elements, time: float, motion: FloatArray, local: LocalState) -> None:
-    """Write the time, what the kinematic motion adds to local rates, and the speeds of rotation."""
+    """Write the time, the local rates of the kinematic motion, and the speeds of rotation."""
     local.clock[0] = time
     for r in range(elements.carried, local.drift.size):
         local.drift[r] = 0.0
@@ -118,7 +118,7 @@ def add_body_motion(
     coordinate: FloatArray,
     rate: FloatArray,
 ) -> None:
-    """Do what `add_motion` does without modal freedoms, which `q` and `v` need not have."""
+    """Add motion as `add_motion` does, without the modal freedoms, which `q` and `v` may lack."""
     bodies, turn = system.sparse.bodies, system.sparse.turn
     for r in range(coordinate.size):
         displacement, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)

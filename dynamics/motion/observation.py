@@ -50,7 +50,7 @@ def observe(
     quanta: IntArray | None = None,
     carried: FloatArray | None = None,
 ) -> Observed:
-    """Return what the elements do at T states.
+    """Return coordinates and forces of the elements at T states.
 
     `time` (T,), `q` and `v` (T, n); `quanta` (T, k) counts those of free trains moved into the reference.
     Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).

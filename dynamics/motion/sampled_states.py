@@ -1,4 +1,4 @@
-"""The samples of a run: states, and what the anti-alias filter gives."""
+"""The samples of a run: states, and the channels of the anti-alias filter."""
 
 from __future__ import annotations
 

@@ -18,7 +18,9 @@ STEPS = 6
 FLAT = 0.02
 """Eigenvalue, relative to the largest, below which faces do not say where along its direction a node lies."""
 FARTHEST = 1.0
-"""From the middle of a cell to its node, over the largest distance of the middle to a node of the surface."""
+"""Distance from the middle of a cell to its node, over the largest distance from the middle to a node of the
+surface.
+"""
 
 THIN = 0.05
 """Height over longest edge below which a panel is thin."""
@@ -27,7 +29,7 @@ ROUNDS = 4
 LONGEST = 2.0
 """Longest edge of a coarse hull over its mean distance of nodes."""
 ATTEMPTS = 16
-"""To split cells; walls of gear cases took up to six."""
+"""Most attempts to split cells; walls of gear cases took up to six."""
 FEWER = 0.5
 """Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
 
@@ -77,7 +79,7 @@ def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
 
 
 def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
-    """Return the cells of seeds that have moved to the middle of their cells so many times."""
+    """Return the cells of seeds after repeated moves to the middle of their cells."""
     starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
     pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
     length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)
@@ -92,7 +94,7 @@ def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
 def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
     """Return the number of the next seed of every node; parts of the surface without a seed are one cell."""
     _, _, source = dijkstra(edges, directed=False, indices=seeds, min_only=True, return_predecessors=True)
-    number = np.full(edges.shape[0], len(seeds))  # that of nodes that no seed reaches
+    number = np.full(edges.shape[0], len(seeds))  # number of the nodes that no seed reaches
     number[seeds] = np.arange(len(seeds))
     reached = source >= 0  # a negative number of scipy's says that no seed is connected
     cell = np.where(reached, number[np.where(reached, source, 0)], len(seeds))
@@ -158,14 +160,14 @@ def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
 
 @dataclass(frozen=True)
 class Coarseness:
-    """How coarse a hull may be: least longest edges in a wavelength, least cells for the shape of a body."""
+    """Coarseness of a hull: least longest edges in a wavelength, least cells for the shape of a body."""
 
     edges: float = PANELS_PER_WAVELENGTH
     cells: int = 800
 
 
 OF_PANELS = Coarseness()
-"""Of models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
+"""Coarseness for models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
 
 
 @dataclass(frozen=True)

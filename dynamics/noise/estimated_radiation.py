@@ -28,13 +28,13 @@ SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
 Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
 """
 MIN = 1e-30
-"""kg/s, of a motion without sound."""
+"""Resistance that stands for a motion without sound, kg/s."""
 
 
 def allowed_levels(
     monopoles: FloatArray, plane: FloatArray, ka: FloatArray, resolved: BoolArray
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return from where to where levels lie by what both models state, and where by the velocity alone.
+    """Return the bounds of the levels that both models allow, and whether the velocity alone decides.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def allowed_levels(
     ka : (F,) array
         Wavenumber times `Hull.equivalent_radius`.
     resolved : (F,) bool array
-        Where there are monopoles.
+        Whether there are levels by monopoles.
     """
     monopoles_off, plane_off = (
         np.array([model.error_band(float(value)) for value in ka]).T[:, :, None]
@@ -64,21 +64,20 @@ class EstimatedRadiation(HousingRadiation):
     """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite."""
 
     correction: FloatArray
-    """What the velocity of the coordinates is multiplied with before monopoles radiate it. Shape (F, r, r).
-    """
+    """Factor on the velocity of the coordinates, before monopoles radiate it. Shape (F, r, r)."""
     mode_error: FloatArray
-    """From and to where the level of each mode of `ReducedHousing.modes` is off, dB; below 0: too quiet.
-    Shape (2, F, m).
+    """Bounds of the error of the level of each mode of `ReducedHousing.modes`, dB: lower and upper; a
+    negative error is a level that is too low. Shape (2, F, m).
     """
     by_velocity: BoolArray
-    """Where monopoles say nothing of a mode. Shape (F, m)."""
+    """Whether monopoles state nothing of a mode, so that its velocity alone decides. Shape (F, m)."""
 
     def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
         """Return the velocity (r,) that the model radiates at a computed frequency, Hz."""
         return np.asarray(self.correction[int(np.searchsorted(self.frequency, knot))] @ velocity)
 
     def error_band(self, frequency: float, mode_power: FloatArray) -> tuple[float, float]:
-        """Return by how much the level at a frequency, Hz, is off, as `RadiationModel.error_band` does.
+        """Return the bounds of the error of the level at a frequency, Hz, as `RadiationModel` does.
 
         The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
         """
@@ -88,11 +87,11 @@ class EstimatedRadiation(HousingRadiation):
         return float(off[0]), float(off[1])
 
     def gains(self, housing: ReducedHousing, frequency: FloatArray) -> FloatArray:
-        """Return what the velocity of each mode is multiplied with before monopoles radiate it, (N, m).
+        """Return the factor on the velocity of each mode before monopoles radiate it, (N, m).
 
         At frequencies (N,) in Hz; beyond those that are computed and resolved as at the nearest of them.
         """
-        inside = self.frequency <= self.facts.resolved_frequency
+        inside = self.frequency <= self.metadata.resolved_frequency
         shape = housing.modes[1]
         if not np.any(inside):
             return np.ones((len(frequency), shape.shape[1]))
@@ -107,9 +106,9 @@ class EstimatedRadiation(HousingRadiation):
         return np.array([self.error_band(*row) for row in rows]).T.reshape(2, *frequency.shape)
 
     def replaced(self, natural: FloatArray) -> FloatArray:
-        """Return those of the first natural frequencies, Hz, at which monopoles say nothing of the mode."""
+        """Return the natural frequencies, Hz, at which monopoles state nothing of the mode."""
         knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)
-        inside = (natural >= self.frequency[0]) & (natural <= self.facts.resolved_frequency)
+        inside = (natural >= self.frequency[0]) & (natural <= self.metadata.resolved_frequency)
         return np.asarray(natural[inside & self.by_velocity[knot, np.arange(natural.size)]])
 
 
@@ -121,7 +120,7 @@ def estimated_radiation(
     ka = 2.0 * np.pi / air.sound_speed * monopoles.frequency * outer_hull(housing).hull.equivalent_radius
     monopole_level = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
     plane = _levels(monopoles.impedance * np.einsum("mk,mn,nk->k", shape, monopoles.surface, shape))
-    resolved = monopoles.frequency <= monopoles.facts.resolved_frequency
+    resolved = monopoles.frequency <= monopoles.metadata.resolved_frequency
     low, high, by_velocity = allowed_levels(monopole_level, plane[None], ka, resolved)
     level = low + np.interp(ka, SHARE_AT, SHARE)[:, None] * (high - low)
     factor = 10.0 ** ((level - monopole_level) / 20.0) - 1.0

@@ -1,8 +1,8 @@
 """Boundary elements at the loudest lines of a housing, which take the place of the estimate there alone.
 
 The resistance of a line holds for any motion of the housing at its frequency, and with the square of the
-frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. What a line is off says
-nothing of lines farther away.
+frequency `FLAT` to both sides; from there to `BLEND` it becomes the estimate again. The error of the estimate
+at a line says nothing about lines farther away.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from dynamics.errors import ResultError
 from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import Coarseness, RadiatingHull, radiating_hull
 from dynamics.noise.estimated_radiation import EstimatedRadiation
-from dynamics.noise.housing_radiation import HousingRadiation, RadiationFacts, content_key
+from dynamics.noise.housing_radiation import HousingRadiation, RadiationMetadata, content_key
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
@@ -31,17 +31,23 @@ from host import MissingExtra
 from model_studies.cached_file import cached_in
 
 LINES, BUDGET = 4, 60.0
-"""Lines of a housing at most, and CPU seconds on the reference host that they may take together."""
+"""Most lines of a housing, and CPU seconds on the reference host that they may take together."""
 COARSE = Coarseness(EDGES, 450)
-"""Hull of a line: within EXACT of six edges in a wavelength at 15 lines of five gear cases."""
+"""Hull of a line. At 15 lines of five gear cases its level is within `EXACT` of that with six edges in a
+wavelength.
+"""
 EXACT = 0.5
-"""dB, that a line is off by its hull."""
+"""Error of the level of a line by its hull, dB."""
 FLAT, BLEND = 1.03, 1.06
-"""Ratios of frequencies: natural frequencies are guessed within the first."""
+"""Ratios of frequencies up to which the resistance of a line holds, and at which it is the estimate again;
+natural frequencies are guessed within the first.
+"""
 QUIETER = 6.0
-"""dB below the loudest point that the mesh resolves; a line that cannot be louder adds 1 dB at most."""
+"""Distance below the loudest point that the mesh resolves, dB, beyond which no line is corrected: a line that
+cannot be louder adds 1 dB at most.
+"""
 CANDIDATES = 200
-"""Loudest points among which they are looked for."""
+"""Number of loudest points among which the lines are."""
 AIR, NAME = Air(), BoundaryElements().model_name
 
 
@@ -50,7 +56,7 @@ class ExactLine:
     """A line that boundary elements correct."""
 
     frequency: float
-    """Hz."""
+    """Frequency of the line, Hz."""
     estimate: float
     level: float
     """`estimate`, `level`: Sound power level by the estimate and by boundary elements at its loudest point,
@@ -67,9 +73,9 @@ class CorrectedRadiation:
 
     radiation: EstimatedRadiation
     lines: tuple[ExactLine, ...]
-    """In the order in which they were corrected."""
+    """Lines in the order in which they were corrected."""
     left_out: tuple[str, ...]
-    """Why further lines were not; none: no other line may be as loud."""
+    """Reasons why further lines are not corrected; empty: no other line may be as loud."""
 
 
 def corrected_radiation(
@@ -88,11 +94,11 @@ def corrected_radiation(
     Parameters
     ----------
     response, housing, bearings
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     model : BoundaryElements
-        With progress and workers.
+        Boundary elements with their progress and workers.
     cache : Path, optional
-        As of `cached_radiation`.
+        Cache as in `cached_radiation`.
     budget : float
         Predicted CPU seconds on the reference host: the lines are the same on every host.
     """
@@ -119,8 +125,8 @@ def corrected_radiation(
         before, radiation = float(sound.power[at]), with_exact_lines(estimate, exact)
         sound = radiated_sound(response, housing, bearings, radiation)
         estimated_level, level = sound_power_level([before, sound.power[at]]).tolist()
-        facts = exact[-1].facts
-        lines.append(ExactLine(hertz, estimated_level, level, facts.panels, facts.cost.seconds))
+        metadata = exact[-1].metadata
+        lines.append(ExactLine(hertz, estimated_level, level, metadata.panels, metadata.cost.seconds))
     return CorrectedRadiation(radiation, tuple(lines), tuple(left_out.values()))
 
 
@@ -128,7 +134,7 @@ def _next_point(
     sound: RadiatedSound, radiation: EstimatedRadiation, known: Sequence[float]
 ) -> LoudPoint | None:
     """Return the point that may be the loudest away from frequencies in Hz; None where none counts."""
-    resolved = radiation.facts.resolved_frequency
+    resolved = radiation.metadata.resolved_frequency
     points = [point for point in loudest(sound, CANDIDATES) if point.frequency <= resolved]
     highest = {
         point: _highest_level(sound, radiation, point)
@@ -159,7 +165,7 @@ def line_cost(housing: ReducedHousing, hertz: float) -> Cost:
 def _exact_line(
     housing: ReducedHousing, hertz: float, model: BoundaryElements, cache: Path | None
 ) -> HousingRadiation:
-    """Return the resistance at one frequency, from the cache if it is there."""
+    """Return the resistance at one frequency, from the cache if the cache has it."""
     outer, hull = outer_hull(housing), _line_hull(housing, hertz)
     panels, shapes = len(hull.shapes), hull.shapes.astype(complex)
     kind, reference = WORK.format(NAME), line_cost(housing, hertz)
@@ -168,7 +174,7 @@ def _exact_line(
         matrix, cost = measured(
             kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
         )
-        metadata = RadiationFacts(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
+        metadata = RadiationMetadata(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
         hermitian = 0.5 * (matrix + matrix.conj().T)
         return HousingRadiation(
             np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata
@@ -179,7 +185,7 @@ def _exact_line(
 
 
 class _Knot(NamedTuple):
-    """What an estimate has at a frequency, Hz."""
+    """Arrays of an estimate at a frequency, Hz."""
 
     frequency: float
     matrix: ComplexArray
@@ -189,7 +195,7 @@ class _Knot(NamedTuple):
 
 
 def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiation]) -> EstimatedRadiation:
-    """Return the estimate with resistances of single frequencies in the place of its own near them.
+    """Return the estimate with resistances of single frequencies near these frequencies.
 
     Between two lines closer than `BLEND` squared it goes from one to the other.
     """
@@ -216,7 +222,7 @@ def with_exact_lines(estimate: EstimatedRadiation, lines: Sequence[HousingRadiat
 def _knots_of_line(
     estimate: EstimatedRadiation, line: HousingRadiation, sides: Sequence[int]
 ) -> Iterator[_Knot]:
-    """Yield the knots of a line, and those at which it ends at its sides, -1 below and 1 above it."""
+    """Yield the knots of a line, and the knots at which it ends at its `sides`, -1 below and 1 above it."""
     hertz, lowest, highest = (float(at) for at in (line.frequency[0], *estimate.frequency[[0, -1]]))
     for at in (hertz, *(hertz * FLAT**side for side in sides)):
         knot = _knot(estimate, at)

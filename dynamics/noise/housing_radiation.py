@@ -26,21 +26,28 @@ from dynamics.types import ComplexArray, FloatArray
 from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
 from model_studies.cached_file import cached_in
 from model_studies.progress import Progress, silent, unreported
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, divided
 
 TOLERANCE = 0.5
-"""dB, of the power of each mode in the middle of two frequencies; what is kept is off by a quarter of it."""
+"""Tolerance of the power of each mode in the middle of two frequencies, dB; the frequencies that are added
+leave a quarter of it.
+"""
 NOTHING = 1e-6
-"""Resistance over the largest of all modes that counts as none."""
+"""Resistance over the largest of all modes, below which a mode radiates nothing."""
 CONSTANT, CONSTANT_ERROR = 1.05, 0.008
 """Ratio of frequencies for R that does not change: R/f^2 is convex, 3/4 (step/f)^2 off in the middle, dB."""
 FEWEST, KNOTS = 8.0, (0.9, 0.025)
-"""Frequencies of an octave where the body is small beside the wavelength, and more with ka and its square."""
+"""Number of frequencies of an octave for a body much smaller than the wavelength, and further ones per ka and
+its square.
+"""
 WIDEST, CLOSEST = 1.5, 1.03
-"""Largest ratio of frequencies side by side; the smallest that is parted."""
+"""Largest ratio of two frequencies side by side, and smallest ratio between which another one is added."""
 
 USUAL = 0.85
-"""Frequency of an octave whose cost is the mean, over its highest: they lie closer towards its end."""
+"""Frequency of an octave, over its highest, whose cost is the mean: frequencies lie closer towards the end of
+the octave.
+"""
 Points = Sequence[tuple[int, float]]
 """Numbers of octaves, and frequencies in Hz."""
 BAND = 10.0**0.05
@@ -76,7 +83,7 @@ def octave_ranges(low: float, high: float) -> list[tuple[float, float]]:
 
 
 def expected_knots(ka: float) -> float:
-    """Return about how many frequencies `_knots_of` takes in an octave up to a wavenumber times radius.
+    """Return the expected number of frequencies of `_knots_of` in an octave up to a wavenumber times radius.
 
     Counted on cast boxes with 40 and 100 coordinates, ka of 0.6 to 28: within a quarter. Few simple modes
     need half as many.
@@ -93,7 +100,7 @@ def _constant_knots(low: float, high: float, matrix: ComplexArray) -> _Knots:
 def _interpolation_error(
     left: float, middle: float, right: float, matrices: dict[float, ComplexArray], modes: FloatArray
 ) -> float:
-    """Return by how much the two ends miss the power of a mode in the middle, dB."""
+    """Return the error of the power of a mode in the middle by interpolation between two ends, dB."""
     ends = ModalResistance(np.array([left, right]), np.stack([matrices[left], matrices[right]]))
     expected = ends.alone(np.array([middle]), modes)[0]
     power = np.einsum("mk,mn,nk->k", modes, matrices[middle], modes, optimize=True).real
@@ -176,7 +183,7 @@ def radiation_cost(octaves: Iterable[Octave], model: RadiationModel, air: Air) -
 
 
 def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, float]:
-    """Predict the cost of a frequency of an octave, and how many it has."""
+    """Predict the cost of a frequency of an octave, and the number of its frequencies."""
     panels, coordinates = octave.hull.shapes.shape
     per_hertz = 2.0 * math.pi / air.sound_speed * octave.hull.hull.outer_radius
     cost = model.cost(panels, per_hertz * (USUAL * octave.last), coordinates)
@@ -184,20 +191,22 @@ def _knot_cost(octave: Octave, model: RadiationModel, air: Air) -> tuple[Cost, f
 
 
 @dataclass(frozen=True)
-class RadiationFacts:
-    """How a radiation resistance was computed."""
+class RadiationMetadata:
+    """Panels, cost and errors of a radiation resistance."""
 
     panels: int
-    """Of the finest hull."""
+    """Number of panels of the finest hull."""
     cost: WorkCost
-    """Without that of the hulls."""
+    """Cost of the resistance, without the cost of the hulls."""
     resolved_frequency: float
-    """Hz; above it panels move as parts of a plane (ERP)."""
+    """Frequency up to which the hulls resolve the waves, Hz; above it panels radiate as parts of a plane
+    (ERP).
+    """
     interpolation_error: float
-    """dB."""
+    """Error of the level by interpolation over the frequency, dB."""
     inner_area: float
     cap_area: float
-    """`inner_area`, `cap_area`: As of `OuterHull`, m^2."""
+    """`inner_area`, `cap_area`: Areas of the inner faces and the caps of `OuterHull`, m^2."""
 
 
 @dataclass(frozen=True)
@@ -206,7 +215,7 @@ class HousingRadiation(ModalResistance, ArrayFile):
 
     SCHEMA = "lineofaction housing radiation"
     RECORDS = MappingProxyType(
-        {"facts": lambda data: RadiationFacts(**{**data, "cost": WorkCost(**data["cost"])})}
+        {"metadata": lambda data: RadiationMetadata(**{**data, "cost": WorkCost(**data["cost"])})}
     )
 
     surface: FloatArray = field(
@@ -216,17 +225,17 @@ class HousingRadiation(ModalResistance, ArrayFile):
     velocities is the integral of the mean square in time. Shape (r, r).
     """
     area: float
-    """Of the outer hull with its caps, m^2."""
+    """Area of the outer hull with its caps, m^2."""
     impedance: float
     """rho c of the air, Pa s/m."""
     model_name: str
-    """Of the radiation model."""
-    facts: RadiationFacts
+    """Name of the radiation model."""
+    metadata: RadiationMetadata = field(metadata=under_key("facts"))
 
     def hull_at(self, outer: OuterHull, frequency: float, sound_speed: float) -> RadiatingHull | None:
         """Return the panels at a computed frequency, Hz; None above those that the mesh resolves."""
         low, high = float(self.frequency[0]), float(self.frequency[-1])
-        for first, last in octave_ranges(low, min(high, self.facts.resolved_frequency)):
+        for first, last in octave_ranges(low, min(high, self.metadata.resolved_frequency)):
             if first <= frequency <= last:
                 return radiating_hull(outer, last, sound_speed)
         return None
@@ -262,9 +271,9 @@ def housing_radiation(
     Parameters
     ----------
     housing : ReducedHousing
-        With a surface.
+        Housing with a surface.
     frequencies : array
-        Hz, above zero; the range grows outwards to the edges of third octaves.
+        Frequencies, Hz, above zero; the range grows outwards to the edges of third octaves.
     progress : callable
         Called with the fraction done.
     expected : callable, optional
@@ -272,7 +281,7 @@ def housing_radiation(
     cache : Path, optional
         Directory of what is known of the host, see `work_cost.on_this_host`.
     workers : Workers
-        They compute a frequency each.
+        Workers, which compute a frequency each.
     """
     air, requested = air or Air(), np.asarray(frequencies, dtype=float)
     if not requested.size:
@@ -295,7 +304,7 @@ def housing_radiation(
         outer.hull.area,
         air.impedance,
         model.model_name,
-        RadiationFacts(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
+        RadiationMetadata(panels, cost, resolved, error, outer.inner_area, outer.cap_area),
     )
 
 
@@ -343,19 +352,19 @@ def cached_radiation(
     progress: Progress = silent,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> HousingRadiation:
-    """Return `housing_radiation`, from the cache if it is there.
+    """Return `housing_radiation`, from the cache if the cache has it.
 
     Raises `InputError` as `housing_radiation` does.
 
     Parameters
     ----------
     cache : Path, optional
-        Directory of kept results and of what is known of the host; None: neither read nor written. What takes
-        below a second is not kept.
+        Directory of kept results and of what is known of the host; None: neither read nor written.
+        Results that take less than a second are not stored.
     progress : callable, optional
         Called as progress("radiation", fraction), before costly work with its predicted cost behind it.
     workers : Workers
-        As of `housing_radiation`.
+        Workers as in `housing_radiation`.
     """
     ends = float(np.min(frequencies)), float(np.max(frequencies))
     file = (
@@ -375,7 +384,7 @@ def cached_radiation(
         )
 
     def costly(made: HousingRadiation) -> bool:
-        return made.facts.cost.seconds > MIN_COST
+        return made.metadata.cost.seconds > MIN_COST
 
     read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
     return cached_in(file, read, computed, write, ResultError, costly)

@@ -40,7 +40,9 @@ from model_studies.progress import Progress, silent
 NEAREST = 2.0
 """Least distance of a microphone over the longest edge of a panel: nearer it is no point source."""
 HALF_LENGTH, KAISER = 12, 8.0
-"""Of the interpolation between samples: up to a quarter of their rate delays are exact within 1e-4."""
+"""Half length in samples, and parameter of the Kaiser window, of the interpolation between samples: up to a
+quarter of their rate delays are exact within 1e-4.
+"""
 BLOCK = 4_000_000  # phases that are held at a time
 MONOPOLES = ElementalRadiators()
 RESOLUTION = 20.0
@@ -147,20 +149,20 @@ def pressure_transfer(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     microphone : (3,) array
-        In the frame of the housing's mesh, m.
+        Position of the microphone in the frame of the housing's mesh, m.
     frequency : (N,) array
-        Hz; `sound_limit` says up to where the result is valid.
+        Frequencies, Hz; the result is valid up to `sound_limit`.
     model : ElementalRadiators
         Monopoles in free space, or in a rigid baffle.
     estimate : EstimatedRadiation, optional
-        By which the modes are louder or quieter; the sound power through a far sphere is then its own.
+        Estimate that corrects the level of each mode; the sound power through a far sphere is then its power.
 
     Returns
     -------
     (N, s) complex array
-        By the seats' motions, Pa/N and Pa/(N m).
+        Pressure by forces on the seats' motions, Pa/N and Pa/(N m).
     """
     hertz = np.asarray(frequency, dtype=float)
     paths = _paths(housing, microphone, model, air)
@@ -193,7 +195,7 @@ def pressure_signal(
     time : (T,) array
         s, uniform. Delays are exact within 1e-4 up to a quarter of its rate.
     force : (T, s) array
-        On the motions of the seats, N and N m (`run_seat_forces`).
+        Forces on the motions of the seats, N and N m (`run_seat_forces`).
     """
     paths = _paths(housing, microphone, model, air)
     rows = housing.modes[1].T @ housing.mass
@@ -267,13 +269,14 @@ def velocity_recording(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     point : str
         Name of one of its points.
     direction : (3,) array, optional
-        In the frame of the housing's mesh, of any length above zero; by default the `principal_direction`.
+        Direction in the frame of the housing's mesh, of any length above zero; by default the
+        `principal_direction`.
     bearings : sequence of str, optional
-        In the order of the seats; by default those with the names of the seats.
+        Bearings in the order of the seats; by default those with the names of the seats.
     """
     rate = FINER * run.sample_rate
     time, force = finer_seat_forces(run, housing, bearings, FINER)
@@ -305,13 +308,13 @@ def pressure_recording(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     microphone : (3,) array
-        In the frame of the housing's mesh, m.
+        Position of the microphone in the frame of the housing's mesh, m.
     estimate : EstimatedRadiation, optional
-        As of `pressure_transfer`, by `recording_estimate`.
+        Estimate by `recording_estimate`, as in `pressure_transfer`.
     bearings : sequence of str, optional
-        In the order of the seats; by default those with the names of the seats.
+        Bearings in the order of the seats; by default those with the names of the seats.
     """
     rate, valid = FINER * run.sample_rate, positive("valid_frequency", sound_limit(housing, air))
     limit = min(valid, float(run.receipt["sampling"]["pass_frequency"]))
@@ -343,11 +346,11 @@ def scene_pressure(
     Parameters
     ----------
     surfaces : sequence of SurfaceHousing
-        At least one.
+        Housings with their surfaces, at least one.
     microphone : (3,) array
-        In the frame of the scene, m.
+        Position of the microphone in the frame of the scene, m.
     cache, progress
-        As of `recording_estimate`.
+        Arguments of `recording_estimate`.
     """
     for housing in surfaces:  # before any radiation is computed
         check_microphone(housing.body, microphone)
@@ -383,16 +386,16 @@ def scattered_pressure_transfer(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     microphones : (P, 3) array
-        In the frame of the housing's mesh, m.
+        Position of the microphone in the frame of the housing's mesh, m.
     frequency : float
-        Hz.
+        Frequency, Hz.
 
     Returns
     -------
     (P, s) complex array
-        By the seats' motions, Pa/N and Pa/(N m).
+        Pressure by forces on the seats' motions, Pa/N and Pa/(N m).
     """
     air = air or Air()
     hull = radiating_hull(outer_hull(housing), frequency, air.sound_speed)

@@ -24,9 +24,9 @@ class OrderPressure:
 
     order: float
     speed: float
-    """Where the order is loudest, rad/s."""
+    """Speed at which the order is loudest, rad/s."""
     level: float
-    """dB(A) re 20 uPa."""
+    """Sound pressure level at that speed, dB(A) re 20 uPa."""
     low: float | None
     high: float | None
     """`low`, `high`: Ends of the band, dB(A); None: the sound power has no band."""
@@ -37,11 +37,11 @@ class MicrophonePressure:
     """Sound pressure levels at a microphone, dB(A) re 20 uPa."""
 
     microphone: FloatArray
-    """In the frame of the scene, m. Shape (3,)."""
+    """Position of the microphone in the frame of the scene, m. Shape (3,)."""
     level: FloatArray
-    """By order, then by speed. Shape (H, S)."""
+    """Level by order, then by speed. Shape (H, S)."""
     total_level: FloatArray
-    """All orders together, those that are not listed too. Shape (S,)."""
+    """Level of all orders together, the unlisted ones included. Shape (S,)."""
     orders: tuple[OrderPressure, ...]
     """Each order at the speed where it is loudest."""
 
@@ -60,7 +60,7 @@ def microphone_pressure(
     Parameters
     ----------
     response : BearingHarmonics
-        As of `radiated_sound`.
+        Response as in `radiated_sound`.
     microphone : (3,) array
         m.
     power_bands : sequence of LevelBand, optional

@@ -22,11 +22,11 @@ from dynamics.work_cost import Cost, on_this_host
 
 @dataclass(frozen=True)
 class ModelLevels:
-    """What the radiation models say of a housing where it is loudest; mappings are by name of the model."""
+    """Results of the radiation models where a housing is loudest; mappings are by name of the model."""
 
     order: float
     speed: float
-    """rad/s."""
+    """Speed of the leading drive, rad/s."""
     level: Mapping[str, float]
     """Sound power level of the models that are computed, from coarse to fine, dB."""
     efficiency: Mapping[str, float]
@@ -34,9 +34,11 @@ class ModelLevels:
     seconds: Mapping[str, float]
     """CPU time of the models that are computed."""
     left_out: Mapping[str, str]
-    """Why others are not."""
+    """Reasons why the other models are not computed."""
     error_band: Mapping[str, tuple[float, float]]
-    """From and to where the level of each model may be off, computed or not, dB; below 0: too quiet."""
+    """Bounds of the error of the level of each model, computed or not, dB: lower and upper; a negative error
+    is a level that is too low.
+    """
     predicted: Mapping[str, Cost]
     """Cost of each model on this host, computed or not."""
     replaced: FloatArray | None = None
@@ -98,7 +100,7 @@ def model_levels(
 
 @dataclass(frozen=True)
 class _Estimate:
-    """What the estimate without boundary elements adds to the models; nothing where there is none."""
+    """Columns that the estimate without boundary elements adds to the models; empty without an estimate."""
 
     level: Mapping[str, float]
     error_band: Mapping[str, tuple[float, float]]
@@ -124,7 +126,10 @@ def _estimate(
 
 @dataclass(frozen=True)
 class _ExactLines:
-    """What boundary elements add to the models: at the point nothing but their cost where no line is near."""
+    """Columns that boundary elements add to the models.
+
+    Where no line is near the loudest point, they hold the cost alone.
+    """
 
     predicted: Mapping[str, Cost]
     left_out: Mapping[str, str]

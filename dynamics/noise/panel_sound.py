@@ -51,13 +51,13 @@ def models_at(
     Parameters
     ----------
     response, housing, bearings
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     at : (int, int)
         Numbers of speed and order.
     models : sequence of RadiationModel
-        From coarse to fine.
+        Radiation models from coarse to fine.
     progress, offered, cache
-        As of `compare_models`.
+        Arguments of `compare_models`.
     """
     air, hertz = Air(), float(response.frequency[at])
     hull = radiating_hull(outer_hull(housing), hertz, air.sound_speed)
@@ -81,10 +81,10 @@ class PanelSound:
     """Sound power of the panels of a hull."""
 
     hull: Hull
-    """That the radiation model takes at this frequency."""
+    """Hull that the radiation model takes at this frequency."""
     power: FloatArray
-    """W, negative where a panel takes power that others radiate; the sum is the power of the hull. Shape
-    (T,).
+    """Sound power of each panel, W; negative where a panel takes power that others radiate. The sum is the
+    power of the hull. Shape (T,).
     """
 
     @classmethod
@@ -119,11 +119,11 @@ def panel_sound(
     Parameters
     ----------
     response, housing, bearings, radiation
-        As of `radiated_sound`.
+        Arguments of `radiated_sound`.
     at : (int, int)
         Numbers of speed and order.
     model, air
-        Those of the radiation.
+        Model and air of the radiation.
     """
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])
@@ -154,9 +154,9 @@ class Region:
     normal: FloatArray
     """Mean outward normal, of length 1. Shape (3,)."""
     center: FloatArray
-    """m. Shape (3,)."""
+    """Center of the region, m. Shape (3,)."""
     area: float
-    """m^2."""
+    """Area of the region, m^2."""
     power: float
     """W, negative where it takes power from the others."""
 

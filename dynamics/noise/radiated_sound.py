@@ -1,4 +1,4 @@
-"""Sound power of housings by order and speed, what is loudest in it, and through what it gets there."""
+"""Sound power of housings by order and speed, its loudest points, and the bearings and modes behind them."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 from dynamics.vibration import BearingHarmonics, seat_forces
 from dynamics.vibration.housing_motion import modal_amplitudes
+from model_studies.record import under_key
 
 POWER = ("speed", "order")
 BINS = ("speed", "bin")
 QUIET = 30.0
-"""dB below the loudest beyond which a maximum is not listed."""
+"""Distance below the loudest maximum, dB, beyond which a maximum is not listed."""
 
 
 def _powers(
     frequency: FloatArray, amplitudes: ComplexArray, housing: ReducedHousing, radiation: HousingRadiation
 ) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the motion in the modes under all bearings, and of their shares.
+    """Return the fields of `RadiatedSound` by the motion in the modes under all bearings, with shares.
 
     The share of a part u of the velocity v is Re(u^H R v) / 2: shares add up to the power v^H R v / 2.
     Frequencies (S, H) in Hz; `amplitudes` (S H, b, m) are complex peaks of `ReducedHousing.modes` by bearing.
@@ -108,10 +109,12 @@ class RadiatedSound(ArrayFile):
     natural_frequency: FloatArray = field(
         metadata=stored("Hz", "natural frequency of the housing, seats free", "mode")
     )
-    """Of the housing on its feet. Shape (m,)."""
+    """Natural frequencies of the housing on its feet, Hz. Shape (m,)."""
     in_contact: BoolArray = field(metadata=stored("1", "whether all flanks stay in contact", "speed"))
-    """Where flanks part, no linear answer holds. Shape (S,)."""
-    facts: Json = field(default_factory=dict)
+    """Whether all flanks stay in contact at each speed. Where flanks part, no linear answer holds. Shape
+    (S,).
+    """
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `radiation` by housing (`HousingRadiation.facts`, `model_name`, `area`, and
     `valid_frequency` in Hz, to which the modes kept carry the motion).
     """
@@ -127,8 +130,8 @@ class RadiatedSound(ArrayFile):
         default_factory=lambda: np.empty(0),
         metadata=stored("W", "radiated sound power of each panel", "panel"),
     )
-    """`panel_node`, `panel_corner`, `panel_power`: Of all housings at the loudest order and speed
-    (`PanelSound`); empty where they were not looked at. (N, 3), (T, 3), (T,) arrays.
+    """`panel_node`, `panel_corner`, `panel_power`: Panels of all housings and their power at the loudest
+    order and speed (`PanelSound`); empty where they were not computed. (N, 3), (T, 3), (T,) arrays.
     """
     floor_frequency: FloatArray = field(
         default_factory=_no_bins, metadata=stored("Hz", "mean frequency of orders left out, in bins", *BINS)
@@ -166,7 +169,7 @@ class RadiatedSound(ArrayFile):
             **{name: tuple(value for sound in sounds for value in getattr(sound, name)) for name in names},
             **{name: np.concatenate([getattr(sound, name) for sound in sounds]) for name in by_part},
         }
-        radiation = {name: about for sound in sounds for name, about in sound.facts["radiation"].items()}
+        radiation = {name: about for sound in sounds for name, about in sound.metadata["radiation"].items()}
         return cls(
             speed=first.speed,
             order=first.order,
@@ -174,14 +177,14 @@ class RadiatedSound(ArrayFile):
             power=power,
             efficiency=np.asarray(power / np.maximum(plane, 1e-300)),
             in_contact=first.in_contact,
-            facts={"radiation": radiation},
+            metadata={"radiation": radiation},
             **joined,
             **_floor_fields([floor for sound in sounds if (floor := sound.floor) is not None]),
         )
 
     @property
     def panels(self) -> PanelSound | None:
-        """Return the panels at the loudest order and speed; None where they were not looked at."""
+        """Return the panels at the loudest order and speed; None where they were not computed."""
         if not self.panel_power.size:
             return None
         return PanelSound(Hull(self.panel_node, self.panel_corner), self.panel_power)
@@ -216,7 +219,7 @@ class RadiatedSound(ArrayFile):
 
 
 def _floor_fields(floors: Sequence[FloorPower]) -> dict[str, Any]:
-    """Return what `RadiatedSound` has of the orders left out, of all housings together; nothing without."""
+    """Return the fields of `RadiatedSound` on orders left out, all housings together; empty without."""
     if not floors:
         return {}
     total = FloorPower.of_all(floors)
@@ -240,13 +243,13 @@ def radiated_sound(
     response : BearingHarmonics
         Linear, or the orders of a run (`bearing_orders`); in the frame of the housing's mesh.
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     bearings : sequence of str or None
         Bearings in the order of the seats; None: those with the names of the seats.
     radiation : HousingRadiation
-        Of this housing, over the frequencies of the response.
+        Radiation of this housing, over the frequencies of the response.
     name : str
-        Of the housing.
+        Name of the housing.
     """
     names = tuple(seat.name for seat in housing.seats) if bearings is None else tuple(bearings)
     if radiation.matrix.shape[1] != len(housing.stiffness):
@@ -257,7 +260,7 @@ def radiated_sound(
         )
     force = seat_forces(response, housing, names).reshape(response.frequency.size, 1, -1)
     owner = np.repeat(np.arange(len(names)), [len(seat.motions) for seat in housing.seats])
-    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # of each bearing
+    alone = np.where(owner == np.arange(len(names))[:, None], force, 0.0)  # force of each bearing alone
     amplitudes = modal_amplitudes(housing, response.frequency.ravel(), alone)
     powers = _powers(response.frequency, amplitudes, housing, radiation)
     floor = response.floor
@@ -265,7 +268,7 @@ def radiated_sound(
         "model_name": radiation.model_name,
         "area": radiation.area,
         "valid_frequency": housing.valid_frequency,
-        **asdict(radiation.facts),
+        **asdict(radiation.metadata),
     }
     return RadiatedSound(
         housing=(name,),
@@ -275,7 +278,7 @@ def radiated_sound(
         order=response.order,
         frequency=response.frequency,
         in_contact=response.in_contact,
-        facts={"radiation": {name: about}},
+        metadata={"radiation": {name: about}},
         **powers,
         **_floor_fields([] if floor is None else [radiated_floor(floor, housing, names, radiation)]),
     )
@@ -290,10 +293,12 @@ class LoudPoint:
     order: float
     speed: float
     frequency: float
-    """`order`, `speed`, `frequency`: Multiple of the frequency of the first mesh; rad/s; Hz."""
+    """`order`, `speed`, `frequency`: Multiple of the frequency of the first mesh; speed, rad/s; frequency,
+    Hz.
+    """
     level: float
     weighted_level: float
-    """`level`, `weighted_level`: dB and dB(A) re 1e-12 W."""
+    """`level`, `weighted_level`: Sound power level, dB and dB(A) re 1e-12 W."""
     efficiency: float
     """Radiation efficiency."""
     mode: int
@@ -302,13 +307,15 @@ class LoudPoint:
     largest share.
     """
     mode_share: float
-    """Of it, of the power."""
+    """Share of that mode in the power."""
     mode_housing: str
     bearing: str
-    """With the largest share."""
+    """Bearing with the largest share in the power."""
     bearing_level: float
     level_without_bearing: float
-    """`bearing_level`, `level_without_bearing`: dB(A): of its force alone, and of what is left without it."""
+    """`bearing_level`, `level_without_bearing`: Level by the force of that bearing alone, and level without
+    it, dB(A).
+    """
     in_contact: bool
     """Whether all flanks stay in contact there; where not, no linear answer holds."""
 

@@ -1,4 +1,4 @@
-"""Sound power of all housings of a scene under one set of bearing forces, and how far it may be off."""
+"""Sound power of all housings of a scene under one set of bearing forces, and bounds of its error."""
 
 from __future__ import annotations
 
@@ -34,18 +34,20 @@ class SceneSound:
     """Sound power of all housings of a scene."""
 
     power: RadiatedSound
-    """Of all housings together, with the panels of the loudest point."""
+    """Sound power of all housings together, with the panels of the loudest point."""
     housings: tuple[SoundingHousing, ...]
     models: Mapping[str, ModelLevels | None]
     """Radiation models by housing; None of a silent one."""
     regions: tuple[tuple[HousingRegion, ...], ...]
-    """Of each of the `loudest` points, those that radiate most first."""
+    """Regions of each of the `loudest` points, the strongest first."""
     error: FloatArray
-    """From and to where the levels may be off by the radiation models, dB; below 0: too quiet. Shape (2, S,
-    H).
+    """Bounds of the error of the levels by the radiation models, dB: lower and upper; a negative error is a
+    level that is too low. Shape (2, S, H).
     """
     over_time: SoundOverTime | None
-    """Over the run that the forces are of; None: without a run, or of one that is shorter than a block."""
+    """Sound power over the run that the forces belong to; None: there is no run, or it is shorter than a
+    block.
+    """
 
     @property
     def radiation(self) -> dict[str, HousingRadiation]:
@@ -68,7 +70,7 @@ def scene_sound(
     response : BearingHarmonics
         Linear, or the orders of the run; in the frame of the meshes of the housings.
     surfaces : sequence of SurfaceHousing
-        At least one.
+        Housings with their surfaces, at least one.
     run : RunResult, optional
         Whose sound over time is found too.
     """

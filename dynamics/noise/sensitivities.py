@@ -1,4 +1,4 @@
-"""What a change of a design costs or gains in dB(A): sensitivities of the largest sound power level."""
+"""Sensitivities of the largest sound power level to the design: change in dB(A) per change of a figure."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from dynamics.types import FloatArray
 from model_studies.progress import Progress
 from model_studies.variants import run_variants
 
-STEPS = {"housing_frequency": 0.02}
+STEPS = {"housing_frequency": 0.02}  # relative steps of figures for which `STEP` is too large
 STEP = 0.1
-"""Of factors."""
+"""Relative step of factors."""
 CURVED = 0.25
 """Share of the change by slope that the curvature may add where a level counts as linear."""
 
@@ -53,7 +53,7 @@ class Sensitivity:
     figure: DesignFigure
     change: float
     change_of_two: float
-    """`change`, `change_of_two`: Of the level with one step and with two, dB."""
+    """`change`, `change_of_two`: Change of the level with one step of the figure and with two, dB."""
 
     @classmethod
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
@@ -67,7 +67,7 @@ class Sensitivity:
 
     @property
     def slope(self) -> float:
-        """Return the derivative of the level, dB per unit: that of the parabola through all three levels."""
+        """Return the derivative of the level, dB per unit, by the parabola through all three levels."""
         return (4.0 * self.change - self.change_of_two) / (2.0 * self.figure.step)
 
     @property
@@ -77,7 +77,7 @@ class Sensitivity:
 
     @property
     def linear_range(self) -> float:
-        """Return how far the slope alone holds within `CURVED`, in units of the figure; inf: anywhere."""
+        """Return the range in which the slope holds within `CURVED`, in units of the figure; inf: any."""
         bend = 0.5 * abs(self.curvature)
         return CURVED * abs(self.slope) / bend if bend > 0.0 else math.inf
 
@@ -93,7 +93,7 @@ class Sensitivity:
 
 
 def _ranked(rows: Iterable[Sensitivity]) -> tuple[Sensitivity, ...]:
-    """Return sensitivities by what a step changes, the largest first."""
+    """Return sensitivities by the change of a step, the largest first."""
     return tuple(sorted(rows, key=lambda row: -abs(row.change)))
 
 
@@ -128,14 +128,15 @@ def sound_sensitivities(
     scenes: Callable[[DesignFigure], Callable[[float], Scene]],
     progress: Progress,
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return what steps of the guesses that a model has and of its flanks change, `_ranked`.
+    """Return the changes by steps of the guesses of a model and of its flanks, `_ranked`.
 
     Parameters
     ----------
     model, speed, orders
-        As of `forced_power`; the level is the `largest_level`.
+        Arguments of `forced_power`; the level is the `largest_level`.
     scenes : callable
-        From one of them to the scene by its value: its level is by `flank_transfer`.
+        Function of a figure of the flanks that returns a function from its value to the scene. Its level is
+        computed by `flank_transfer`.
     progress : callable
         Called as progress("sensitivities", fraction).
 

@@ -1,4 +1,4 @@
-"""Sound of a housing by its model, and bands of its levels from the ranges of what is only guessed."""
+"""Sound of a housing by its model, and bands of its levels from the ranges of guessed figures."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ from model_studies.progress import Progress, silent
 
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
-"""dB; speeds that miss more are no map of a resonance."""
+"""Largest error by peaks between the speeds, dB: speeds with a larger one do not resolve a resonance."""
 Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
 @dataclass(frozen=True)
 class SoundModel:
-    """A scene with what its housings are and radiate."""
+    """A scene with its radiating housings and their radiation resistances."""
 
     scene: Scene
-    """With the matrices of the housings."""
+    """Scene with the matrices of the housings."""
     housings: Mapping[str, ReducedHousing]
-    """By name, those that radiate."""
+    """Radiating housings by name."""
     resistance: Mapping[str, ModalResistance]
-    """Of the same, over their reduced coordinates."""
+    """Radiation resistances of these housings, over their reduced coordinates."""
 
     def with_housing(self, name: str, housing: ReducedHousing) -> SoundModel:
         """Return the model with another reduction of a housing, over the same coordinates."""
@@ -96,11 +96,13 @@ class _Guess:
 
     name: str
     title: str
-    """In words."""
+    """Name of the figure in words."""
     usual: Range
-    """Of the factor on what the scene states."""
+    """Usual range of the factor on the value that the scene states."""
     varied: Callable[[SoundModel, float], SoundModel]
-    """``varied(model, factor)``: the model with it; the same object where the scene has no such figure."""
+    """``varied(model, factor)`` returns the model with the figure times `factor`, or the same object where
+    the scene has no such figure.
+    """
 
 
 def _with_housings(
@@ -172,13 +174,14 @@ GUESSES = {
         _Guess("mesh_damping", "damping of the meshes", Range(0.5, 1.0, 2.0), _mesh_damping),
     )
 }
-"""By name. Cast iron with bolted joints has ratios of 0.002 to 0.01 about 0.005; a mesh reads natural
-frequencies too high, and walls of castings vary by some per cent."""
+"""Guessed figures by name. Cast iron with bolted joints has damping ratios of 0.002 to 0.01, most often
+0.005. A finite-element mesh reads natural frequencies too high, and walls of castings vary by some per cent.
+"""
 USUAL_RANGES = {name: guess.usual for name, guess in GUESSES.items()}
 
 
 def responses_of_band(scene: Scene, *, mounted: bool) -> int:
-    """Return how many linear responses a band takes over all ranges, in a scene whose housings radiate.
+    """Return the number of linear responses of a band over all ranges, in a scene whose housings radiate.
 
     `mounted`: whether one of them stands on mounts.
     """
@@ -195,26 +198,29 @@ class SoundBand:
     """A-weighted sound power levels of a linear response with their bands, dB(A) re 1e-12 W."""
 
     speed: FloatArray
-    """rad/s. Shape (S,)."""
+    """Speeds of the leading drive, rad/s. Shape (S,)."""
     order: FloatArray
-    """Shape (H,)."""
+    """Multiples of the frequency of the first mesh that turns. Shape (H,)."""
     largest_total: LevelBand
-    """Of all orders together, the largest over the speeds, wherever it is; above it `speed_steps`, what a
-    peak between the speeds may have.
+    """Largest level of all orders together over the speeds, at whichever speed it occurs. `speed_steps` above
+    it is the error by a peak between the speeds.
     """
     mean_total: LevelBand
-    """Of all orders together, the mean of the power over the speeds: what a run-up of constant acceleration
-    radiates. Narrower, as a resonance that moves is counted once wherever it is, and one of twice the damping
-    has half the power, not a quarter. `speed_steps` is what every other speed misses.
+    """Level of the mean power of all orders together over the speeds, which a run-up of constant acceleration
+    radiates. Its band is narrower than that of the largest level: a resonance that moves counts once at any
+    speed, and twice the damping halves its power instead of quartering it. `speed_steps` is the error without
+    every other speed.
     """
     largest: tuple[LevelBand, ...]
-    """Of each order as `largest_total`."""
+    """Largest level of each order over the speeds, as `largest_total`."""
     loudest_speed: FloatArray
-    """Where each order is largest with the nominal values, rad/s. Shape (H,)."""
+    """Speed at which each order is largest with the nominal values, rad/s. Shape (H,)."""
     there: tuple[LevelBand, ...]
-    """Of each order at this speed: much wider than `largest`, as a resonance moves away from it."""
+    """Level of each order at this speed. Its band is much wider than that of `largest`, as a resonance moves
+    away from the speed.
+    """
     total: tuple[LevelBand, ...]
-    """Of all orders together at each speed."""
+    """Level of all orders together at each speed."""
 
     @property
     def _bands(self) -> list[LevelBand]:
@@ -234,7 +240,8 @@ class SoundBand:
     def about(self, power: OrderPower) -> SoundBand:
         """Return the bands, as wide as they are, about the levels of other powers of the same orders, (H, S).
 
-        Those of a response in which stiffness varies, where the ranges were run over the mean stiffness.
+        The levels are those of a response with varying stiffness, while the ranges were run with the mean
+        stiffness.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
         levels = _levels(self.order, loudest, self.order, power).tolist()
@@ -252,9 +259,9 @@ class SoundBand:
         Parameters
         ----------
         power : OrderPower
-            Of the nominal response, (H, S).
+            Power of the nominal response, (H, S).
         below, above : (H, S) arrays
-            By how much a level may lie below and above, dB, at least 0.
+            Distance of the ends of the band below and above a level, dB, at least 0.
         """
         loudest = np.searchsorted(self.speed, self.loudest_speed)
 
@@ -290,14 +297,14 @@ def sound_band(
     Parameters
     ----------
     speed : (S,) array
-        Of the first drive that turns, rad/s, increasing.
+        Speeds of the first drive that turns, rad/s, increasing.
     orders : int
         Harmonics of the mesh frequency of the first mesh that turns.
     ranges : mapping of str to Range, optional
-        Of factors, by name in `GUESSES`; default: their usual ones. Those of what a scene does not have, e.g.
-        mounts, contribute nothing.
+        Ranges of factors, by name in `GUESSES`; default: their usual ranges. Figures that a scene does not
+        have, e.g. mounts, contribute nothing.
     cases : int
-        As of `level_bands`.
+        Number of joint cases, see `level_bands`.
     alternatives : mapping of str to SoundModel, optional
         Further models that may be right, e.g. with the resistance of another radiation model, by the name of
         their contribution: their difference, both ways.
@@ -345,11 +352,11 @@ def band_about(
     Parameters
     ----------
     model, speed, orders, ranges, progress
-        As of `sound_band`.
+        Arguments of `sound_band`.
     power : OrderPower
-        Of the sound at these speeds, (H, S).
+        Power of the sound at these speeds, (H, S).
     error : (2, S, H) array
-        From and to where its levels may be off, dB; below 0: too quiet.
+        Bounds of the error of its levels, dB: lower and upper; a negative error is a level that is too low.
     """
     below, above = np.maximum(error[1].T, 0.0), np.maximum(-error[0].T, 0.0)
     band = sound_band(model, speed, orders, ranges, progress=progress).about(power)
@@ -419,7 +426,7 @@ def mean_power(speed: FloatArray, power: FloatArray) -> float:
 
 
 def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far the mean of every other speed and the last lies off that of all, dB."""
+    """Return the difference of the mean over every other speed and the last from the mean over all, dB."""
     alternate = np.unique([*range(0, power.size, 2), power.size - 1])
     coarse, fine = sound_power_level(
         [mean_power(speed[alternate], power[alternate]), mean_power(speed, power)]
@@ -428,7 +435,7 @@ def _speed_step_error(speed: FloatArray, power: FloatArray) -> float:
 
 
 def _peak_error(speed: FloatArray, power: FloatArray) -> float:
-    """Return how far a peak between the speeds may stand above the largest, dB, at most `MAX_PEAK_ERROR`.
+    """Return the height of a peak between the speeds above the largest, dB, at most `MAX_PEAK_ERROR`.
 
     The reciprocal of the power over speed is a parabola near a resonance: that through the largest value and
     its neighbors. At the ends of the speeds nothing is known.

@@ -19,11 +19,11 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 from dynamics.vibration import finer_seat_forces, motion_pieces
 
 FINER = 2
-"""Times the run's rate, at which the force is a cubic spline: 0.6 % low at most, 0.05 dB."""
+"""Factor on the run's rate, at which the force is a cubic spline: 0.6 % low at most, 0.05 dB."""
 BLOCK = 0.1
-"""s; lines 10 Hz apart."""
+"""Length of a block, s: its lines are 10 Hz apart."""
 LEAKAGE = 3
-"""Lines that a mean and a drift leak into under Hann's window."""
+"""Lines into which a mean and a drift leak under Hann's window."""
 
 
 @dataclass(frozen=True)
@@ -32,21 +32,21 @@ class SoundOverTime:
 
     time: FloatArray
     speed: FloatArray
-    """`time`, `speed`: Middle of each block, s; speed of the leading shaft there, rad/s, without sign. Shape
-    (B,) each.
+    """`time`, `speed`: Middle of each block, s, and speed of the leading shaft at that time, rad/s, without
+    sign. Shape (B,) each.
     """
     band: IntArray
     """Numbers of the bands, 0 at 1 kHz. Shape (J,)."""
     power: FloatArray
-    """W. Shape (B, J)."""
+    """Sound power in each band, W. Shape (B, J)."""
     total: FloatArray
     weighted: FloatArray
-    """`total`, `weighted`: Of all lines between `lowest` and `highest`, W; A-weighted line by line, W. Shape
-    (B,) each.
+    """`total`, `weighted`: Sound power of all lines between `lowest` and `highest`, W, and the same
+    A-weighted line by line. Shape (B,) each.
     """
     lowest: float
     highest: float
-    """`lowest`, `highest`: Hz."""
+    """`lowest`, `highest`: Frequencies of the lowest and highest line, Hz."""
 
     @classmethod
     def of_all(cls, sounds: Sequence[SoundOverTime]) -> SoundOverTime:
@@ -100,9 +100,9 @@ def sound_over_time(
     Parameters
     ----------
     result : RunResult
-        With bearing forces, in the frame of the housing's mesh.
+        Run with bearing forces, in the frame of the housing's mesh.
     housing : ReducedHousing
-        With mass and a surface.
+        Housing with mass and a surface.
     bearings : sequence of str or None
         Bearings in the order of the seats; None: those with the names of the seats.
     radiation : HousingRadiation

@@ -32,7 +32,7 @@ MODELS: dict[str, PanelModel] = {
 
 @dataclass(frozen=True)
 class Radiation:
-    """How the radiation of housings is computed, and by whom."""
+    """Choice of the radiation model of housings, and of the workers that compute it."""
 
     name: str = ESTIMATE
     """One of `MODELS`."""
@@ -56,11 +56,11 @@ class SoundingHousing:
     name: str
     body: ReducedHousing
     bearings: tuple[str, ...]
-    """In the order of the seats."""
+    """Bearings of the housing, in the order of its seats."""
     plain: HousingRadiation
-    """Without the lines that boundary elements correct."""
+    """Radiation without the lines that boundary elements correct."""
     corrected: CorrectedRadiation | None
-    """With these lines; None: boundary elements do not correct it."""
+    """Radiation with these lines; None: boundary elements do not correct it."""
 
     @property
     def radiation(self) -> HousingRadiation:

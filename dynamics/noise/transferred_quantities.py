@@ -1,6 +1,6 @@
-"""What is heard or measured of a scene: Hermitian forms of the inputs of its flanks (`flank_transfer`).
+"""Sound and vibration of a scene as Hermitian forms of the inputs of its flanks (`flank_transfer`).
 
-Of the forces of a response or a run alone they are one number: see `QuantityLevel`.
+By the forces of a response or of a run alone, such a quantity is one number, see `QuantityLevel`.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ class QuantityForm:
     """A power or mean square at S speeds in H orders by the inputs y of flanks: y^H `matrix` y."""
 
     unit: str
-    """Of the matrix."""
+    """Unit of the matrix."""
     reference: float
-    """Of 0 dB, in it."""
+    """Value at 0 dB, in `unit`."""
     frequency: FloatArray
-    """Hz. Shape (S, H)."""
+    """Frequencies, Hz. Shape (S, H)."""
     weighting: FloatArray
     """A-weighting of sound as a factor, else 1. Shape (S, H)."""
     matrix: ComplexArray

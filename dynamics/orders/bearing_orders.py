@@ -19,7 +19,7 @@ from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 SAME = 1e-6
 """Orders closer than this are one: frequencies of meshes in a train are ratios of teeth."""
 SECOND_MOMENT = 1.0 / 12.0 - 0.5 / np.pi**2
-"""Of Hann weights about their middle, over the square of the window's length."""
+"""Second moment of Hann weights about their middle, over the square of the window's length."""
 PITCHES = 16
 """Base pitches of a window, if orders lie no closer than an eighth."""
 MIN_DISTANCE = 2.0
@@ -50,9 +50,9 @@ class _MeshHarmonics:
     order: FloatArray
     """Multiples of the frequency of the mesh that counts. Shape (H,)."""
     mesh: IntArray
-    """Whose harmonic each is. Shape (H,)."""
+    """Mesh of which each is a harmonic. Shape (H,)."""
     multiple: IntArray
-    """Of the frequency of that mesh. Shape (H,)."""
+    """Multiple of the frequency of that mesh. Shape (H,)."""
 
     @property
     def closest(self) -> float:
@@ -60,7 +60,7 @@ class _MeshHarmonics:
         return float(np.min(np.diff(self.order, prepend=0.0)))
 
     def cycles(self, result: RunResult) -> FloatArray:
-        """Return how often each has repeated since the start of the run, (H, T).
+        """Return the number of cycles of each harmonic since the start of the run, (H, T).
 
         They rise, whichever way a mesh turns; where it reverses for a while they fall.
         """
@@ -130,38 +130,38 @@ class BearingOrders:
     time: FloatArray
     """Middle of each window, s. Shape (S,)."""
     speed: FloatArray
-    """Of the leading shaft there, rad/s, without sign. Shape (S,)."""
+    """Speed of the leading shaft at that time, rad/s, without sign. Shape (S,)."""
     order: FloatArray
     """Multiples of the frequency of the first mesh that turns; harmonics of the other meshes are among them.
     Shape (H,).
     """
     frequency: FloatArray
-    """Hz. Shape (S, H)."""
+    """Frequencies of the orders, Hz. Shape (S, H)."""
     bearing_force: ComplexArray
-    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m too.
-    Shape (b, 3, S, H).
+    """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m
+    too. Shape (b, 3, S, H).
     """
     in_contact: BoolArray
     """Whether all driving flanks stay in contact throughout the window. Shape (S,)."""
     sweep: FloatArray
     """Change of the mesh frequency within the window, of its mean. Shape (S,)."""
     smearing: FloatArray
-    """Of an amplitude: what the window rounds off a resonance of the scene (`_smearing`); NaN if the run
-    states no modes. Shape (S, H).
+    """Relative error of an amplitude by the window, which rounds off a resonance of the scene (`_smearing`);
+    NaN if the run states no modes. Shape (S, H).
     """
     remainder: FloatArray
     """Share of the variance of each bearing's force, from half the first order to half an order above the
     last, that belongs to none of the orders: impacts, sidebands, orders of bearings, free vibration. Shape
     (b, S).
     """
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict)
     """Plain JSON: `leading_shaft`, `pitches` of a window, `windows_left_out` (standstill, reversal, too fast
     a sweep), `effect_ledger` of the run.
     """
 
     @property
     def floor(self) -> None:
-        """None: what its orders do not hold is the `remainder`."""
+        """None: the part outside the orders is the `remainder`."""
 
 
 @dataclass(frozen=True)
@@ -180,15 +180,15 @@ class _Row:
 def bearing_orders(result: RunResult, orders: int | None = None, pitches: int | None = None) -> BearingOrders:
     """Return the mesh orders of the forces on the bearings of a run, window by window.
 
-    Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. What
-    changes within the window is averaged: see `_smearing`. Raises `InputError`: the run holds no bearing
-    forces or not those orders, no mesh turns, windows are too short to tell orders apart, or the run is too
-    short or too fast for any window.
+    Least squares under Hann weights: an order of constant amplitude is found exactly at any sweep. Changes
+    within the window are averaged, see `_smearing`. Raises `InputError`: the run holds no bearing forces or
+    not those orders, no mesh turns, windows are too short to tell orders apart, or the run is too short or
+    too fast for any window.
 
     Parameters
     ----------
     result : RunResult
-        With bearing forces.
+        Run with bearing forces.
     orders : int, optional
         Highest multiple of the mesh frequency of the first mesh that turns; default: 10, or what the run's
         output holds.

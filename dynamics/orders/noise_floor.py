@@ -11,15 +11,15 @@ from dynamics.orders.third_octaves import Waterfall
 from dynamics.types import FloatArray, IntArray
 
 MAIN_LOBE = 3
-"""Lines on either side of an order that its own line reaches under a Hann window, and one more."""
+"""Lines on either side of an order that its own line reaches under a Hann window, plus one for margin."""
 NEIGHBORHOOD = 0.5
-"""Of an order: how far its noise is looked for."""
+"""Distance from an order up to which its noise is measured, in orders."""
 MEDIAN = math.log(2.0)
 """Median over mean of the power of a line of Gaussian noise: side lines of orders do not move a median."""
 NEIGHBORS = 3
-"""Blocks on either side, by speed, whose lines count to the noise of one."""
+"""Number of blocks on either side, by speed, whose lines count to the noise of a block."""
 ONE_SPEED = 0.02
-"""Of the mesh frequency: what two signals at one speed may lie apart."""
+"""Relative difference of mesh frequencies up to which two signals are at one speed."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def _noise(lines: FloatArray) -> FloatArray:
 
 
 def _weights(frequency: FloatArray, span: tuple[float, float]) -> FloatArray:
-    """Return the weights (B,) of the mean over a span of what is at frequencies (B,), rising.
+    """Return the weights (B,) of values at rising frequencies (B,) in their mean over a span.
 
     Between two of them it runs straight, beyond the first and the last it is constant.
     """

@@ -21,10 +21,10 @@ from dynamics.orders.third_octaves import Waterfall
 from dynamics.types import FloatArray
 
 PASSED = 0.42
-"""Of the sample rate: what is below keeps its amplitude between the samples."""
-MIN_PER_PITCH, MAX_IN_BLOCK = 64, 1 << 22
+"""Highest frequency over the sample rate that keeps its amplitude in the interpolation between samples."""
+MIN_PER_PITCH, MAX_IN_BLOCK = 64, 1 << 22  # least samples of a base pitch, and most samples of a block
 SLOWEST = 0.02
-"""Of the highest mesh frequency: slower blocks last too long to hold one speed."""
+"""Least mesh frequency of a block over the highest one: slower blocks last too long to hold one speed."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class PositionedSignal:
     """A signal (T,) on a uniform grid of time, with the position (T,) of a mesh."""
 
     time: FloatArray
-    """s, uniform. Shape (T,)."""
+    """Times, s, uniform. Shape (T,)."""
     position: FloatArray
-    """Base pitches, not wrapped, rising. Shape (T,)."""
+    """Position of the mesh, base pitches, not wrapped, rising. Shape (T,)."""
     values: FloatArray
-    """In `unit`. Shape (T,)."""
+    """Values of the signal, in `unit`. Shape (T,)."""
     unit: str
 
     def __post_init__(self) -> None:
@@ -47,7 +47,7 @@ class PositionedSignal:
 
     @property
     def sample_rate(self) -> float:
-        """Hz."""
+        """Sample rate, Hz."""
         return (self.time.size - 1) / float(self.time[-1] - self.time[0])
 
     @property

@@ -13,12 +13,14 @@ from dynamics.results import RunResult
 from dynamics.results.run_result import OVER_TIME
 from dynamics.types import FloatArray, IntArray
 
-USUAL = 10
-ROUNDING = 1e-9  # of an order that lies on the edge of the pass band
+USUAL = 10  # usual highest order
+ROUNDING = 1e-9  # relative, for an order on the edge of the pass band
 KAISER = 12.0  # shape of the filter's window: 118 dB
 NYQUIST = 0.5  # cycles a sample
 REMOVED, TRANSITION = 80.0, 0.1
-"""dB by which a low-pass removes what is above its transition; width of that, of the frequency passed."""
+"""Attenuation of a low-pass above its transition, dB, and width of the transition, over the highest frequency
+that it passes.
+"""
 FINER, HALF_LENGTH = 4, 24  # times the result's rate; of the filter, in samples of the result
 
 
@@ -51,7 +53,7 @@ def driving_speed(result: RunResult, mesh: int = 0) -> FloatArray:
 def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
     """Return the highest multiple of a mesh's frequency below the pass frequency at its highest speed.
 
-    Of a run without meshes, of its leading shaft's rotation.
+    In a run without meshes, orders are multiples of the leading shaft's rotation.
     """
     top = float(np.max(order_frequency(result, mesh), initial=0.0))
     if top == 0.0:
@@ -61,7 +63,7 @@ def highest_valid_order(result: RunResult, mesh: int = 0) -> int:
 
 
 def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 0, usual: int = USUAL) -> int:
-    """Return the order `value`, or what is valid of the usual ones.
+    """Return the order `value`, or the valid part of the usual orders.
 
     Raises `InputError`: the run's output does not hold that order at its highest speed.
     """
@@ -116,7 +118,7 @@ def interpolated(values: FloatArray, factor: int, half_length: int) -> FloatArra
 
 
 def low_passed(values: FloatArray, frequency: float) -> FloatArray:
-    """Return a series (T,) without what is above a frequency, without phase shift; it is 0 before and after.
+    """Return a series (T,) without content above a frequency, without phase shift; it is 0 before and after.
 
     Contents up to the frequency keep their amplitude within 0.01 %; those 10 % above it are removed by 80 dB.
     `frequency`: cycles a sample; a series that holds no more is returned as it is.
@@ -144,7 +146,7 @@ def resample_to_position(
     integer("per_pitch", per_pitch, 2, 4096)
     wrapped = result.position[mesh]
     step = np.diff(wrapped)
-    step -= np.round(step)  # whatever whole number of pitches the table's period has
+    step -= np.round(step)  # the table's period is a whole number of pitches
     if np.any(step < 0.0):
         suggestion = "Raise outputs.sample_rate."
         raise InputError("sample_rate", result.sample_rate, "above twice the mesh frequency", suggestion)

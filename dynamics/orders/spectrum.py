@@ -28,7 +28,7 @@ class Spectrum:
     """One-sided amplitude spectrum."""
 
     frequency: FloatArray
-    """Hz, from 0. Shape (K,)."""
+    """Frequencies of the lines, Hz, from 0. Shape (K,)."""
     amplitude: FloatArray
     """Peak amplitude of a sinusoid at each frequency (corrected for the window), in `unit`; the mean at 0 Hz.
     Shape (..., K).
@@ -38,8 +38,8 @@ class Spectrum:
     """Distance of the lines, Hz."""
     window: str
     noise_bandwidth: float
-    """Of the window, in lines: the mean square of a signal is the sum of half the squared amplitudes over it
-    (1 rectangular, 1.5 Hann, 3.77 flat top).
+    """Noise bandwidth of the window, in lines (1 rectangular, 1.5 Hann, 3.77 flat top). The mean square of a
+    signal is the sum of half the squared amplitudes over it.
     """
 
 
@@ -51,7 +51,7 @@ class _MeshOrder:
     """Multiple of the mesh frequency."""
     low: float
     high: float
-    """`low`, `high`: Hz: its lowest and highest frequency in the window."""
+    """`low`, `high`: Lowest and highest frequency of the order in the window, Hz."""
 
 
 def spectrum(values: FloatArray, sample_rate: float, unit: str = "", window: str = "hann") -> Spectrum:
@@ -107,9 +107,11 @@ class _Peak:
     """A local maximum of a spectrum."""
 
     frequency: float
-    """Hz, between the lines: the vertex of the parabola through the logarithms of the three highest."""
+    """Frequency between the lines, Hz: the vertex of the parabola through the logarithms of the three
+    highest.
+    """
     amplitude: float
-    """At that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window."""
+    """Amplitude at that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window."""
 
 
 def find_peaks(
@@ -145,14 +147,14 @@ class _Sideband:
     """One line beside a mesh order."""
 
     source: str
-    """What modulates: the name of a gear, or that given."""
+    """Source of the modulation: the name of a gear, or the name that the caller states."""
     mesh_order: int
     number: int
-    """`mesh_order`, `number`: Beside which multiple of the mesh frequency, and the how manieth: < 0 below, 0
+    """`mesh_order`, `number`: Multiple of the mesh frequency, and number of the sideband at it: < 0 below, 0
     the mesh order itself.
     """
     order: float
-    """mesh_order + number * spacing, multiples of the mesh frequency."""
+    """Order of the line, mesh_order + number * spacing, multiples of the mesh frequency."""
     amplitude: float
     """Peak amplitude, in the unit of the signal."""
 

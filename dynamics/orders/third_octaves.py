@@ -15,12 +15,13 @@ from dynamics.orders.spectrum import Spectrum, spectrum
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, IntArray
 
-ON_LINE = 1e-6  # of a line's distance
+ON_LINE = 1e-6  # distance from a line over the distance of lines, up to which a value is on it
 MIN_LINES = 3.0
 """Lines in the narrowest band: below, a band holds what leaks from its neighbors."""
 REFERENCE = 1000.0  # Hz, the center of band 0
 SHARE = 10.0**0.05 - 10.0**-0.05  # width of a band over its center
 NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+"""Nominal center frequencies of a decade, IEC 61260-1."""
 
 
 @brief
@@ -36,10 +37,12 @@ class Waterfall:
     amplitude: FloatArray
     """Peak amplitude under the window, in `unit`; the mean at line 0. Shape (..., B, K)."""
     rms: FloatArray
-    """Of each block about its mean, of all that the signal holds, in `unit`. Shape (..., B)."""
+    """Root mean square of each block about its mean, over the whole content of the signal, in `unit`. Shape
+    (..., B).
+    """
     unit: str
     noise_bandwidth: float
-    """Of the window, in lines."""
+    """Noise bandwidth of the window, in lines."""
 
     def cut(self, line: float) -> FloatArray:
         """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
@@ -160,9 +163,9 @@ class ThirdOctaves:
     band: IntArray
     """Number of each band, 0 at 1 kHz. Shape (K,)."""
     edges: FloatArray
-    """Hz. Shape (K + 1,)."""
+    """Edges of the bands, Hz. Shape (K + 1,)."""
     rms: FloatArray
-    """In `unit`, of each block of the run. Shape (..., B, K)."""
+    """Root mean square of each band in each block of the run, in `unit`. Shape (..., B, K)."""
     unit: str
 
     @property
@@ -205,7 +208,7 @@ def band_sums(
     width : float
         Distance of the lines, Hz.
     power : (..., K) array
-        Of the lines at 1, 2, ... K times it.
+        Power of the lines at 1, 2, ... K times that distance.
     top, bottom : float
         Edges that no band crosses, Hz.
     """

@@ -21,15 +21,15 @@ from dynamics.periodic.shooting import (
 )
 from dynamics.types import FloatArray
 
-ITERATION_LIMIT = 16
-FALLING = 0.3  # of the residual: where an iteration leaves more, derivatives are taken anew
-EASY = 1  # derivations on the way to a motion: with no more the step along the branch grows
-SMALLEST_STEP = 1e-5  # of the largest
-LARGEST_STEP = 0.02  # between neighboring motions, of the larger speed or of the size of the state
-MAX_POINTS = 500
-FOLD_LIMIT = 1e-6  # of the largest speed: by how much a fold may lie beyond the motions found
-FOLD_ITERATIONS = 20
-FOLD_SHARE = 0.1  # of a bracket that each iteration takes off at least
+ITERATION_LIMIT = 16  # most Newton iterations to a point of the branch
+FALLING = 0.3  # residual over the one before: where more is left, derivatives are taken anew
+EASY = 1  # derivations for a motion, with no more of which the step along the branch grows
+SMALLEST_STEP = 1e-5  # over the largest step
+LARGEST_STEP = 0.02  # between neighboring motions, over the larger speed or the size of the state
+MAX_POINTS = 500  # usual limit of the points of a branch
+FOLD_LIMIT = 1e-6  # over the largest speed: distance of a fold beyond the motions found
+FOLD_ITERATIONS = 20  # most iterations to a fold
+FOLD_SHARE = 0.1  # least part of a bracket that an iteration takes off
 
 
 class BranchStatus(IntEnum):
@@ -42,7 +42,7 @@ class BranchStatus(IntEnum):
 
     @property
     def usable(self) -> bool:
-        """Whether the branch covers what was requested."""
+        """Whether the branch covers the requested speeds."""
         return self is BranchStatus.COMPLETED
 
 
@@ -53,9 +53,9 @@ class _Bifurcation:
     kind: Instability
     """`FOLD`: the branch turns back; a sweep over the speed jumps here."""
     speed: float
-    """rad/s; of a fold solved for, of other kinds interpolated between two motions."""
+    """Speed, rad/s: solved for at a fold, interpolated between two motions at other kinds."""
     point: int
-    """The last motion of the branch before it."""
+    """Last motion of the branch before the point."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Branch:
 
     @property
     def speed(self) -> FloatArray:
-        """Of all motions, rad/s."""
+        """Speeds of all motions, rad/s."""
         return np.array([orbit.speed for orbit in self.orbits])
 
     @property
@@ -109,7 +109,7 @@ def follow_branch(
     Parameters
     ----------
     first, last : float
-        rad/s, of the leading law.
+        Speeds of the leading law, rad/s.
     largest_step : float
         Between neighboring motions: change of the speed over the larger of both speeds, or of the state over
         its size.
@@ -123,7 +123,7 @@ def follow_branch(
     Returns
     -------
     Branch
-        With the status; nothing is raised where it ends early.
+        Branch with its status; nothing is raised where it ends early.
     """
     positive("largest_step", largest_step)
     integer("points", points, 2, 1_000_000)

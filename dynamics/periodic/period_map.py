@@ -1,4 +1,4 @@
-"""The state one common period later, and its derivatives: what shooting and Floquet theory work on."""
+"""The map of a state over one common period, and its derivatives, for shooting and Floquet theory."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ HALVINGS = 8
 """A step in which a flank lifts off or lands is halved down to 1/256 around it, so that its kink costs no
 digits and the end of the march depends smoothly on its start."""
 
-SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal
-MAX_STEPS = 1_000_000
-MAX_GAIN = 100.0
-STEPS_PER_CYCLE = 24  # of the highest natural frequency
-STEPS_PER_PITCH = 64  # of the mesh with the most pitches, or cycle of a load's highest order
-NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
-DIFFERENCE = 1e-6  # of the size of the state, for derivatives
+SAME = 1e-11  # over the period: nearer knots count as one, nearer step sizes as equal
+MAX_STEPS = 1_000_000  # most steps of a period
+MAX_GAIN = 100.0  # largest gain of a resonance that counts
+STEPS_PER_CYCLE = 24  # least steps per cycle of the highest natural frequency
+STEPS_PER_PITCH = 64  # per pitch of the mesh with the most, or per cycle of a load's highest order
+NEWTON_SHARE = 1e-12  # last update in an implicit stage, over the largest force
+DIFFERENCE = 1e-6  # step of differences for derivatives, over the size of the state
 
 
 @compiled
@@ -134,9 +134,9 @@ class PeriodGrid:
     phase: FloatArray
     """Ends of the steps, from 0 to 1. Shape (N + 1,)."""
     size: FloatArray
-    """Of the steps, and 0 after them. Shape (U,)."""
+    """Different sizes of the steps, in common periods; the last is 0. Shape (U,)."""
     level: IntArray
-    """Which size each step has. Shape (N,)."""
+    """Index in `size` of each step. Shape (N,)."""
 
     @classmethod
     def of(cls, system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
@@ -236,7 +236,7 @@ def _largest_force(system: System, mesh_force: FloatArray) -> float:
 
 
 def _stiffest(system: System) -> float:
-    """Return the stiffness of the stiffest mesh; without one that of the stiffest freedom, N/m."""
+    """Return the stiffness of the stiffest mesh; without meshes, of the stiffest freedom, N/m."""
     arrays, meshes = system.arrays, system.flanks.mean_stiffness
     if meshes.size:
         return float(np.max(meshes))
@@ -244,7 +244,7 @@ def _stiffest(system: System) -> float:
 
 
 def _resonant_gain(system: System, modes: Modes) -> float:
-    """Return by how much loads move a system without meshes more at a resonance than at rest; with them 1."""
+    """Return the motion by loads at a resonance over that at rest, in a system without meshes; else 1."""
     ratios = modes.damping_ratio[modes.frequency > 0.0]
     if system.scene.meshes or not ratios.size:
         return 1.0
@@ -264,17 +264,17 @@ class PeriodicProblem:
     """Steps of one period, the same at all speeds, so that the map depends smoothly on speed."""
     rate: float
     minimum: float
-    """`rate`, `minimum`: Steps that a period has at least: so many a second, and so many in all."""
+    """`rate`, `minimum`: Least number of steps in a period: per second, and in all."""
     repeat: int
-    """Common periods after which the motion is to repeat; 2 finds what period doubling leads to."""
+    """Common periods after which the motion is to repeat; 2 finds motions after period doubling."""
     time: float
-    """When loads are taken, s."""
+    """Time at which loads are taken, s."""
     rest: FloatArray
     """Static equilibrium, m. Shape (2n,)."""
     size: float
-    """Of a state, for tolerances and differences: the largest static displacement, m."""
+    """Size of a state, for tolerances and differences: the largest static displacement, m."""
     force_tolerance: float
-    """Of the implicit stages, N."""
+    """Force tolerance of the implicit stages, N."""
 
     @cached_property
     def scale(self) -> FloatArray:
@@ -340,7 +340,7 @@ def _highest(system: System, frequency: FloatArray) -> float:
     """Return the highest natural frequency that steps resolve, Hz.
 
     Flexible shafts and housings have coordinates far above what is of interest; the implicit method lets them
-    follow as springs do. Of a housing what meshes excite is of interest.
+    follow as springs do. In housings the vibration by meshes is of interest.
     """
     interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
     interest += [system.sampling.mode_frequency for _ in system.rotors.housings]
@@ -367,7 +367,7 @@ class PeriodMap:
 
     @cached_property
     def duration(self) -> float:
-        """Of `repeat` common periods, s."""
+        """Duration of `repeat` common periods, s."""
         return self.problem.repeat * self.problem.period.duration(self.speed)
 
     @cached_property
@@ -413,12 +413,12 @@ class PeriodMap:
         return np.asarray((up - down) / (2.0 * step))
 
     def step_error(self, y: FloatArray) -> FloatArray:
-        """Return how far half the step size moves the end of the march, (2n,) m."""
+        """Return the change of the end of the march with half the step size, (2n,) m."""
         finer = replace(self.problem, grid=self.problem.grid.halved)
         return PeriodMap(finer, self.speed)(y) - self(y)
 
     def begun(self, y: FloatArray, steps: int) -> None:
-        """March from `y` over the first `steps` steps of a period alone: a probe of what they cost."""
+        """March from `y` over the first `steps` steps of a period alone: a probe of their cost."""
         self._one_period(y, np.empty((3, 0, 0)), steps)
 
     def _one_period(self, y: FloatArray, path: FloatArray, steps: int | None = None) -> FloatArray:

@@ -12,9 +12,9 @@ from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.types import ComplexArray, FloatArray
 
 ON_THE_CIRCLE = 1e-6  # multipliers of undamped motions lie on it but for rounding
-ITERATION_LIMIT = 30
-HALVINGS = 12
-RESIDUAL_LIMIT = 1e-9  # of the size of a state
+ITERATION_LIMIT = 30  # most Newton iterations to a motion
+HALVINGS = 12  # most halvings of a Newton step
+RESIDUAL_LIMIT = 1e-9  # largest change over a period, over the size of a state
 SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is below 2 %
 
 
@@ -50,17 +50,17 @@ class Orbit:
     """Largest change of the state over the period, m."""
     iterations: int
     speed: float
-    """Of the leading law, rad/s."""
+    """Speed of the leading law, rad/s."""
     duration: float
-    """Of the period sought, s."""
+    """Duration of the period sought, s."""
     state: FloatArray
-    """At t = 0, in meters, as `PeriodicProblem` scales them. Shape (2n,)."""
+    """State at t = 0, in meters, as `PeriodicProblem` scales it. Shape (2n,)."""
     monodromy: FloatArray
     """Derivative of the state after a period in the state before it, in the same scale. Shape (2n, 2n)."""
     multipliers: ComplexArray
-    """Floquet's, by falling size. Shape (2n,)."""
+    """Floquet multipliers, by falling size. Shape (2n,)."""
     step_error: float
-    """Estimate of what the steps' errors move the motion by at t = 0, m; close to a fold it grows without
+    """Estimated change of the motion at t = 0 by the errors of the steps, m; close to a fold it grows without
     limit, as the motion does.
     """
 
@@ -87,7 +87,7 @@ class Orbit:
 
     @property
     def instability(self) -> Instability:
-        """The kind of instability, if the motion is unstable: what its largest multiplier says."""
+        """The kind of instability, if the motion is unstable, by its largest multiplier."""
         largest = complex(self.multipliers[0])
         if abs(largest) <= 1.0 + ON_THE_CIRCLE:
             return Instability.NONE
@@ -109,14 +109,14 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
     Parameters
     ----------
     speed : float
-        rad/s, of the leading law.
+        Speed of the leading law, rad/s.
     guess : (2n,) array, optional
         State at t = 0 in meters; the static equilibrium without one.
 
     Returns
     -------
     Orbit
-        With the status of the search; nothing is raised where it fails.
+        Orbit with the status of the search; nothing is raised where it fails.
     """
     over_period = PeriodMap(problem, speed)
     y = np.array(problem.rest if guess is None else guess, dtype=float)

@@ -1,4 +1,4 @@
-"""What steady states over speed will cost: the periods that are integrated, counted, times steps measured."""
+"""The cost of steady states over speed: number of integrated periods times measured cost of a step."""
 
 from __future__ import annotations
 
@@ -18,24 +18,30 @@ from dynamics.types import FloatArray
 from host import cpu_seconds
 
 ENOUGH, MIN_STEPS, TIMES = 0.01, 16, 3
-"""CPU s and steps of a stretch that tells, and how often it is taken: the quickest counts, as other work on
-the machine only slows it. All stretches of a probe take at most six times as long, where steps are cheap."""
+"""CPU s and steps of a stretch that is long enough to measure, and number of its repetitions: the quickest
+counts, as other work on the machine only slows it. All stretches of a probe take at most six times as long,
+where steps are cheap.
+"""
 PROBED, AFFORDED = 9, 0.5
-"""Speeds at which motions settle, and CPU s that this may take: where it takes more, no flank lifts off."""
+"""Number of speeds at which motions settle, and CPU s that this may take: where it takes more, the estimate
+assumes that no flank lifts off.
+"""
 RESPONSES, ORDERS = 400, 10
 """Speeds of the linear response, and orders of the meshes in it."""
 SAMPLED_SPEEDS = 30
-"""Speeds at most whose steps are counted."""
+"""Most speeds whose steps are counted."""
 CHANGE = 5e-3
-"""Of the size of a state: what a period changes of it after a step of a sweep, 2e-3 to 1e-2."""
+"""Change of a state over a period after a step of a sweep, over the size of the state: 2e-3 to 1e-2 measured.
+"""
 BRANCH_ITERATIONS, BRANCH_DERIVATIONS, BRANCH_MAPS = 5, 1.25, 10
-"""Iterations of a point of a branch, on average 3.5 to 5.4, how often it is derived, 1 to 1.4, and how many
-maps are laid out for that: one a speed, and one of half the steps."""
+"""Iterations of a point of a branch, on average 3.5 to 5.4; derivations, 1 to 1.4; and maps that are laid out
+for them: one per speed, and one of half the steps.
+"""
 
 
 @dataclass(frozen=True)
 class SteadyCost:
-    """Motions of both sweeps and points of the branch: how many, and CPU seconds of each.
+    """Motions of both sweeps and points of the branch: their numbers, and CPU seconds of each.
 
     `pitches` are those of each mesh in a period of a motion, `freedoms` what its derivatives are by.
     """
@@ -49,7 +55,7 @@ class SteadyCost:
 
 
 def expected_iterations(problem: PeriodicProblem, speed: float, settling: int) -> int:
-    """Return the Newton iterations at a speed behind settling: each squares what that leaves of the change.
+    """Return the Newton iterations at a speed after settling: each squares the change that settling leaves.
 
     It falls as the mode does that is damped least, and ends below `RESIDUAL_LIMIT`.
     """
@@ -63,7 +69,7 @@ def expected_iterations(problem: PeriodicProblem, speed: float, settling: int) -
 
 
 def motion_periods(freedoms: int, settling: int, iterations: int) -> int:
-    """Return the periods that are integrated for a motion of a sweep, in units of that of the motion.
+    """Return the number of periods that are integrated for a motion of a sweep.
 
     Settling, the residual, the derivatives by central differences in 2 n states, and the error of the steps,
     whose run on half the steps counts twice.
@@ -79,7 +85,7 @@ def point_periods(
 
 
 def steps_share(problem: PeriodicProblem, speed: FloatArray) -> float:
-    """Return how many steps motions at speeds take on average, of those of the problem."""
+    """Return the mean number of steps of motions at speeds, over the steps of the problem."""
     sample = speed[np.linspace(0, speed.size - 1, min(speed.size, SAMPLED_SPEEDS)).astype(int)]
     return float(np.mean([problem.at(float(w)).grid.level.size for w in sample])) / problem.grid.level.size
 
@@ -87,7 +93,7 @@ def steps_share(problem: PeriodicProblem, speed: FloatArray) -> float:
 def steady_cost(
     system: System, speed: FloatArray, *, branch: bool = True, repeat: int = 1, periods: int
 ) -> SteadyCost:
-    """Return what `steady_states` of the same will cost; some hundredths of a second of it are integrated.
+    """Return the cost of `steady_states` with these arguments; it integrates some hundredths of a CPU second.
 
     Raises `InputError`, `SolveError` as `steady_states`.
     """
@@ -114,7 +120,7 @@ def steady_cost(
 
 
 def _response_states(problem: PeriodicProblem, speed: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return speeds (S,) and what a branch would have there if no flank lifted off, (S, 2n + 1).
+    """Return speeds (S,) and the states of a branch at them if no flank lifted off, (S, 2n + 1).
 
     States over their size and the speed over the highest, as the arclength of a branch has them: the linear
     response at the start of a period.
@@ -128,7 +134,7 @@ def _response_states(problem: PeriodicProblem, speed: FloatArray) -> tuple[Float
 
 
 def _lengths(states: FloatArray) -> FloatArray:
-    """Return the distances of neighbors of states (S, 2n + 1); none of what is not finite."""
+    """Return the distances of neighboring states (S, 2n + 1); states that are not finite are left out."""
     return np.asarray(np.nan_to_num(np.linalg.norm(np.diff(states, axis=0), axis=1)))
 
 

@@ -22,9 +22,10 @@ from dynamics.results.array_file import ArrayFile, stored
 from dynamics.results.run_checks import checked_ledger
 from dynamics.types import ComplexArray, FloatArray, IntArray, Json
 from host import cpu_seconds
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, pays, spent
 
-SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps
+SAMPLES_PER_PITCH = 64  # least samples of a pitch; doubled until there are as many as steps
 FINE = 256  # samples per base pitch, for the share of the period that flanks touch
 PER_MESH = (
     "mean_error",
@@ -36,9 +37,9 @@ PER_MESH = (
     "coasting",
 )
 KINDS = (Instability.NONE, Instability.FOLD, Instability.PERIOD_DOUBLING, Instability.NEIMARK_SACKER)
-UP, DOWN, BRANCH = 0, 1, 2
+UP, DOWN, BRANCH = 0, 1, 2  # numbers of the curves: rising speeds, falling speeds, the branch
 CURVES = ("up", "down", "branch")
-SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
+SAME = 0.02  # distance over the rms of the transmission error, below which motions are the same
 MESH = ("point", "mesh")
 
 
@@ -47,31 +48,32 @@ class _PeriodicMotion:
     """Series over one period on a uniform grid of T samples, its end left out; m meshes, b bearings."""
 
     time: FloatArray
-    """s. Shape (T,)."""
+    """Times, s. Shape (T,)."""
     position: FloatArray
-    """Base pitches in [0, period of the table). Shape (m, T)."""
+    """Positions of the meshes, base pitches in [0, period of the table). Shape (m, T)."""
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
-    """`dynamic_transmission_error`, `static_transmission_error`: m; the static one at the nominal force,
-    misaligned and apart as the bodies rest. Shape (m, T) each.
+    """`dynamic_transmission_error`, `static_transmission_error`: Transmission errors, m. The static one is
+    that at the nominal force, with the misalignment and center distance of the bodies at rest. Shape (m, T)
+    each.
     """
     mesh_force: FloatArray
     coast_force: FloatArray
-    """`mesh_force`, `coast_force`: Transverse, of the driving flanks and of the coast flanks in use, N. (m,
-    T), (c, T) arrays.
+    """`mesh_force`, `coast_force`: Transverse forces of the driving flanks, and of the coast flanks in use,
+    N. (m, T), (c, T) arrays.
     """
     bearing_force: FloatArray
-    """On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m. Shape
-    (b, 3, T).
+    """Force on the ground or the pin, in the bearing's own frame, N; with seats (b, 6, T), moments in N m.
+    Shape (b, 3, T).
     """
     displacement: FloatArray
     velocity: FloatArray
-    """`displacement`, `velocity`: Deviations from the kinematic motion, m and rad (and per s). Shape (n, T)
-    each.
+    """`displacement`, `velocity`: Deviations from the kinematic motion, m and rad, and their rates. Shape
+    (n, T) each.
     """
     order: FloatArray
-    """Of the lines of `spectrum`: multiples of the frequency of the first mesh that turns. Shape (T // 2 +
-    1,).
+    """Orders of the lines of `spectrum`: multiples of the frequency of the first mesh that turns. Shape
+    (T // 2 + 1,).
     """
 
     @property
@@ -252,7 +254,7 @@ class SteadyStates(ArrayFile):
     jump_speed: FloatArray = field(
         metadata=stored("rad s-1", "last speed before and first after the jump", "jump", "side")
     )
-    facts: Json = field(default_factory=dict)
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`, `freedoms`,
     `seconds` (CPU by stage), `effect_ledger`.
     """
@@ -279,7 +281,7 @@ def steady_states(
     ----------
     system : System
     speed : (S,) sequence
-        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+        Speeds of the first drive that turns, rad/s, increasing, > 0; the scene decides the sense.
     branch : bool
         Whether to follow the branch from the lowest to the highest speed, through folds and unstable parts.
     repeat : int
@@ -291,7 +293,7 @@ def steady_states(
     progress : callable, optional
         Called with the curve (`CURVES`) and the fraction of it done; an exception in it ends the study.
     workers : Workers
-        They take a sweep each.
+        Workers, which take a sweep each.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:
@@ -396,7 +398,7 @@ def _study(
         bifurcation_kind=np.array([KINDS.index(b.kind) for b in bifurcations], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
-        facts=metadata,
+        metadata=metadata,
     )
 
 

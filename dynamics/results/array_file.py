@@ -1,4 +1,4 @@
-"""Results that are arrays and names as netCDF-4 files: a field says what is stored how."""
+"""Results that are arrays and names as netCDF-4 files: each field declares how it is stored."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from dynamics.errors import ResultError
 from dynamics.types import Json
 from model_studies.array_file import Stored, read_arrays, write_arrays
 from model_studies.netcdf import UnreadableFile
+from model_studies.record import key_of
 
 
 def stored(units: str, text: str, *dimensions: str) -> dict[str, Stored]:
@@ -23,17 +24,18 @@ def stored(units: str, text: str, *dimensions: str) -> dict[str, Stored]:
 class ArrayFile:
     """A frozen dataclass of arrays, names, records and plain JSON that is kept as a netCDF-4 file.
 
-    Fields with the metadata `stored` are arrays; all others are written as JSON.
+    Fields with the metadata `stored` are arrays; all others are written as JSON, by the name of the field or
+    the `under_key` of its metadata.
     """
 
     SCHEMA: ClassVar[str]
-    """What a file of it is."""
+    """Name of the kind of result, which a file states."""
     RECORDS: ClassVar[Mapping[str, Callable[[Json], Any]]] = {}
-    """The fields that are dataclasses, and what makes one of its JSON."""
+    """Fields that are dataclasses, each with the function that makes it from JSON."""
 
     @classmethod
     def arrays(cls) -> dict[str, Stored]:
-        """Return what is stored how, of the fields that are arrays."""
+        """Return the declaration of storage of each field that is an array."""
         items = fields(cls)  # type: ignore[arg-type]
         return {item.name: item.metadata["stored"] for item in items if "stored" in item.metadata}
 
@@ -46,21 +48,30 @@ class ArrayFile:
         kinds = self.arrays()
         arrays = {name: np.asarray(values.pop(name)) for name in kinds}
         values |= {name: asdict(values[name]) for name in self.RECORDS}
-        write_arrays(Path(path), self.SCHEMA, kinds, arrays, values)
+        keys = self._keys()
+        rest = {keys[name]: value for name, value in values.items()}
+        write_arrays(Path(path), self.SCHEMA, kinds, arrays, rest)
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> Self:
-        """Read what `to_netcdf` wrote, bit by bit the same.
+        """Read a file of `to_netcdf`, bit by bit the same.
 
         Raises `ResultError`: the file is missing, no netCDF-4 file, of another schema, or damaged.
         """
         try:
             _, arrays, rest = read_arrays(Path(path), (cls.SCHEMA,))
-            return cls(**arrays, **{name: cls._field(name, value) for name, value in rest.items()})
+            names = {key: name for name, key in cls._keys().items()}
+            values = {names.get(key, key): value for key, value in rest.items()}
+            return cls(**arrays, **{name: cls._field(name, value) for name, value in values.items()})
         except UnreadableFile as error:
             raise ResultError(str(error)) from error
         except (TypeError, KeyError) as error:
             raise ResultError(f"{Path(path).name}: damaged, its fields are others") from error
+
+    @classmethod
+    def _keys(cls) -> dict[str, str]:
+        """Return the names of all fields in files."""
+        return {item.name: key_of(item) for item in fields(cls)}  # type: ignore[arg-type]
 
     @classmethod
     def _field(cls, name: str, value: Any) -> Any:

@@ -15,7 +15,7 @@ LIGHT = 1e-3
 
 
 class BearingLoadChecks:
-    """Gathers, block by block, how long radial forces pointed away from the static load."""
+    """Time, gathered block by block, for which radial forces pointed away from the static load."""
 
     def __init__(self, system: System) -> None:
         scene = system.scene

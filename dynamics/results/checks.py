@@ -22,15 +22,15 @@ class Check:
     """
 
     effect: str
-    """That mends it; empty: none."""
+    """Effect that mends a violation; empty: none does."""
     assumption: str
     part: str
     holds: bool
     reason: str
     figures: Mapping[str, float | None] = field(default_factory=dict)
-    """By how much it holds or not, SI."""
+    """Figures by which the assumption holds or not, SI."""
     valid: bool | None = None
-    """None: right either way."""
+    """Whether the result is right where the assumption does not hold; None: right either way."""
 
     def to_json(self) -> Json:
         """Return its entry in the effect ledger."""

@@ -12,7 +12,7 @@ from dynamics.results.checks import Check, SeriesBlock
 
 
 class ContactChecks:
-    """Gathers, block by block, how far the driving flanks of meshes without backlash parted."""
+    """Gap, gathered block by block, by which driving flanks of meshes without backlash parted."""
 
     def __init__(self, system: System) -> None:
         meshes = system.scene.meshes

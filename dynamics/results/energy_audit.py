@@ -11,9 +11,11 @@ from dynamics.results.checks import Check
 from dynamics.types import FloatArray, Json
 
 UNACCOUNTED = 0.01
-"""Of the turnover: more that is not accounted for means that steps miss the motion."""
+"""Largest unaccounted energy over the turnover: more of it means that the steps miss the motion."""
 FALLEN = 1e-3
-"""Of the turnover: a loss that falls by more has driven; less is the error of a step's weights."""
+"""Largest fall of a loss over the turnover: a loss that falls by more has driven; a smaller fall is the error
+of a step's weights.
+"""
 
 
 @dataclass(frozen=True)
@@ -24,27 +26,29 @@ class EnergyAudit:
     load: float
     """`drive`, `load`: Work supplied by the drive and by the load torques (negative: they resist)."""
     position: float
-    """Work supplied by the change of the mesh tables with position: their force is that of a potential V(x,
-    d) in the direction of d only, and the imposed motion of x pays for dV/dx.
+    """Work supplied by the change of the mesh tables with position. Their force derives from a potential
+    V(x, d) in the direction of d only; the imposed motion of x supplies dV/dx.
     """
     bushings: float
     meshes: float
-    """`bushings`, `meshes`: Dissipated, >= 0."""
+    """`bushings`, `meshes`: Energy dissipated in bushings and meshes, >= 0."""
     axes: float
-    """Work supplied by the change of the mesh tables with misalignment and center distance, less what the
-    moments of forces off mid-face take of it: none where the load's arm belongs to the same table.
+    """Work supplied by the change of the mesh tables with misalignment and center distance, less the work of
+    the moments of forces off mid-face: zero where the load's arm belongs to the same table.
     """
     friction: float
-    """Dissipated by sliding flanks."""
+    """Energy dissipated by sliding flanks."""
     kinetic: float
     stored_bushings: float
     stored_meshes: float
-    """`kinetic`, `stored_bushings`, `stored_meshes`: Gained from start to end."""
+    """`kinetic`, `stored_bushings`, `stored_meshes`: Energy gained from start to end: kinetic, in bushings
+    and in meshes.
+    """
     held: float = 0.0
     """Elastic energy of meshes and bearings in the equilibrium that the run starts from, >= 0."""
     fallen: float = 0.0
-    """How far the loss in bushings, meshes or by friction fell below its highest value on the way, >= 0: what
-    is dissipated does not come back.
+    """Largest fall of the loss in bushings, in meshes or by friction below its highest value before, >= 0:
+    dissipated energy does not come back.
     """
 
     @property
@@ -93,7 +97,7 @@ class EnergyAudit:
         return cls(*(float(value) for value in (*work, *gained, largest_stored, fallen)))
 
     def check(self) -> Check:
-        """Return by how much the balance does not close, over the turnover, and how far a loss fell, J."""
+        """Return the check of the balance: residual over the turnover, and largest fall of a loss, J."""
         lost = self.fallen > FALLEN * self.turnover
         missing = self.relative > UNACCOUNTED
         reason = f"{engineering(100.0 * self.relative, 2)} % of {self.turnover:.3g} J is not accounted for"

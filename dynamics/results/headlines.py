@@ -12,11 +12,11 @@ from bounds.brief import Row
 from dynamics.types import FloatArray, Json, RunStatus
 
 MAX_PARTS = 3
-"""Meshes and bearings that are listed, those of the largest forces."""
+"""Most meshes and bearings that are listed, those with the largest forces."""
 
 
 class Run(Protocol):
-    """What is shown of a run, as `RunResult` has it."""
+    """Fields of a run that its headlines show, as `RunResult` has them."""
 
     @property
     def time(self) -> FloatArray: ...  # noqa: D102

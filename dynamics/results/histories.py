@@ -66,7 +66,7 @@ class _Signals(NamedTuple):
     """`q`, `v`: Modal freedoms may be missing at their end. Shape (T, n) each."""
     coordinate: FloatArray
     force: FloatArray
-    """`coordinate`, `force`: Of the elements. Shape (R, T) each."""
+    """`coordinate`, `force`: Local coordinates and local forces of the elements. Shape (R, T) each."""
     static: FloatArray
     """Static transmission error, m. Shape (m, T)."""
 

@@ -43,9 +43,9 @@ class _DynamicFactor:
     largest: FloatArray
     mean: FloatArray
     minimum: FloatArray
-    """`largest`, `mean`, `minimum`: Of the driving flank's force in the block, over the nominal force.
-    `largest` is K_v as ISO 6336-1 defines it; `mean` differs from 1 by what accelerates the train. Shape (B,)
-    each.
+    """`largest`, `mean`, `minimum`: Largest, mean and least force of the driving flank in the block, over the
+    nominal force. `largest` is K_v as ISO 6336-1 defines it; `mean` differs from 1 by the acceleration of the
+    train. Shape (B,) each.
     """
 
 
@@ -89,11 +89,13 @@ class PlanetLoadSharing:
     central: str
     """Name of the sun's or the ring's gear."""
     mesh: tuple[str, ...]
-    """Names of its N meshes."""
+    """Names of the N meshes of the central gear."""
     ratio: FloatArray
-    """N F_p / sum of all F_p: 1 where all carry the same, sums to N; NaN where none carries. Shape (N, T)."""
+    """Load share N F_p / sum of all F_p: 1 where all meshes carry the same, the sum is N; NaN where none
+    carries. Shape (N, T).
+    """
     mean: FloatArray
-    """The same of the forces' means over the run. Shape (N,)."""
+    """Load share by the forces' means over the run. Shape (N,)."""
 
     @property
     def mesh_load_factor(self) -> float:

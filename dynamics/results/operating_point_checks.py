@@ -22,7 +22,7 @@ WHAT = ("tilt", "center distance")
 
 
 class HeldOperatingPointChecks:
-    """Gathers, block by block, how far bodies moved along axes of tables that did not follow them."""
+    """Motion of bodies, gathered block by block, along axes of tables that do not follow it."""
 
     def __init__(self, system: System) -> None:
         self._system = system

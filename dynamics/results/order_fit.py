@@ -22,7 +22,7 @@ def unwrapped(position: FloatArray) -> FloatArray:
 def order_amplitudes(position: FloatArray, values: FloatArray, orders: int) -> FloatArray:
     """Return the amplitudes (..., orders) of the multiples of the mesh order in `values` (..., T).
 
-    Those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
+    The amplitudes are those of `order_phasors` over all samples of `position` (T,), unwrapped base pitches.
     """
     cycles = np.outer(position - position[0], np.arange(1, orders + 1))
     solved = _fit(cycles, values.reshape(-1, position.size), None)[1]
@@ -61,6 +61,6 @@ def _phasors(solved: FloatArray, shape: tuple[int, ...]) -> ComplexArray:
 
 
 def orders_seen(position: FloatArray, maximum: int) -> int:
-    """Return how many orders, up to `maximum`, four samples a period resolve over `position` (T,)."""
+    """Return the number of orders that four samples a period resolve over `position`, at most `maximum`."""
     fastest = float(np.max(np.abs(np.diff(position)), initial=0.0))
     return max(min(maximum, int(0.25 / fastest)) if fastest > 0.0 else 0, 0)

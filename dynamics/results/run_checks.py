@@ -28,7 +28,7 @@ everywhere."""
 
 
 class _AxisChecks:
-    """Gathers, block by block, how far misalignment and center distance left the tables' axes."""
+    """Misalignment and center distance, gathered block by block, beyond the tables' axes."""
 
     def __init__(self, system: System) -> None:
         self._system, self._samples = system, 0
@@ -78,7 +78,7 @@ class _AxisChecks:
 
 
 class _ForceChecks:
-    """Gathers, block by block, how far flanks were pressed beyond the loads of their tables."""
+    """Forces of flanks, gathered block by block, beyond the loads of their tables."""
 
     def __init__(self, system: System) -> None:
         self._scene = system.scene

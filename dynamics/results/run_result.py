@@ -36,7 +36,7 @@ PACKING: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffl
 DIRECTIONS = ("x", "y", "z")
 TIME = Stored(("time",), "s", "time")
 SCHEMA = "lineofaction dynamics run"
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 3  # version of the layout of result files
 DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
 """JSON attributes, and the default of those that older files lack."""
 
@@ -47,16 +47,16 @@ class StepStatistics:
 
     accepted: int
     rejected: int
-    """`accepted`, `rejected`: Steps."""
+    """`accepted`, `rejected`: Numbers of steps."""
     newton_failures: int
     """Rejected steps in which Newton's method failed."""
     newton_mean: float
     """Newton iterations per implicit stage; 0 for an explicit method."""
     newton_most: int
-    """In one stage."""
+    """Most Newton iterations in one stage."""
     smallest_step: float
     largest_step: float
-    """`smallest_step`, `largest_step`: Accepted, s."""
+    """`smallest_step`, `largest_step`: Sizes of accepted steps, s."""
 
 
 @brief
@@ -68,7 +68,7 @@ class RunResult:
     """
 
     time: FloatArray
-    """s. Shape (T,)."""
+    """Times of the samples, s. Shape (T,)."""
     mesh: tuple[str, ...]
     shaft: tuple[str, ...]
     bearing: tuple[str, ...]
@@ -79,9 +79,9 @@ class RunResult:
     position: FloatArray = field(
         metadata=stored("1", "position by the driving gear in base pitches, in [0, period)", *MESH)
     )
-    """The period is that of the table. Shape (m, T)."""
+    """Positions by the driving gear; the period is that of the table. Shape (m, T)."""
     mesh_frequency: FloatArray = field(metadata=stored("Hz", "mesh frequency of the mean motion", *MESH))
-    """Of the kinematic motion and the own rotation of trains without a drive. Shape (m, T)."""
+    """Mesh frequency of the kinematic motion and the own rotation of trains without a drive. Shape (m, T)."""
     dynamic_transmission_error: FloatArray = field(metadata=stored("m", "dynamic transmission error", *MESH))
     """r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the driven
     gear lags. Shape (m, T).
@@ -93,49 +93,51 @@ class RunResult:
     center distance of the static equilibrium at t = 0. Shape (m, T).
     """
     mesh_force: FloatArray = field(metadata=stored("N", "transverse mesh force", *MESH))
-    """Of the driving flank, damping included; filtered against aliasing, which may ring slightly below 0 at
-    lift-off. Shape (m, T).
+    """Force of the driving flank, damping included. It is filtered against aliasing, and the filter may ring
+    slightly below 0 at lift-off. Shape (m, T).
     """
     coast_force: FloatArray = field(metadata=stored("N", "transverse force of the coast flank", *MESH))
-    """m = 0 here if backlash is off in all meshes. Shape (m, T)."""
+    """Force of the coast flank; m = 0 here if backlash is off in all meshes. Shape (m, T)."""
     least_mesh_force: FloatArray = field(
         metadata=stored("N", "least mesh force between samples, unfiltered", *MESH)
     )
     largest_mesh_force: FloatArray = field(
         metadata=stored("N", "largest mesh force between samples, unfiltered", *MESH)
     )
-    """`least_mesh_force`, `largest_mesh_force`: Of the driving flank around each sample, >= 0. Shape (m, T)
-    each.
+    """`least_mesh_force`, `largest_mesh_force`: Least and largest force of the driving flank around each
+    sample, >= 0. Shape (m, T) each.
     """
     contact: FloatArray = field(
         metadata=stored("1", "flanks in contact: 0 none, 1 driving, 2 coast, 3 both", *MESH)
     )
     misalignment: FloatArray = field(metadata=stored("m", "misalignment at which the table was read", *MESH))
     center_distance_change: FloatArray = field(metadata=stored("m", "center-distance change likewise", *MESH))
-    """`misalignment`, `center_distance_change`: As bodies tilt and move; m = 0 here if the effect is off in
-    all meshes. Shape (m, T) each.
+    """`misalignment`, `center_distance_change`: Values by the tilt and displacement of the bodies; m = 0 here
+    if the effect is off in all meshes. Shape (m, T) each.
     """
     load_arm: FloatArray = field(
         metadata=stored("m", "arm of the mesh force about mid-face towards +z", *MESH)
     )
-    """Of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving
+    """Arm of the mesh force about the middle of the common face, 0 out of contact; m = 0 here if the moving
     application point is off in all meshes. Shape (m, T).
     """
     speed: FloatArray = field(metadata=stored("rad s-1", "speed about +z", "shaft", "time"))
-    """Of a flexible shaft the mean over its inertia, or where a rigid drive imposes it. Shape (s, T)."""
+    """Speed of each shaft. The speed of a flexible shaft is the mean over its inertia, or the speed at the
+    section where a rigid drive imposes it. Shape (s, T).
+    """
     drive_torque: FloatArray = field(metadata=stored("N m", "drive torque about +z", "drive", "time"))
-    """On each drive's shaft. Shape (d, T)."""
+    """Torque of each drive on its shaft. Shape (d, T)."""
     coupling_torque: FloatArray = field(
         metadata=stored("N m", "torque from the first to the second shaft", "coupling", "time")
     )
-    """About +z. Shape (c, T)."""
+    """Torque about +z. Shape (c, T)."""
     bearing_force: FloatArray = field(metadata=stored("N", "force of the shaft on the ground", *BEARING))
-    """In the fixed frame x, y, z; of a planet on its pin in the carrier's rotating frame; b = 0 if not
-    requested. Shape (b, 3, T).
+    """Force in the fixed frame x, y, z; that of a planet on its pin in the carrier's rotating frame; b = 0 if
+    not requested. Shape (b, 3, T).
     """
     bearing_moment: FloatArray = field(metadata=stored("N m", "moment of the shaft on the ground", *BEARING))
-    """About each bearing's center in the same frames; the one about the axis is 0, since the shaft turns. b =
-    0 if not requested or if no bearing has tilt stiffness. Shape (b, 3, T).
+    """Moment about each bearing's center in the same frames; the moment about the axis is 0, since the shaft
+    turns. b = 0 if not requested or if no bearing has tilt stiffness. Shape (b, 3, T).
     """
     displacement: FloatArray = field(
         metadata=stored("m or rad", "deviation from the kinematic motion", *FREEDOM)
@@ -146,7 +148,7 @@ class RunResult:
     status: RunStatus
     statistics: StepStatistics
     energy: EnergyAudit | None
-    """None if not requested."""
+    """Energy audit; None if not requested."""
     effect_ledger: Json = field(default_factory=dict)
     receipt: Json = field(default_factory=dict)
     case: Json = field(default_factory=dict)
@@ -171,24 +173,24 @@ class RunResult:
         default_factory=lambda: np.empty((0, 3, 0)),
         metadata=stored("m s-2", "acceleration of the shaft there", *BEARING),
     )
-    """Of a planet against its pin, in the frame of `bearing_force`; the rotation of a carrier's frame adds no
-    terms. b = 0 if not requested. Shape (b, 3, T).
+    """Acceleration of the shaft at the bearing, that of a planet relative to its pin, in the frame of
+    `bearing_force`; the rotation of a carrier's frame adds no terms. b = 0 if not requested. Shape (b, 3, T).
     """
     elastic_force: FloatArray = field(
         default_factory=lambda: np.empty((0, 0)),
         metadata=stored("N", "elastic part of the mesh force, unfiltered", *MESH),
     )
-    """Of the driving flank: what its table gives at the position and deflection of each sample, the static
-    part of the mesh force. m = 0 if not requested. Shape (m, T).
+    """Force of the driving flank by its table at the position and deflection of each sample: the static part
+    of the mesh force. m = 0 if not requested. Shape (m, T).
     """
 
     def headlines(self) -> tuple[str, list[Row]]:
-        """Return what a Python prompt shows: title, and rows of parts, forces and cost."""
+        """Return the lines for a Python prompt: title, and rows of parts, forces and cost."""
         return headlines(self)
 
     @property
     def sample_rate(self) -> float:
-        """Hz of the output grid."""
+        """Sample rate of the output grid, Hz."""
         return float(self.case["outputs"]["sample_rate"])
 
     def window(self, start: float, end: float) -> slice:
@@ -332,7 +334,7 @@ class RunFile:
                     variable.dims[axis].attach_scale(self._file[dimension])
 
     def _variable(self, name: str, series: Stored, values: FloatArray) -> Any:
-        """Make one variable; what has no time is written at once."""
+        """Make one variable; one without time is written at once."""
         if series.dimensions[-1] == "time":
             before, options = values.shape[:-1], {"shape": (*values.shape[:-1], 0), "dtype": float}
             options |= {"maxshape": (*before, None), "chunks": (*before, CHUNK)}

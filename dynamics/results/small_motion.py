@@ -17,7 +17,9 @@ from dynamics.results.checks import Check, SeriesBlock
 from dynamics.types import FloatArray
 
 LARGEST_TILT = 0.01
-"""rad: beyond it a gear's displacement along the line of action is no linear function of its tilt."""
+"""Largest tilt, rad: beyond it a gear's displacement along the line of action is no linear function of its
+tilt.
+"""
 MAX = 4
 """Parts beyond their bound that are named: where one is, most of them are."""
 WORKING_DEPTH = 2.0
@@ -26,20 +28,20 @@ WORKING_DEPTH = 2.0
 
 @dataclass(frozen=True)
 class _Limit:
-    """What a part may move at most."""
+    """Limit of the motion of a part."""
 
     quantity: str
     part: str
     bound: float
-    """SI; times `size` in the `unit`."""
+    """Largest motion in SI; times `size` it is in the `unit`."""
     unit: str = "mm"
     size: float = 1e3
     rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
-    """A displacement per freedom, whose length counts; empty of a transmission error, which is at hand. Shape
-    (k, n).
+    """Displacement per freedom, whose length counts; empty for a transmission error, which the run states.
+    Shape (k, n).
     """
     line: FloatArray | None = None
-    """A line whose end the displacement moves: the change of its length counts. Shape (k,)."""
+    """Line whose end the displacement moves: the change of its length counts. Shape (k,)."""
 
     def farthest(self, q: FloatArray) -> float:
         """Return the largest motion of the states q (T, n)."""
@@ -51,7 +53,7 @@ class _Limit:
 
 
 class SmallMotionCheck:
-    """Gathers, block by block, how far meshes, axes, gears and rolling bearings moved."""
+    """Motion of meshes, axes, gears and rolling bearings, gathered block by block."""
 
     def __init__(self, system: System) -> None:
         self._errors = tuple(_errors(system))
@@ -68,7 +70,7 @@ class SmallMotionCheck:
         self._largest = np.fmax(self._largest, np.concatenate(amplitudes))
 
     def checks(self) -> list[Check]:
-        """Return those of the parts farthest beyond their bound, or of the one that comes nearest to it."""
+        """Return the checks of the parts farthest beyond their bound, or of the part nearest to it."""
         limits = (*self._errors, *self._others)
         if not limits:
             return []
@@ -109,7 +111,7 @@ def _approaches(system: System) -> Iterator[_Limit]:
 
 
 def _parting_row(system: System, mesh: GearMesh, z: float, axis: int) -> FloatArray:
-    """Return what the driven gear's axis moves along x or y, less the driver's, at z per freedom, (n,)."""
+    """Return the motion of the driven gear's axis along x or y, less the driver's, at z per freedom, (n,)."""
     along = np.eye(3)[axis]
 
     def displacement(center: FloatArray) -> FloatArray:

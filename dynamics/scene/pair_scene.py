@@ -30,7 +30,7 @@ def pair_scene(
     Parameters
     ----------
     table : MeshTable
-        For instance `SteDatabase.force_table()`.
+        Table of the mesh, for instance `SteDatabase.force_table()`.
     gears : (GearBody, GearBody)
         Driver and driven, on shafts of their own.
     center_distance : float
@@ -38,11 +38,11 @@ def pair_scene(
     speed : TimeLaw
         Imposed on the driver's shaft, rad/s about +z.
     resisting_torque : TimeLaw
-        On the driven shaft, N m.
+        Resisting torque on the driven shaft, N m.
     duration : float
         s.
     shaft_inertia : Inertia, optional
-        Of each shaft without its gear; default: none.
+        Inertia of each shaft without its gear; default: none.
     bushing_stiffness : float
         Radial and axial, of the bushings "<shaft>.left" and "<shaft>.right" at the shafts' ends, N/m.
     """

@@ -14,7 +14,7 @@ from dynamics.errors import InputError
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.shafts import GearBody, Inertia, Shaft
 
-TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit both central gears
+TOOTH_FIT = 1e-6  # in teeth: largest misfit of a planet's teeth in both central gears by its angle
 
 
 Stiffness = BearingStiffness | float | None
@@ -41,50 +41,52 @@ class PlanetarySet:
     """
 
     teeth: tuple[int, int, int]
-    """Of sun, planet, ring."""
+    """Numbers of teeth of sun, planet, ring."""
     base_radius: tuple[float, float, float]
-    """Of sun, planet, ring, m."""
+    """Base radii of sun, planet, ring, m."""
     center_distance: float
-    """Carrier axis to pin, m."""
+    """Distance from the carrier's axis to a pin, m."""
     face_width: float
-    """m."""
+    """Face width of all gears, m."""
     sun_table: MeshTable
     ring_table: MeshTable
-    """`sun_table`, `ring_table`: Of the sun-planet and the ring-planet mesh."""
+    """`sun_table`, `ring_table`: Tables of the sun-planet and the ring-planet mesh."""
     planets: int
-    """N."""
+    """Number N of planets."""
     sun_inertia: Inertia
     planet_inertia: Inertia
     ring_inertia: Inertia
     carrier_inertia: Inertia
-    """`sun_inertia`, `planet_inertia`, `ring_inertia`, `carrier_inertia`: The carrier's without planets."""
+    """`sun_inertia`, `planet_inertia`, `ring_inertia`, `carrier_inertia`: Inertias of the members; the
+    carrier's is without planets.
+    """
     angles: tuple[float, ...] | None = None
-    """Of the pins about +z, rad; None: equally spaced from 0."""
+    """Angles of the pins about +z, rad; None: equally spaced from 0."""
     base_helix_angle: float = 0.0
-    """Of the sun, rad; > 0: right hand."""
+    """Base helix angle of the sun, rad; > 0: right hand."""
     sun_stiffness: Stiffness = None
     ring_stiffness: Stiffness = None
     carrier_stiffness: Stiffness = None
-    """`sun_stiffness`, `ring_stiffness`, `carrier_stiffness`: Of the central members' bearings, isotropic
-    across the axis; a number: radial alone, N/m. None: fixed rigidly. Small: floating. A bearing without
-    axial or tilt stiffness is rigid in that direction.
+    """`sun_stiffness`, `ring_stiffness`, `carrier_stiffness`: Stiffnesses of the central members' bearings,
+    isotropic across the axis; a number: radial alone, N/m. None: fixed rigidly. Small: floating. A bearing
+    without axial or tilt stiffness is rigid in that direction.
     """
     planet_stiffness: Stiffness = None
-    """Of the planet bearings, likewise."""
+    """Stiffness of the planet bearings, stated as for the central members."""
     damping_ratio: float = 0.05
-    """Of all bearings and meshes without a damping of their own."""
+    """Damping ratio of all bearings and meshes for which no damping is stated."""
     pin_errors: tuple[tuple[float, float], ...] | None = None
-    """Of each pin, m."""
+    """Displacement of each pin from its nominal position, m."""
     driver: str = "sun"
     """``"sun"``: the sun drives the planets and these the ring (or react on it); ``"ring"``: the reverse."""
     ring_phase: float | None = None
-    """Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`). None: that
-    of planets whose teeth are as thick as their spaces.
+    """Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`). None: the
+    phase of planets whose teeth are as thick as their spaces.
     """
     technique: str = "variable_torque"
-    """Of all meshes."""
+    """Technique of all meshes."""
     name: str = ""
-    """Of the set, before the names of its parts."""
+    """Name of the set, in front of the names of its parts."""
     place: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Left end of the carrier's axis in the fixed frame, m."""
 

@@ -34,17 +34,17 @@ from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative
 SEAT_AGREEMENT = 1e-3  # m; a bearing acts at its middle, which need not be that of its bore
-IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
-AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
+IRRATIONAL = 1.0  # rad; a matrix that this turn leaves unchanged is isotropic
+AXIS_AGREEMENT = 1e-9  # distance over a shaft's length, below which shafts share an axis
 ON_VIOLATION = ("repeat", "fail", "report")
-TOLERANCES = (1e-6, 0.5)
+TOLERANCES = (1e-6, 0.5)  # least and largest relative tolerance of a scene
 LEVEL_TOLERANCES = (1e-9, 3.0)  # dB
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 MIN_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 def _check_housings(scene: Scene) -> None:
-    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions.
+    """Check that each bushing sits in one housing at most, and that parts in rotating frames are isotropic.
 
     A housing under a bearing that is not linear is held in all directions.
     """
@@ -108,7 +108,7 @@ def _alike_across(matrix: FloatArray) -> bool:
 
 
 def _check_frames(scene: Scene) -> None:
-    """Frames are those of carriers, pins turn with the planet's own carrier, planets rest on pins alone."""
+    """Check that frames belong to carriers, pins to the planet's carrier, planets to pins alone."""
     shafts = [shaft.name for shaft in scene.shafts]
     for index, shaft in enumerate(scene.shafts):
         if shaft.frame is None:
@@ -144,7 +144,7 @@ def _check_gravity(scene: Scene) -> None:
 
 
 def _check_couplings(scene: Scene) -> None:
-    """Couplings with matrices join coaxial shafts, those across frames alike in all directions."""
+    """Check that couplings with matrices join coaxial shafts; across frames they have to be isotropic."""
     for index, coupling in enumerate(scene.couplings):
         first, second = scene.shaft(coupling.first), scene.shaft(coupling.second)
         if coupling.stiffness is None and coupling.damping is None:
@@ -217,7 +217,7 @@ def _check_tooth_angles(scene: Scene) -> None:
 
 
 def _check_names(scene: Scene) -> None:
-    """Parts have names of their own, and name shafts and gears that are there."""
+    """Check that parts have unique names, and name shafts and gears of the scene."""
     for kind, parts in scene.parts.items():
         if kind in NAMED:
             distinct(kind, [part.name for part in parts])
@@ -299,7 +299,7 @@ class Scene(BearingLawParts):
     meshes: tuple[GearMesh, ...]
     drives: tuple[ImposedRotation, ...]
     duration: float
-    """s."""
+    """Duration of the run, s."""
     bushings: tuple[Bushing, ...] = ()
     loads: tuple[LoadTorque, ...] = ()
     planet_bearings: tuple[PlanetBearing, ...] = ()
@@ -316,33 +316,37 @@ class Scene(BearingLawParts):
     for each independent speed of the gearing.
     """
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Its acceleration in the fixed frame, m/s^2. Across the axis only without rotating frames."""
+    """Acceleration of gravity in the fixed frame, m/s^2. A component across the axis needs a scene without
+    rotating frames.
+    """
     effects: Mapping[str, str] = field(default_factory=dict)
     """Effect name to ``"auto"``, ``"on"`` or ``"off"``; effects that are not named are ``"auto"``."""
     outputs: Outputs = field(default_factory=Outputs)
     integration: Integration = field(default_factory=Integration)
     on_violation: str = "repeat"
-    """If a run or a study violates an assumption: ``"repeat"`` runs again with the automatic effect that it
-    needs, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at any violation,
-    ``"report"`` reports it in the ledger's checks.
+    """Reaction to a violated assumption of a run or a study. ``"repeat"`` runs again with the automatic
+    effect that is needed, and raises if the result is invalid and no effect corrects it; ``"fail"`` raises at
+    any violation, ``"report"`` reports it in the ledger's checks.
     """
     tolerance: float | None = None
     """Relative change of mean and peak-to-peak transmission error and of bearing forces that neglected
     automatic effects may cause in a run; None: effects are as the scene calls for them.
     """
     highest_frequency: float | None = None
-    """Hz to which flexible shafts are resolved; None: half the rate that all wanted orders need, up to 2.56
-    times the band of the output.
+    """Frequency to which flexible shafts are resolved, Hz; None: half the rate that all wanted orders need,
+    up to 2.56 times the band of the output.
     """
     temperatures: Temperatures | None = None
-    """Of the housing; shafts, gears and rings of rolling bearings then have their own. None: as drawn."""
+    """Temperatures of the housing and, as far as stated, of shafts, gears and rings of rolling bearings.
+    None: all parts as drawn.
+    """
     quantity: LevelQuantity | None = None
-    """What the scene is computed for: by the change of its level effects are sized, and with a tolerance
-    decided. None: bearing forces, decided beside transmission errors.
+    """Quantity for which the scene is computed. The change of its level sizes effects, and with a tolerance
+    decides on them. None: bearing forces; transmission errors then decide too.
     """
     level_tolerance: float | None = None
-    """Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None:
-    of what the scene is computed for, by default of bearing forces and transmission errors.
+    """Change of levels, dB, that neglected automatic effects may cause in a run, where `tolerance` is None.
+    It is the level of `quantity`, by default of bearing forces and transmission errors.
     """
 
     def __post_init__(self) -> None:
@@ -369,16 +373,16 @@ class Scene(BearingLawParts):
 
     @property
     def ground_bearings(self) -> tuple[Bushing, ...]:
-        """All bearings between shafts and the ground: bushings, and those that rolling bearings act at."""
+        """All bearings between shafts and the ground: bushings, and the places of rolling bearings."""
         return (*self.bushings, *(bearing.support for bearing in self.rolling_bearings))
 
     @property
     def bearing_laws(self) -> tuple[BearingLaw, ...]:
-        """All that bearings do which is not linear, rolling elements averaged."""
+        """Nonlinear laws of all bearings, rolling elements averaged."""
         return self.laws_with(frozenset())
 
     def laws_with(self, passing: frozenset[str]) -> tuple[BearingLaw, ...]:
-        """Return all that bearings do which is not linear; the elements of those `passing` one by one."""
+        """Return the nonlinear laws of all bearings; the elements of those in `passing` pass one by one."""
         rows = (row_law(bearing, bearing.name in passing) for bearing in self.rolling_bearings)
         return (*self.scene_bearing_laws, *rows)
 

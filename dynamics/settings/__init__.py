@@ -1,4 +1,4 @@
-"""Settings of a run: what it stores, and how it integrates."""
+"""Settings of a run: its outputs, and its integration."""
 
 from dynamics.settings.run import Integration, Outputs
 

@@ -1,4 +1,4 @@
-"""What a scene is computed for: a quantity of the forces on its bearings whose level effects change."""
+"""The quantity for which a scene is computed: one of its bearing forces, by whose level effects change."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ class ForceLines(Protocol):
 
     @property
     def bearing(self) -> tuple[str, ...]:
-        """Names."""
+        """Names of the bearings."""
 
     @property
     def frequency(self) -> FloatArray:
-        """Hz, (S, H)."""
+        """Frequencies, (S, H), Hz."""
 
     @property
     def bearing_force(self) -> ComplexArray:
@@ -28,11 +28,11 @@ class LevelQuantity(Protocol):
 
     @property
     def name(self) -> str:
-        """In words."""
+        """Name of the quantity in words."""
 
     @property
     def unit(self) -> str:
-        """Of its level: "dB", "dB(A)"."""
+        """Unit of the level: "dB", "dB(A)"."""
 
     def squares(self, forces: ForceLines) -> FloatArray:
         """Return powers or mean squares, weighted, (S, H); raises `InputError` where they are not known."""

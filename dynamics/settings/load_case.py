@@ -42,10 +42,11 @@ _DIRECTION = Declared(
 @described
 @dataclass(frozen=True)
 class CaseForce:
-    """What the force `name` of a scene is under a load case.
+    """Size of the force `name` of a scene under a load case.
 
-    Its own `force` (N) and `moment` (N m), about and along the axes of the scene's; one that is left out is
-    as in the scene. Or a factor on both. Where it acts, its course and what it turns with are the scene's.
+    Either `force` (N) and `moment` (N m) replace those of the scene, along and about the same axes; one that
+    is left out is as in the scene. Or `factor` multiplies both. The scene decides the point of action, the
+    course and the shaft with which the force turns.
     """
 
     name: str

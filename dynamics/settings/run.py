@@ -1,4 +1,4 @@
-"""Settings of a run: how it integrates, and what it stores."""
+"""Settings of a run: its integration, and its outputs."""
 
 from __future__ import annotations
 

@@ -39,7 +39,9 @@ class ElementMatrices(NamedTuple):
 
     bending_mass: FloatArray
     bending: FloatArray
-    """`bending_mass`, `bending`: In one plane: deflection (m) and its slope (rad). Shape (k, 4, 4) each."""
+    """`bending_mass`, `bending`: Mass and stiffness in one plane: deflection (m) and its slope (rad). Shape
+    (k, 4, 4) each.
+    """
     axial_mass: FloatArray
     axial: FloatArray
     torsional_mass: FloatArray
@@ -50,7 +52,7 @@ class ElementMatrices(NamedTuple):
 
 
 class _Along(NamedTuple):
-    """Of k pieces at n points along them: stiffnesses and masses per length, (k, n)."""
+    """Stiffnesses and masses per length of k pieces at n points along them, (k, n)."""
 
     bent: FloatArray
     sheared: FloatArray
@@ -132,7 +134,7 @@ def _deflection(length: FloatArray, inside: _Along) -> FloatArray:
 def _rod(
     length: FloatArray, at: FloatArray, inside: FloatArray, mass: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Mass and stiffness (k, 2, 2) of what is pulled or twisted; `at`, `inside` stiffnesses of a length."""
+    """Return mass and stiffness (k, 2, 2) of rods under tension or torsion; `at`, `inside` of unit length."""
     step = length[:, None] * _WEIGHT
     total = np.sum(step / at, axis=1)
     extension = np.sum(length[:, None, None] * _SHARE[:, None] * _WEIGHT / inside, axis=-1) / total[:, None]

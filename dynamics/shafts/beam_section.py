@@ -73,19 +73,19 @@ class BeamSection:
 
     @property
     def outer_diameters(self) -> tuple[float, float]:
-        """At the left and the right end, m."""
+        """Outer diameters at the left and the right end, m."""
         end = self.end_outer_diameter
         return self.outer_diameter, self.outer_diameter if end is None else end
 
     @property
     def bore_diameters(self) -> tuple[float, float]:
-        """At the left and the right end, m; 0 where it is solid."""
+        """Bore diameters at the left and the right end, m; 0 where the piece is solid."""
         end = self.end_bore_diameter
         return self.bore_diameter, self.bore_diameter if end is None else end
 
     @property
     def shear_modulus(self) -> float:
-        """Pa."""
+        """Shear modulus, Pa."""
         return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
 
     def cross_section(self, share: float | FloatArray = 0.0) -> _CrossSection:
@@ -116,12 +116,12 @@ class BeamSection:
 
     @property
     def area(self) -> float:
-        """At the left end, m^2."""
+        """Area of the cross section at the left end, m^2."""
         return float(self.cross_section().area)
 
     @property
     def second_moment(self) -> float:
-        """Of the area about an axis across, at the left end, m^4."""
+        """Second moment of area about an axis across, at the left end, m^4."""
         return float(self.cross_section().second_moment)
 
     @property
@@ -131,7 +131,7 @@ class BeamSection:
 
     @property
     def body(self) -> tuple[Inertia, float]:
-        """Inertia about its center of mass, and how far that is from the left end, m."""
+        """Inertia of the piece about its center of mass, and distance of the center from the left end, m."""
         if self.end_outer_diameter is None and self.end_bore_diameter is None:
             cylinder = hollow_cylinder(self.outer_diameter, self.length, self.bore_diameter, self.density)
             return cylinder, 0.5 * self.length

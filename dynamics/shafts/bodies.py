@@ -10,12 +10,12 @@ from dynamics.checks import not_negative, positive
 from dynamics.errors import InputError
 
 STEEL_YOUNGS_MODULUS = 210e9
-"""Pa."""
-STEEL_POISSON_RATIO = 0.3
+"""Young's modulus of steel, Pa."""
+STEEL_POISSON_RATIO = 0.3  # Poisson's ratio of steel
 STEEL_DENSITY = 7850.0
-"""kg/m^3."""
+"""Density of steel, kg/m^3."""
 STEEL_EXPANSION = 11.5e-6
-"""1/K, from 20 to 100 degrees Celsius."""
+"""Thermal expansion of steel from 20 to 100 degrees Celsius, 1/K."""
 
 TEMPERATURE = Declared(
     Kind.TEMPERATURE,

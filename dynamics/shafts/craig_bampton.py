@@ -13,11 +13,11 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
 
 CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
+"""Multiples of the frequency of interest, up to which modes with the interface held may count."""
 
 
 TRUNCATION = 0.01
-"""Relative error of the frequencies of interest at which enough of them are kept."""
+"""Relative error of the frequencies of interest, below which the modes that count are enough."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def craig_bampton(
     interface : (a,) int array
         Freedoms where forces act; without repeats, enough to hold the body.
     highest : float
-        Hz; modes up to it are kept.
+        Highest frequency of the modes that are kept, Hz.
     """
     from scipy.linalg import eigh  # noqa: PLC0415 (start-up time)
 
@@ -93,7 +93,7 @@ class ElasticModes:
     freedom. Shape (b, k).
     """
     fixed: int
-    """Number of modes with the interface held among what they are made of."""
+    """Number of modes with the interface held from which the coordinates are made."""
     limit: float
     """The frequency up to which these were kept, Hz."""
     truncation: float
@@ -103,13 +103,13 @@ class ElasticModes:
 
     @property
     def frequency(self) -> FloatArray:
-        """Of the free body, or of that with its held freedom at rest, Hz."""
+        """Natural frequencies of the free body, or of the body with its held freedom at rest, Hz."""
         return _hertz(self.stiffness / self.mass)
 
 
 @dataclass(frozen=True)
 class Family:
-    """Matrices (n, n) of a family, its k motions without strain (n, k), and what is held (-1: nothing)."""
+    """Matrices (n, n) of a family, its k motions without strain (n, k), and the held freedom (-1: none)."""
 
     mass: FloatArray
     stiffness: FloatArray

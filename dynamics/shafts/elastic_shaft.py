@@ -30,10 +30,10 @@ class Disc:
 
 @dataclass(frozen=True)
 class PointOfApplication:
-    """A point of application of forces on a shaft, and the motions of its section there."""
+    """A point of application of forces on a shaft, and the motions of the section at it."""
 
     position: float
-    """m from the left end."""
+    """Distance from the left end, m."""
     across: bool = False
     tilt: bool = False
     along: bool = False
@@ -116,7 +116,7 @@ class ElasticShaft:
     highest: float
     """Frequency of interest, Hz."""
     damping_ratio: float
-    """Of every elastic coordinate."""
+    """Damping ratio of every elastic coordinate."""
     mesh_error: float
     """Estimated relative error of the frequencies of interest by the lengths of the elements."""
 
@@ -199,11 +199,11 @@ def elastic_shaft(
     Parameters
     ----------
     sections : tuple of BeamSection
-        From the left end.
+        Sections from the left end.
     highest : float
-        Hz; modes of the free shaft up to it, and the first of each family anyway, are of interest.
+        Highest frequency of interest, Hz: for modes of the free shaft; the first of each family always is.
     imposed : float or None
-        Where along the shaft its rotation is imposed, m: one of the points of application.
+        Position at which the rotation is imposed, m: one of the points of application.
     """
     beam, error = _fine_beam(sections, discs, points, highest, imposed)
     across, along, turn = _families(beam, discs, imposed)

@@ -15,7 +15,9 @@ from dynamics.shafts.beam_section import BeamSection
 from dynamics.shafts.bodies import EXPANSION, STEEL_EXPANSION, TEMPERATURE, Inertia
 
 SAME_POSITION = 1e-9
-"""Of the shaft's length: positions nearer than this coincide. n added lengths round by n eps of their sum."""
+"""Distance of two positions over the shaft's length, below which they coincide. n added lengths round by n
+eps of their sum.
+"""
 
 PLACED = ("gears", "discs", "bushings", "rolling_bearings", "planet_bearings", "forces", "unbalances")
 """Kinds of parts of a scene that lie within the length of their shaft."""

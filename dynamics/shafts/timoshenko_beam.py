@@ -56,7 +56,7 @@ def timoshenko_beam(
     stations : sequence of float
         Positions where forces act, m from the left end; each becomes a node.
     longest : float
-        No element is longer, m.
+        Largest length of an element, m.
     """
     if not sections:
         raise InputError("sections", 0, "at least one section")

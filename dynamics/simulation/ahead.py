@@ -1,4 +1,4 @@
-"""What runs are compiled from, compiled while a run still waits for its tables."""
+"""Compiled code of runs, made while a run still waits for its tables."""
 
 from __future__ import annotations
 

@@ -52,29 +52,29 @@ from dynamics.types import FloatArray, Json
 from model_studies.stage_clock import StageClock
 
 NOT_CHECKED = "no; toggling it measures it (ablation)"
-MIN_SHARE = 0.05  # of a part in the kinetic energy of a mode
+MIN_SHARE = 0.05  # least share of a part in the kinetic energy of a mode that is listed
 ROWS = (Law.BALLS, Law.ROLLERS)
-ERROR_CHECK_FACTOR = 0.1
-IMPLICIT_STAGES_PER_STEP = 5
+ERROR_CHECK_FACTOR = 0.1  # tolerance or step of the finer run over that of the run
+IMPLICIT_STAGES_PER_STEP = 5  # implicit stages of a step: all but the first
 
 
 @dataclass(frozen=True)
-class RunFacts:
-    """What is known of a run beside its series."""
+class RunContext:
+    """Facts of a run beside its series."""
 
     system: System
     scene: Scene
-    """Its effects as decided."""
+    """Scene with its effects as decided."""
     audit: EnergyAudit | None
-    """None if not requested."""
+    """Energy audit; None if not requested."""
     checks: Sequence[Check]
-    """Of the run on its own model."""
+    """Checks of the run on its own model."""
     automatic: Mapping[str, str]
-    """Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
-    or because a run without them showed that they are needed.
+    """Effects that were left to "auto" and are not as the scene calls for them, each with the reason: the
+    tolerance, or a run without them that showed the need.
     """
     influences: Mapping[str, Influence]
-    """What leaving effects out in all their parts is estimated to change."""
+    """Estimated change by each effect, if it were left out in all its parts."""
 
     @classmethod
     def of(
@@ -85,7 +85,7 @@ class RunFacts:
         clock: StageClock,
         decision: Decision,
         before: EarlierRun,
-    ) -> RunFacts:
+    ) -> RunContext:
         """Gather them; `before` is the run that this one repeats."""
         with clock.stage("influence_estimates"):
             influences = _known_influences(decision, system)
@@ -97,13 +97,13 @@ class RunFacts:
         automatic = {**decision.automatic, **before.reasons}
         return cls(system, decision.scene, audit, checks_of_run, automatic, influences)
 
-    def with_errors(self, error: Json) -> RunFacts:
+    def with_errors(self, error: Json) -> RunContext:
         """Return them with the check of the errors of the steps, where they are measured."""
         check = tolerance_check(error, self.system.scene.integration)
         return self if check is None else replace(self, checks=[*self.checks, check])
 
 
-def effect_ledger(run: RunFacts) -> Json:
+def effect_ledger(run: RunContext) -> Json:
     """Return the `sized_ledger` with the checks of the run."""
     ledger = with_assumed_phases(run.system.ledger.to_json(), run.system)
     sized = sized_ledger(ledger, run.automatic, run.influences)
@@ -122,7 +122,7 @@ def _checked(entry: Json, checks: Sequence[Check]) -> Json:
 
 
 def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
-    """One shaft: how its beam was divided, what was kept of it, and the errors of either."""
+    """Return the document of one shaft: elements of its beam, coordinates, and the errors of both."""
     families = {"bending": elastic.bending, "extension": elastic.extension, "torsion": elastic.torsion}
     return {
         "shaft": name,
@@ -139,7 +139,7 @@ def _flexible_shaft(name: str, elastic: ElasticShaft) -> Json:
 
 
 def _resolved_case(system: System) -> Json:
-    """Return what was computed: parts, dampings in use, lines of action, freedoms; of tables the size."""
+    """Return the resolved case: parts, dampings in use, lines of action, freedoms; of tables the size."""
     scene, flanks = system.scene, system.flanks
 
     def parts(*names: str) -> dict[str, Any]:
@@ -256,7 +256,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
 
 
 def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
-    """Return what each mode moves, "shaft, how", with its share of the energy (m, n), the largest first."""
+    """Return the motions of each mode, "shaft, how", with shares in the energy (m, n), the largest first."""
     names, moves = [f"{shaft}, {how}" for shaft, how in freedom_parts(freedom)], []
     for shares in kinetic_energy.tolist():
         summed = dict.fromkeys(names, 0.0)
@@ -309,7 +309,7 @@ def _carried(
 
 
 def documents(
-    run: RunFacts,
+    run: RunContext,
     end: Ending,
     clock: StageClock,
     error: Json,
@@ -342,11 +342,11 @@ def documents(
     }
 
 
-Description = Callable[[RunFacts, dict[str, Any]], dict[str, Any]]
+Description = Callable[[RunContext, dict[str, Any]], dict[str, Any]]
 
 
-def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
-    """Return `documents` with what the scene alone says, and the ledger: all fields that are no series.
+def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
+    """Return `documents` with those that the scene alone decides, and the ledger: all fields but the series.
 
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
     """
@@ -362,12 +362,12 @@ def described(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _orders_above(run: RunFacts) -> Json:
+def _orders_above(run: RunContext) -> Json:
     """Return the orders above the band of the output where the receipt is to have all."""
     return linear_orders(run.system) if run.scene.outputs.receipt == "full" else {}
 
 
-def undescribed(run: RunFacts, about: dict[str, Any]) -> dict[str, Any]:
+def undescribed(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     """Return `documents`, and the ledger where an assumption is violated: a study takes responses alone."""
     holds = all(check.holds for check in run.checks)
     return about if holds else about | {"effect_ledger": effect_ledger(run)}

@@ -1,4 +1,4 @@
-"""The error of a run by source: what its receipt says of transmission errors and bearing forces."""
+"""The error of a run by source: the errors of transmission errors and bearing forces in its receipt."""
 
 from __future__ import annotations
 
@@ -26,13 +26,16 @@ from dynamics.simulation.documents import (
 from dynamics.types import FloatArray, IntArray, Json, StaticStatus
 from host import cpu_seconds
 
-WINDOWS = 3
+WINDOWS = 3  # windows of a run, if it is long enough
 SHARE = 0.045
-"""Of the samples of a run, in all windows at most: integrating them anew takes some 12 % of the run."""
+"""Most samples in all windows, over the samples of a run: integrating them anew takes some 12 % of the run.
+"""
 MIN_SAMPLES, MAX_SAMPLES = 24, 512
-"""Of a window. An error of the steps is stationary once the vibration it makes has decayed: measured on the
-paper's pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows state no better errors."""
-ORDERS = 5
+"""Least and most samples of a window. An error of the steps is stationary once the vibration that it makes
+has decayed. On a gear pair (damping ratio 0.01 and 0.15) and a planetary stage, longer windows stated no
+better errors.
+"""
+ORDERS = 5  # mesh orders whose errors are stated
 CAP = 0.63
 """Longest steps of a finer run over those of the run where no tolerance sets them: 0.1^(1/5)."""
 
@@ -49,17 +52,17 @@ class _Window:
 
     first: int
     stop: int
-    """`first`, `stop`: Samples."""
+    """`first`, `stop`: First sample of the window, and the sample after its last."""
     time: FloatArray
-    """s from its start. Shape (T,)."""
+    """Times from the start of the window, s. Shape (T,)."""
     system: System
-    """Whose clock starts there."""
+    """System whose clock starts with the window."""
     states: States
-    """Of the run."""
+    """States of the run in the window."""
     start: FloatArray
     """Displacements and rates of all freedoms at the first sample. Shape (2, n)."""
     position: FloatArray
-    """Unwrapped base pitches. Shape (m, T)."""
+    """Positions of the meshes, unwrapped base pitches. Shape (m, T)."""
     error: FloatArray
     """Transmission errors, m. Shape (m, T)."""
     force: FloatArray
@@ -105,7 +108,7 @@ class _Difference:
     """The difference of another run of a window."""
 
     rms: float
-    """Of the transmission errors, m."""
+    """Root mean square of the difference of the transmission errors, m."""
     error_orders: FloatArray
     force_orders: FloatArray
     """`error_orders`, `force_orders`: Largest amplitude among the meshes (m) and among the bearings (N) at

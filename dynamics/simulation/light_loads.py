@@ -1,4 +1,4 @@
-"""Step control of runs under light loads: their displacements are small, and so is what may be off."""
+"""Step control of runs under light loads: small displacements need a small tolerance."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from dynamics.assembly.assemble import System
 from dynamics.types import FloatArray
 
 USUAL_DEFLECTION = 1e-6
-"""m: where teeth deflect or deviate by less, the tolerance is smaller in proportion.
+"""Transmission error, m, below which the tolerance falls in proportion.
 
 A tolerance of 1 nm is then a thousandth of what moves, as it is at 1 um; loaded teeth deflect by 5 to 30 um.
 """
 
 
 FINEST = 1e-6
-"""Of the largest transmission error: no tolerance is lowered below it, where rounding comes near."""
+"""Least tolerance over the largest transmission error: below it rounding comes near."""
 
 
 def with_tolerance_to_scale(system: System) -> System:

@@ -14,11 +14,11 @@ from dynamics.mechanism.sampling import SPEED_POINTS
 from dynamics.types import Json
 
 MAX = 1e6
-"""Hz; the highest band of an output."""
+"""Highest band of an output, Hz."""
 
 
 def linear_orders(system: System) -> Json:
-    """Return what the receipt of a run says of orders above its band; nothing where there are none.
+    """Return the entry of the receipt of a run on orders above its band; empty where there are none.
 
     Nor where linear theory says nothing of the scene. Shafts are resolved to these orders; amplitudes are
     peak values.

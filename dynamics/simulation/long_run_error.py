@@ -36,7 +36,9 @@ REST = {True: 1.0 / (1.0 - TOLERANCE_SHARE**0.75), False: 1.0 / (1.0 - STEP_SHAR
 It falls as the tolerance^(3/4), or as the step^2 where forces jump. Measured over 12 scenes with impacts or
 light damping, adaptive: 0.7 to 1.1."""
 PARTS, PART_SAMPLES, ORDERS = 6, 4096, 5
-"""Equal parts of a run, the samples at the end of each whose orders are fitted at most, and these orders."""
+"""Number of equal parts of a run, most samples at the end of each that orders are fitted to, and number of
+these orders.
+"""
 CHAOTIC, GROWTH = 0.1, 100.0
 """Difference over the vibration and over the tolerance, in half of the parts, where a motion is chaotic.
 
@@ -99,13 +101,13 @@ class _Orders:
 
     error: FloatArray
     error_difference: FloatArray
-    """`error`, `error_difference`: Of the transmission errors, and of their difference, m. (2, m, K) and (m,
-    K) arrays.
+    """`error`, `error_difference`: Amplitudes of the transmission errors, and of their difference, m.
+    (2, m, K) and (m, K) arrays.
     """
     force: FloatArray
     force_difference: FloatArray
-    """`force`, `force_difference`: Of the bearing forces: norms over three directions, N. (2, b, K) and (b,
-    K) arrays.
+    """`force`, `force_difference`: Amplitudes of the bearing forces, and of their difference, norms over
+    three directions, N. (2, b, K) and (b, K) arrays.
     """
 
 

@@ -1,4 +1,4 @@
-"""What a run will cost: some steps of it at several times, measured, and counted over its duration."""
+"""The cost of a run: steps measured at several times of it, and counted over its duration."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from dynamics.simulation.long_run_error import outlives_windows
 from host import cpu_seconds
 
 PARTS = (0.05, 0.5, 0.95)
-"""Of the duration: where a run is probed."""
+"""Times at which a run is probed, over its duration."""
 ENOUGH = 0.02
 """CPU s of the stretch of a probe that counts; all of them take twice that, and up to twice that again."""
 MIN_STEPS = 32
-"""Of a stretch that counts, however long a step takes."""
+"""Least steps of a stretch that counts, however long a step takes."""
 FINER = 10.0**0.2
-"""Steps at a tenth of the tolerance over those of the run; those by half the positions are as many."""
+"""Steps at a tenth of the tolerance, over the steps of the run; with half the positions there are as many."""
 FASTER, MAKING = 2.3, 2.0
 """Ordinary loops over code of a structure's own, measured 2.0 to 2.8; CPU s of making it, 1.1 to 4.6."""
 
@@ -35,7 +35,8 @@ FASTER, MAKING = 2.3, 2.0
 class ProbedRun(NamedTuple):
     """CPU seconds of the start and the steps of a run, and whether code of its own may follow.
 
-    `error_share`: steps of its error estimates over its own. What flanks that part add is not known before.
+    `error_share`: steps of its error estimates over its own. The additional cost of flanks that part is not
+    known in advance.
     """
 
     start: float
@@ -44,19 +45,19 @@ class ProbedRun(NamedTuple):
     error_share: float
 
     def seconds(self, runs: int, *, with_errors: bool) -> float:
-        """Return the CPU seconds of so many runs, with or without their error estimates."""
+        """Return the CPU seconds of `runs` runs, with or without their error estimates."""
         steps = runs * self.steps * (1.0 + self.error_share if with_errors else 1.0)
         code = MAKING + steps / FASTER if self.code_may_follow else steps
         return runs * self.start + min(steps, code)
 
 
 def probe_run(scene: Scene) -> ProbedRun:
-    """Return about what a run of a scene takes; some tenths of a second of it are run.
+    """Return the expected cost of a run of a scene; some tenths of a CPU second of it are run.
 
     Raises `InputError`: its parts do not fit each other; `SolveError`: nothing holds it at rest, or no steps
     can be taken.
     """
-    assemble(scene)  # loads what it needs
+    assemble(scene)  # loads modules and compiled code before the measurement
     began = cpu_seconds()
     system = assemble(scene)
     assembling = cpu_seconds() - began
@@ -120,7 +121,7 @@ def _probe(system: System, time: float) -> _Probe:
         )
         if not status.usable:
             raise SolveError(f"no steps at {time:.6g} s: {status.name.lower()}")
-        is_entire = stretch >= system.scene.duration  # of a short run all its steps are few
+        is_entire = stretch >= system.scene.duration  # the stretch is the entire short run
         if not first and (is_entire or (steps >= MIN_STEPS and seconds > ENOUGH)):
             light = outlives_windows(system, choice)
             return _Probe(start, seconds / passed, steps / passed, code.may_follow, light)

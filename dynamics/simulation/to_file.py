@@ -1,4 +1,4 @@
-"""From a scene to its result in a file: states stream to disk, checkpoints let the run be taken up again."""
+"""A run from its scene to a result file: states stream to disk, checkpoints let a later process go on."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from dynamics.results.run_result import SAMPLED, RunFile, attributes
 from dynamics.scene import Integration, Scene
 from dynamics.simulation.documents import (
     Description,
-    RunFacts,
+    RunContext,
     described,
     documents,
     effect_ledger,
@@ -184,7 +184,7 @@ def run_scene(
     cancel: Cancel | None = None,
     describe: Description = described,
 ) -> RunResult:
-    """Run `scene` as `simulate` does; what is implausible about it is in the result alone, if `describe`d."""
+    """Run `scene` as `simulate` does; implausible values are in the result alone, if `describe`d."""
     decision, before = decide_effects(scene), FIRST
     run = _run(decision, before, None, progress, cancel, describe)
     while needed := _needed_effects(scene, run.result.effect_ledger, run.result):
@@ -198,8 +198,8 @@ def run_scene(
 def _needed_effects(
     scene: Scene, ledger: Json, partial: RunResult | None = None, file: Path | None = None
 ) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
-    if not ledger:  # of a run that nothing is said of, whose assumptions all hold
+    """Return the effects with which a run is to be repeated; raises where the run cannot stand."""
+    if not ledger:  # a run without a ledger: all its assumptions hold
         return {}
     needed = needed_effects(ledger) if scene.on_violation == "repeat" else {}
     wrong = "" if needed else ending(ledger["checks"], scene.on_violation)
@@ -213,7 +213,7 @@ def _needed_effects(
 
 @dataclass(frozen=True)
 class _Run:
-    """A run as made: its result, and what another one needs to go on for it."""
+    """A finished run: its result, and the state from which another run goes on."""
 
     result: RunResult
     trail: Trail
@@ -258,7 +258,7 @@ def _run(
     cancel: Cancel | None,
     describe: Description,
 ) -> _Run:
-    """Run a scene once; `before` says what of the run `earlier` it repeats."""
+    """Run a scene once; `before` is the account of the run `earlier` that it repeats."""
     start = _Start.of(decision)
     system = start.system
     if earlier is not None:
@@ -290,23 +290,23 @@ def _run(
 
 
 def _of_errors(progress: Progress | None) -> Progress | None:
-    """Return how a run that measures errors reports: under a stage of its own."""
+    """Return the progress report of a run that measures errors, under a stage with that name."""
     return progress and (lambda done, _stage: progress(done, "error of the steps"))
 
 
 @dataclass(frozen=True)
 class _Errors:
-    """What measures the errors of a run: its samples, and a finer run to its end by settings."""
+    """Measurement of the errors of a run: by its samples, and by a finer run to its end."""
 
     start: _Start
     states_of: StatesOf
     finer: Callable[[Integration], tuple[Ending, StatesOf]]
 
-    def measure(self, end: Ending, run: RunFacts) -> tuple[Json, RunStatus]:
+    def measure(self, end: Ending, run: RunContext) -> tuple[Json, RunStatus]:
         """Return the errors by source, and how the run ended once they are measured.
 
-        That of the steps is measured over the whole run where windows cannot see it, unless effects are found
-        missing, with which the run is to be repeated anyway. A cancelled measurement cancels the run.
+        The error of the steps is measured over the whole run where windows cannot see it, unless missing
+        effects mean that the run is repeated anyway. A cancelled measurement cancels the run.
         """
         system, integration = self.start.system, self.start.system.scene.integration
         if not end.status.usable:
@@ -328,7 +328,7 @@ class _Errors:
         return error | {"time_step": steps}, other.status if ends else end.status
 
 
-def _is_repeated(run: RunFacts) -> bool:
+def _is_repeated(run: RunContext) -> bool:
     return run.scene.on_violation == "repeat" and bool(needed_effects(effect_ledger(run)))
 
 
@@ -346,7 +346,7 @@ def _result(
     with clock.stage("outputs"):
         parts = _checked_series(system, trajectory.states.rows, trajectory.samples, checks)
         series = _joined(parts, trajectory.samples)
-    run = RunFacts.of(system, trajectory, checks, clock, decision, before)
+    run = RunContext.of(system, trajectory, checks, clock, decision, before)
     error: Json = {}
     if errors is not None:
         with clock.stage("error_estimate"):
@@ -430,7 +430,7 @@ def simulate_to_file(
     Returns
     -------
     RunStatus
-        How the run ended, also in the file.
+        Status of the run, also in the file.
 
     Raises
     ------
@@ -452,7 +452,7 @@ def simulate_to_file(
     while run.status.usable and (needed := _needed_effects(scene, run.ledger, file=path)):
         before = before.then(needed, run.seconds)
         for checkpoint in folder.glob("*.checkpoint"):
-            checkpoint.unlink()  # of a system without these effects
+            checkpoint.unlink()  # the checkpoint of a system without these effects
         before.write(folder)
         run = _run_to_file(before.of(decision), path, before, going, run)
     if run.status is not RunStatus.CANCELLED:
@@ -471,7 +471,7 @@ def _run_to_file(
     *,
     resume: bool = False,
 ) -> _MadeRun:
-    """Run once, `going` as `_Leg.go` does; `before` says what of the run `earlier` it repeats."""
+    """Run once, `going` as `_Leg.go` does; `before` is the account of the run `earlier` that it repeats."""
     start = _Start.of(decision)
     system, rest, clock = start.system, start.rest, start.clock
     folder = interrupted_run(path)
@@ -501,7 +501,7 @@ def _write(
         with start.clock.stage("outputs"):
             for series in _checked_series(system, leg.spool.states, end.samples, checks):
                 file.append(series)
-        run = RunFacts.of(system, end, checks, start.clock, decision, before)
+        run = RunContext.of(system, end, checks, start.clock, decision, before)
         with start.clock.stage("error_estimate"):
             error, status = errors.measure(end, run)
         run = run.with_errors(error)

@@ -19,7 +19,9 @@ StatesOf = Callable[[int, int], States]
 
 
 REPEATED = "repeated.json"
-"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
+"""File in the folder of a run that repeats another: effects that are on for that reason, and the earlier
+cost.
+"""
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class EarlierRun:
     turned_on: Mapping[str, str] = field(default_factory=dict)
     """Automatic effects that it showed to be needed, and why."""
     seconds: float = 0.0
-    """What it took, s of CPU time."""
+    """CPU time of the earlier run, s."""
     since: float = 0.0
     """Time from which on it is repeated, s: before that the effects carry no force."""
 
@@ -39,7 +41,7 @@ class EarlierRun:
         return {name: f"on after a run without it: {reason}" for name, reason in self.turned_on.items()}
 
     def to_json(self) -> Json:
-        """Return what the receipt of the repetition says; nothing for a first run."""
+        """Return the entry of the receipt of the repetition; empty for a first run."""
         if not self.turned_on:
             return {}
         return {"repeated": {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}}
@@ -63,7 +65,7 @@ class EarlierRun:
         (folder / REPEATED).write_text(json.dumps(self.to_json()), encoding="utf-8")
 
     def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:
-        """Return what a further repetition repeats."""
+        """Return the account that a further repetition has."""
         return EarlierRun({**self.turned_on, **needed}, self.seconds + seconds)
 
     def of(self, decision: Decision) -> Decision:

@@ -46,7 +46,7 @@ _COMPARE: dict[type, tuple[Callable[[Any, Any], Any], str]] = {
 
 
 class Unsupported(Exception):
-    """The function needs what is not written out for a structure."""
+    """A construct of the function has no written-out form for a structure."""
 
 
 @dataclass(frozen=True)

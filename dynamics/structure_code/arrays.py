@@ -1,4 +1,4 @@
-"""Tuples by address in loops written out: what is known of their arrays, and how the rest is read."""
+"""Tuples by address in loops written out: known parts of their arrays, and code that reads the rest."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LONGEST = 256
 
 
 class Known(Enum):
-    """What of a tuple belongs to the structure."""
+    """Part of a tuple that belongs to the structure of a run."""
 
     ALL = "integers and dimensions"
     DIMENSIONS = "all dimensions"
@@ -44,12 +44,13 @@ class Array:
     data: Callable[[], Any]
     """Returns the operand that points to its items."""
     shape: tuple[Any, ...]
-    """Integers, and `Value` where it is not part of the structure."""
+    """Dimensions: integers, and `Value` for those that are not part of the structure."""
     item: Any
     alias: Any
-    """What tells its accesses from those of other arrays; None: a table of constants."""
+    """Mark by which the compiler tells its accesses from those of other arrays; None: a table of constants.
+    """
     content: Any = None
-    """Its items, where they are known."""
+    """Items, where they are known."""
     first: Any = 0
 
 
@@ -68,7 +69,7 @@ def _dimensions(array: Array, name: str) -> Any:
 
 
 class ArrayAccess(Arithmetic):
-    """Reads fields and items; what does not change is read once, at `entry`."""
+    """Reads fields and items; constant ones are read once, at `entry`."""
 
     entry: Any
     lost = False

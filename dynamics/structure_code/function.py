@@ -40,7 +40,7 @@ def assigned_in(node: ast.AST) -> frozenset[str]:
 
 @cache
 def reads_in(node: ast.AST) -> Counter[str]:
-    """Return how often a statement reads each name."""
+    """Return the number of reads of each name in a statement."""
     changed = (child.target for child in ast.walk(node) if isinstance(child, ast.AugAssign))
     names = [child for child in ast.walk(node) if isinstance(child, ast.Name)]
     read = [child for child in names if isinstance(child.ctx, ast.Load)]
@@ -78,7 +78,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Variable:
-    """A name whose value is known when it runs: a slot, or a tuple of such."""
+    """A name whose value is known at run time alone: a slot, or a tuple of slots."""
 
     slots: Any
 
@@ -94,21 +94,21 @@ class Frame:
 
     names: dict[str, Any]
     globals: dict[str, Any]
-    """`names`, `globals`: What its names stand for."""
+    """`names`, `globals`: Values of its local and global names."""
     sums: bool
     """Whether the compiler may choose the order of its sums."""
     tree: ast.AST
-    """The function."""
+    """Syntax tree of the function."""
     local_names: list[frozenset[str]] = field(default_factory=list)
-    """Of each branch and loop around the current statement that is decided when it runs, the names that are
-    assigned and read within it alone.
+    """Names that are assigned and read within one branch or loop alone: a set for each branch and loop around
+    the current statement that is decided when it runs.
     """
     results: Any = None
-    """Where a `return` within one of these leaves its values."""
+    """Place where a `return` within such a branch or loop leaves its values."""
     done: Any = None
-    """Where it goes on after such a `return`."""
+    """Block that follows after such a `return`."""
     loops: list[tuple[Any, Any]] = field(default_factory=list)
-    """Where `continue` and `break` lead; None: the loop is unrolled."""
+    """Blocks to which `continue` and `break` lead, for each loop; None: the loop is unrolled."""
 
 
 def alike(value: tuple[Any, ...], items: Iterable[Any]) -> Any:

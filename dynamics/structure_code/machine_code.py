@@ -15,7 +15,7 @@ import llvmlite.binding as llvm
 
 from dynamics.structure_code.module import Module
 
-MAX_IN_MEMORY, MAX_IN_FILES = 32, 256
+MAX_IN_MEMORY, MAX_IN_FILES = 32, 256  # most structures whose code stays in memory, and in files
 SUFFIX = ".structure"
 
 
@@ -61,9 +61,10 @@ def compiled(module: Module) -> bytes:
 
 
 class CodeStore:
-    """Code by structure: in memory, and in files of `folder` with a digest of what they hold.
+    """Code by structure: in memory, and in files of `folder` with a digest of their content.
 
-    An empty file says that the structure has been run. What cannot be read or written is made anew.
+    An empty file says that the structure has been run. Code whose file cannot be read or written is made
+    anew.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -71,7 +72,7 @@ class CodeStore:
         self._loaded: OrderedDict[str, MachineCode] = OrderedDict()
 
     def get(self, key: str) -> MachineCode | None:
-        """Return the code of a structure if there is some."""
+        """Return the code of a structure, or None if there is none."""
         with self._lock:
             if key in self._loaded:
                 self._loaded.move_to_end(key)

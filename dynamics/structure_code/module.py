@@ -17,9 +17,11 @@ from dynamics.structure_code.statements import Statements
 
 POINTER = WORD.as_pointer()
 MAX_EXPRESSIONS = 150_000
-"""Beyond it compiling takes longer than runs do."""
+"""Most expressions of a module: beyond them compiling takes longer than runs do."""
 FEW_EXPRESSIONS = 500
-"""Of a function that is written for known numbers though it could be for any: a frame's terms have 300."""
+"""Most expressions of a function that is written anew for known numbers, though it could be for any: a
+frame's terms have 300.
+"""
 
 
 class Module:
@@ -45,7 +47,7 @@ class Module:
             raise Unsupported("the structure is too large")
 
     def alias(self, array: Any) -> Any:
-        """Return what tells the accesses of an array from those of others, which have another first item."""
+        """Return the mark of accesses of an array; arrays with another first item have another one."""
         address = array.__array_interface__["data"][0] if array.size else -id(array)
         if address not in self._aliases:
             kind = self.module.add_metadata([str(len(self._aliases)), self._root, WORD(0)])
@@ -101,7 +103,7 @@ class Module:
             self._end(statements, statements.inline(python, arguments), function.function_type.return_type)
         except Unsupported:
             function.blocks.clear()
-            function.linkage = ""  # of a declaration, which nothing calls
+            function.linkage = ""  # external, as a declaration has to be; no code calls it
             if not (statements.lost and anything):
                 raise
             before = self.expressions

@@ -43,7 +43,7 @@ FEW, MANY = 4, 16
 class Statements(ArrayAccess):
     """Writes one function. Methods have the names of the nodes of Python's grammar that they write.
 
-    Those of statements return whether control has left them for good.
+    Methods for statements return whether control has left them for good.
     """
 
     def __init__(self, module: Any, function: Any) -> None:
@@ -55,7 +55,7 @@ class Statements(ArrayAccess):
         self.frame = Frame({}, {}, False, ast.Pass())
 
     def finish(self) -> None:
-        """Join what is read once to the rest."""
+        """Join the code that reads constants once to the rest."""
         self.entry.branch(self.first)
 
     def inline(self, function: Any, values: Sequence[Any]) -> Any:
@@ -215,7 +215,7 @@ class Statements(ArrayAccess):
         self.frame.local_names.pop()
 
     def _forget(self) -> None:
-        """Forget what a branch has given its own names."""
+        """Forget the values that a branch has given to its names."""
         for name in self.frame.local_names[-1]:
             self.frame.names.pop(name, None)
 
@@ -394,7 +394,7 @@ class Statements(ArrayAccess):
         return self._all_or_any(chain, True)
 
     def _all_or_any(self, nodes: Sequence[ast.expr], all_of: bool) -> Any:
-        """Return `and` or `or` of expressions; a later one is evaluated where it decides."""
+        """Write `and` or `or` of expressions; a later expression is evaluated only if it decides."""
         value = self.truth(self.value(nodes[0]))
         if len(nodes) == 1:
             return value

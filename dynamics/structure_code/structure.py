@@ -1,4 +1,4 @@
-"""The structure of tuples by address: a name for all that code written out for them takes as known."""
+"""The structure of tuples by address: a key of all their content that code written out for them assumes."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ import numpy as np
 from dynamics.structure_code.arrays import LONGEST, Known
 from dynamics.types import BoolArray, IntArray
 
-MAX_AXES = 3
+MAX_AXES = 3  # most axes of an array
 
 
 class _Layout(NamedTuple):
-    """Where the words of a tuple are what: A arrays, I numbers."""
+    """Layout of the words of a tuple: A arrays, I numbers."""
 
     address: IntArray
-    """Shape (A,)."""
+    """Word with the address of each array. Shape (A,)."""
     dimensions: IntArray
-    """-1: the array has no such axis. Shape (A, 3)."""
+    """Words with the dimensions of each array; -1: the array has no such axis. Shape (A, 3)."""
     bytes: IntArray
-    """Of an item. Shape (A,)."""
+    """Bytes of an item. Shape (A,)."""
     known: BoolArray
     """Whether it holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
-    """Integers and flags. Shape (I,)."""
+    """Words with integers and flags. Shape (I,)."""
 
 
 @cache
@@ -65,7 +65,7 @@ def _words(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[in
 
 @cache
 def _of_sources() -> bytes:
-    """Return a digest of all that code depends on beside the structure."""
+    """Return a digest of all sources that code depends on apart from the structure."""
     digest = sha256()
     for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         digest.update(file.read_bytes())
@@ -75,7 +75,7 @@ def _of_sources() -> bytes:
 
 
 def structure_key(tuples: Mapping[Any, Known]) -> str | None:
-    """Return a name of what is known of `tuples`; None if arrays that are written overlap others.
+    """Return a key of the known part of `tuples`; None if arrays that are written overlap others.
 
     It holds the dimensions and items that are known, and which arrays are the same one.
     """

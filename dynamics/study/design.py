@@ -16,7 +16,7 @@ from dynamics.checks import finite, integer, positive
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
-MAX_POINTS = 1_000_000
+MAX_POINTS = 1_000_000  # most points of a design
 
 
 @dataclass(frozen=True)
@@ -47,10 +47,10 @@ class Normal:
 
     mean: float
     standard_deviation: float
-    """`mean`, `standard_deviation`: Before it is cut off."""
+    """`mean`, `standard_deviation`: Mean and standard deviation of the distribution before it is cut off."""
     low: float = -math.inf
     high: float = math.inf
-    """`low`, `high`: What lies beyond is rejected; infinite: nothing."""
+    """`low`, `high`: Bounds at which the distribution is cut off; infinite: none."""
     kind: ClassVar[str] = "normal"
 
     def __post_init__(self) -> None:
@@ -101,11 +101,11 @@ class Design:
     """
 
     factors: Mapping[str, Factor]
-    """By name. Levels form a grid, the last factor changing fastest; listed values change together;
+    """Factors by name. Levels form a grid, the last factor changing fastest; listed values change together;
     distributions are sampled.
     """
     samples: int = 1
-    """Of the distributions; 1 without any."""
+    """Number of samples of the distributions; 1 without any."""
     seed: int = 0
     """Equal seeds give equal samples; a larger sample begins with a smaller one."""
 

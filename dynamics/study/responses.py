@@ -1,4 +1,4 @@
-"""Responses of a run by name: what a study makes of each run."""
+"""Responses of a run by name: the figures that a study takes of each run."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.types import FloatArray
 
 SOURCES = ("time_step", "table_interpolation")
-"""Of a run's error, as its receipt states them."""
+"""Sources of a run's error, as its receipt states them."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,13 @@ class _Window:
 
     run: RunResult
     part: slice
-    """Its samples."""
+    """Samples of the run from that time on."""
     highest_order: int
-    """Up to which orders are fitted, all together."""
+    """Highest order that is fitted; all orders are fitted together."""
     bearings: tuple[int, ...]
-    """Whose forces are fitted."""
+    """Bearings whose forces are fitted."""
     mesh: int = 0
-    """Whose orders they are."""
+    """Mesh by which the orders count."""
     _fits: dict[int, tuple[FloatArray, dict[int, FloatArray]]] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -56,7 +56,7 @@ class _Window:
     def orders(self) -> tuple[FloatArray, dict[int, FloatArray]]:
         """Amplitudes of the transmission error (H,) in m, and of the force of each bearing (3, H) in N.
 
-        Of one fit to all of them, up to the highest order H.
+        All orders come from one fit, up to the highest order H.
         """
         if self.mesh not in self._fits:
             checked_order(self.run, "order", self.highest_order, self.mesh)
@@ -88,13 +88,13 @@ class _Value(NamedTuple):
 
 @dataclass(frozen=True)
 class _Quantity:
-    """What a response is."""
+    """A quantity that a response may be."""
 
     title: str
     unit: str
-    """SI; empty for a ratio."""
+    """SI unit; empty for a ratio."""
     of: str
-    """Whose it is; empty: the whole run's."""
+    """Kind of part that has the quantity; empty: the whole run."""
     by_order: bool
     """Whether it is an amplitude at a multiple of the mesh frequency."""
     take: Callable[[_Window, int, int], _Value]
@@ -129,7 +129,7 @@ class Response:
 
     @property
     def kind(self) -> _Quantity:
-        """What it is."""
+        """Quantity of the response."""
         return QUANTITIES[self.quantity]
 
     @property

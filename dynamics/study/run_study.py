@@ -1,4 +1,4 @@
-"""From a design to the figures of all its runs."""
+"""The figures of all runs of a design."""
 
 from __future__ import annotations
 
@@ -22,16 +22,19 @@ from dynamics.study.responses import Response, responses_of
 from dynamics.types import FloatArray, IntArray, Json
 from host import keep_freed_memory
 from model_studies import LeftOut, Progress, silent
+from model_studies.record import under_key
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.workers import InProcess, Workers, task_cpu_seconds
 
-FRACTIONS = (0.05, 0.5, 0.95)
+FRACTIONS = (0.05, 0.5, 0.95)  # fractions of the quantiles that are stated
 RUNS = 8
-"""At most in a batch: what an interruption loses of each worker. It does not depend on who does the tasks."""
+"""Most runs in a batch, which an interruption loses of each worker. The number is the same for all kinds of
+workers.
+"""
 NAN = float("nan")
 Batch = tuple[tuple[float, ...], ...]
 NEGLECTED = ("errors of steps and tables measured in windows of the run", "estimated influence of effects")
-"""What runs of a minimal receipt do without."""
+"""Work that runs with a minimal receipt leave out."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +43,11 @@ class _Spread:
 
     mean: FloatArray
     standard_error: FloatArray
-    """`mean`, `standard_error`: Of the usable samples; NaN where there are fewer than one, or two. Shape (C,)
-    each.
+    """`mean`, `standard_error`: Mean of the usable samples and its standard error; NaN where there is no
+    sample, or only one. Shape (C,) each.
     """
     fraction: FloatArray
-    """Shape (Q,)."""
+    """Fractions of the quantiles. Shape (Q,)."""
     quantile: FloatArray
     low: FloatArray
     high: FloatArray
@@ -67,26 +70,26 @@ class Study(ArrayFile):
     value: FloatArray = field(
         metadata=stored("", "values of the factors, in the units of their names", "point", "factor")
     )
-    """Of the factors, in the units of their names. Shape (N, f)."""
+    """Values of the factors, in the units of their names. Shape (N, f)."""
     figure: FloatArray = field(metadata=stored("", "responses, in their SI units", "point", "response"))
     error: FloatArray = field(metadata=stored("", "stated errors of the responses", "point", "response"))
-    """`figure`, `error`: Responses, and their errors where the run states them, else NaN. Of a failed run all
-    are NaN. Shape (N, r) each.
+    """`figure`, `error`: Responses, and their errors where the run states them, else NaN. A failed run has
+    NaN in all. Shape (N, r) each.
     """
     reason: tuple[str, ...]
-    """Why a run has no figures; empty where it has."""
+    """Reason why a run has no figures; empty where it has them."""
     seconds: FloatArray = field(
         metadata=stored("s", "CPU time in all, and of the integration", "point", "cost")
     )
     """CPU time of each run in all, and of its integration, s. Shape (N, 2)."""
     samples: int
-    """Of each combination of grid and list, in a row."""
+    """Number of samples of each combination of grid and list, in a row."""
     confidence: float
-    """Of the bounds of quantiles."""
+    """Confidence of the bounds of quantiles."""
     worst: IntArray = field(metadata=stored("", "points kept as full runs", "kept"))
     """Points whose first response is largest, which are kept as full runs. Shape (k,)."""
-    facts: Json
-    """Plain JSON: design, start, receipt, what the runs do without."""
+    metadata: Json = field(metadata=under_key("facts"))
+    """Plain JSON: design, start, receipt, and the work that the runs leave out."""
 
     SCHEMA: ClassVar[str] = "lineofaction study"
 
@@ -121,7 +124,7 @@ class Study(ArrayFile):
         return values, np.array([part.mean() if part.size else np.nan for part in selected])
 
     def swing(self, factor: int, response: int) -> float:
-        """Return what a factor of the grid or the list does: the spread of the means of its levels."""
+        """Return the effect of a factor of the grid or the list: the spread of the means of its levels."""
         means = self.level_means(factor, response)[1]
         return float(np.nanmax(means) - np.nanmin(means)) if np.isfinite(means).any() else float("nan")
 
@@ -164,22 +167,22 @@ class Scenes(Protocol):
         ...
 
     def expensive(self, values: Mapping[str, float]) -> Mapping[str, float]:
-        """Return those of the values that decide what takes longer to make than a run, such as a table."""
+        """Return the values that decide parts which take longer to make than a run, such as a table."""
         ...
 
 
 @dataclass(frozen=True)
 class StudyTask:
-    """What all batches of a study share."""
+    """Task that all batches of a study share."""
 
     scenes: Scenes
     factors: tuple[str, ...]
-    """Their names."""
+    """Names of the factors."""
     responses: tuple[Response, ...]
     start: float = 0.0
     """Time from which on responses are taken, s."""
     receipt: str = "minimal"
-    """Of each run; "full" measures its errors."""
+    """Receipt of each run; "full" measures its errors."""
 
     def scene(self, values: tuple[float, ...]) -> Scene:
         """Return the scene at a point, as it is run on its own."""
@@ -188,15 +191,15 @@ class StudyTask:
 
 @dataclass(frozen=True)
 class _PointResult:
-    """What a study keeps of one run."""
+    """Figures of one run that a study keeps."""
 
     figures: list[float]
     errors: list[float]
-    """`figures`, `errors`: Of the responses, in SI; NaN where there is none."""
+    """`figures`, `errors`: Responses and their errors, SI; NaN where there is none."""
     reason: str
-    """Why the run has no figures; empty where it has."""
+    """Reason why the run has no figures; empty where it has them."""
     seconds: list[float]
-    """CPU time of all of it and of the time integration, s."""
+    """CPU time of the whole run and of its time integration, s."""
 
 
 def _batches(design: Design, scenes: Scenes) -> Iterator[tuple[tuple[int, ...], Batch]]:
@@ -221,7 +224,7 @@ def _run_batch(task: StudyTask, batch: Batch) -> list[_PointResult]:
 
 
 def _run_point(task: StudyTask, values: tuple[float, ...]) -> _PointResult:
-    """Run one point; what fails is a marked point with its reason."""
+    """Run one point; a run that fails is a marked point with its reason."""
     began, integration, none = task_cpu_seconds(), NAN, [NAN] * len(task.responses)
     try:
         scene = task.scene(values)
@@ -256,16 +259,16 @@ def study(
     Parameters
     ----------
     task : StudyTask
-        Its factors are those of the design.
+        Task whose factors are those of the design.
     design : Design
     workers : Workers
         Who does the batches: this process, an executor of threads or processes, a cluster.
     progress : callable
         Called as progress("runs", fraction).
     confidence : float
-        Of the bounds of quantiles.
+        Confidence of the bounds of quantiles.
     keep_worst : int
-        How many points of the largest first response to name in `Study.worst`; see `keep_runs`.
+        Number of points with the largest first response that `Study.worst` names; see `keep_runs`.
     """
     if task.factors != design.names:
         raise InputError("design.factors", design.names, f"those of the task: {', '.join(task.factors)}")

@@ -30,7 +30,7 @@ from dynamics.vibration.housing_motion import (
 
 
 class MotionQuantity(StrEnum):
-    """What of a motion is meant."""
+    """Quantity of a motion: displacement or one of its derivatives in time."""
 
     DISPLACEMENT = auto()
     VELOCITY = auto()
@@ -48,7 +48,7 @@ class MotionQuantity(StrEnum):
         ----------
         displacement : array
         frequency : array
-            Hz, of a shape that spreads over that of `displacement`.
+            Frequencies, Hz, of a shape that spreads over that of `displacement`.
         """
         return np.asarray((2j * math.pi * np.asarray(frequency)) ** self.rate * displacement)
 
@@ -122,24 +122,25 @@ class HousingVibration:
 
     point: tuple[str, ...]
     speed: FloatArray
-    """Of the leading drive, rad/s. Shape (S,)."""
+    """Speed of the leading drive, rad/s. Shape (S,)."""
     order: FloatArray
     """Multiples of the frequency of the first mesh that turns. Shape (H,)."""
     frequency: FloatArray
-    """Hz. Shape (S, H)."""
+    """Frequencies of the harmonics, Hz. Shape (S, H)."""
     seat_force: ComplexArray
     """Peak amplitudes on the motions of the seats, N and N m. Shape (S, H, s)."""
     velocity: ComplexArray
     """Peak amplitudes along the axes of the mesh, m/s. Shape (k, 3, S, H)."""
     mean_square_velocity: FloatArray
-    """Of the outer hull, normal to it, mean over area and time, m^2/s^2; 0 without a surface. Shape (S, H).
+    """Mean square velocity normal to the outer hull, over area and time, m^2/s^2; 0 without a surface. Shape
+    (S, H).
     """
     highest_valid_frequency: float
     """`ReducedHousing.valid_frequency`, Hz."""
     floor: FloatArray | None = None
     floor_error: FloatArray | None = None
-    """`floor`, `floor_error`: Mean square velocity of each point in the orders of long tables that are not
-    listed, and by how much it may be off, m^2/s^2; None where every order is. Shape (k, S) each.
+    """`floor`, `floor_error`: Mean square velocity of each point in the unlisted orders of long tables, and
+    its error, m^2/s^2; None where every order is listed. Shape (k, S) each.
     """
 
     @property
@@ -159,7 +160,7 @@ class HousingVibration:
 
     @property
     def overall_error(self) -> FloatArray:
-        """By how much `overall` may be off for the orders that are not listed, (k, S), m/s."""
+        """Error of `overall` by the orders that are not listed, (k, S), m/s."""
         return self.overall - self._with_floor(1.0)
 
     def _with_floor(self, share: float) -> FloatArray:
@@ -201,13 +202,13 @@ def housing_vibration(
     Parameters
     ----------
     response : BearingHarmonics
-        Of a scene with the housing, linear or a run's; the forces on its bearings move it.
+        Response of a scene with the housing, linear or of a run; the forces on the bearings move the housing.
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     bearings : sequence of str, optional
         Bearings in the order of the seats; by default those with the names of the seats.
     points : sequence of str, optional
-        By default all, which may be none.
+        Points by name; by default all, which may be none.
     """
     force = seat_forces(response, housing, bearings)
     motion = housing_motion(housing, response.frequency, force)

@@ -24,7 +24,7 @@ from dynamics.vibration.housing_motion import BearingHarmonics
 ORTHONORMAL = 1e-9
 """Largest entry of A^T A - 1 of axes that are perpendicular and of length one."""
 BLOCK = 1024
-"""Frequencies whose mobilities are interpolated at a time."""
+"""Number of frequencies whose mobilities are interpolated at a time."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,8 @@ class MeasuredMobility:
     excitation: tuple[Direction, ...]
     """Bearings, e of them with their axes; positive is the force of the shaft on the seat."""
     mobility: ComplexArray
-    """m/(N s), peak velocity per peak force for exp(2 pi i f t); reciprocity is not assumed. Shape (n, q, e).
+    """Mobilities, m/(N s): peak velocity per peak force for exp(2 pi i f t). Reciprocity is not assumed.
+    Shape (n, q, e).
     """
     axes: FloatArray = field(default_factory=lambda: np.eye(3))
     """Columns: the axes x, y, z of the measurement in the scene's frame. Shape (3, 3)."""
@@ -168,8 +169,8 @@ class MeasuredVibration:
     speed: FloatArray
     order: FloatArray
     frequency: FloatArray
-    """`speed`, `order`, `frequency`: Of the leading drive in rad/s, multiples of the frequency of the first
-    mesh that turns, Hz. (S,), (H,), (S, H) arrays.
+    """`speed`, `order`, `frequency`: Speed of the leading drive, rad/s; multiple of the frequency of the
+    first mesh that turns; frequency, Hz. (S,), (H,), (S, H) arrays.
     """
     velocity: ComplexArray
     """Peak amplitudes along the axes of the measurement, m/s; NaN outside the measured band and along axes
@@ -180,7 +181,9 @@ class MeasuredVibration:
     omitted: tuple[Direction, ...]
     """Forces of bearings without a mobility, by the axes of the measurement."""
     omitted_force: FloatArray
-    """Their part of the sum of the squared forces of all bearings, 0 to 1; 0 without forces. Shape (S, H)."""
+    """Share of the omitted forces in the sum of the squared forces of all bearings, 0 to 1; 0 without forces.
+    Shape (S, H).
+    """
     moments: bool
     """Whether the bearings press moments on their seats, which are left out."""
     floor: bool
@@ -256,7 +259,7 @@ def _velocity(housing: MeasuredMobility, response: BearingHarmonics, force: Comp
 
 
 def bearing_shares(response: BearingHarmonics, housing: MeasuredMobility) -> FloatArray:
-    """Return what each measured bearing contributes to the mean square velocity of points, (e, k, S, H).
+    """Return the contribution of each measured bearing to the mean square velocity of points, (e, k, S, H).
 
     In the order of `MeasuredMobility.bearings`. They add up to 1, as in `Parts.shares`; a negative one acts
     against the sum. NaN outside the measured band and where nothing moves. Raises `InputError` as

@@ -21,11 +21,12 @@ from dynamics.vibration.housing_vibration import MotionQuantity, named_points
 UNIFORM = 1e-6
 """Largest deviation of a sample's time from a uniform grid, in steps."""
 LOOSE = 1e-6
-"""Of the highest natural frequency: what is below moves freely, to rounding."""
+"""Natural frequency over the highest one, below which it is rounding and the mode moves freely."""
 PIECE = 4096
-"""Samples whose states are held at a time."""
+"""Number of samples whose states are in memory at a time."""
 REACH = 32
-"""Samples beyond a piece that its spline knows: those n away count by (2 - sqrt 3)^n, after 32 by 5e-19."""
+"""Samples beyond a piece that its spline uses: a sample n away counts by (2 - sqrt 3)^n, after 32 by 5e-19.
+"""
 CUBIC = 4
 """Coefficients of a piece of a cubic spline."""
 
@@ -50,11 +51,13 @@ class _CoupledModes:
     """Modes that damping couples."""
 
     transition: FloatArray
-    """Of the state: modal amplitudes times `scale`, then their rates times the step. Shape (2 m, 2 m)."""
+    """Transition of the state over a step. State: modal amplitudes times `scale`, then their rates times the
+    step. Shape (2 m, 2 m).
+    """
     gain: FloatArray
     """State per derivative of the force at the sample, in steps. Shape (4, 2 m, s)."""
     scale: FloatArray
-    """Shape (m,)."""
+    """Scale of the modal amplitudes. Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _CoupledModes:
@@ -90,13 +93,15 @@ class _SeparateModes:
     """Modes each by itself: damping couples none."""
 
     transition: FloatArray
-    """Of the state of a mode: amplitude times `scale`, rate times the step. Shape (2, 2, m)."""
+    """Transition of the state of each mode over a step. State: amplitude times `scale`, rate times the step.
+    Shape (2, 2, m).
+    """
     gain: FloatArray
     """State of a mode per derivative of its modal force, in steps. Shape (2, 4, m)."""
     push: FloatArray
     """Modal forces per force. Shape (m, s)."""
     scale: FloatArray
-    """Shape (m,)."""
+    """Scale of the modal amplitudes. Shape (m,)."""
 
     @classmethod
     def of(cls, natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _SeparateModes:
@@ -149,9 +154,9 @@ def point_signal(
     Parameters
     ----------
     housing, time, force, quantity
-        As in `motion_pieces`.
+        Arguments of `motion_pieces`.
     points : sequence of str, optional
-        By default all, in their order.
+        Points by name; by default all, in their order.
 
     Returns
     -------
@@ -178,20 +183,20 @@ def motion_pieces(
     sinc(1/n)^4 3/(2 + cos(2 pi/n)), 1 - (2 pi/n)^4/720 for large n: 0.02 % low at 10 samples a period, 0.3 %
     at 6, 1.5 % at 4, and with images about multiples of the sampling rate, (n - 1)^-4 of it.
 
-    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero. What
-    is held beside the force does not grow with its length. Raises `InputError`: shapes differ, times are not
+    The housing starts at rest, deflected by the first force; motions that nothing holds start at zero. Memory
+    beyond that of the force does not grow with its length. Raises `InputError`: shapes differ, times are not
     uniform, a force is no number, or the housing has no mass.
 
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     time : (T,) array
         s, uniform.
     force : (T, s) array
-        On the motions of the seats, N and N m (`run_seat_forces`).
+        Forces on the motions of the seats, N and N m (`run_seat_forces`).
     rows : (q, r) array
-        What is returned per reduced coordinate, such as `PointMotion.motion`.
+        Quantities to return per reduced coordinate, such as `PointMotion.motion`.
     quantity : MotionQuantity
         Displacement, velocity or acceleration.
 
@@ -242,7 +247,7 @@ def _checked_step(time: FloatArray, force: FloatArray, housing: ReducedHousing) 
 
 
 def _propagator(natural: FloatArray, damping: FloatArray, push: FloatArray, step: float) -> _Propagator:
-    """Return what advances the modes by a step: each by itself unless damping couples them."""
+    """Return the propagator of the modes over a step: one for each mode unless damping couples them."""
     diagonal = np.diag(damping)
     if np.all(
         np.abs(damping - np.diag(diagonal)) <= ROUNDING * np.sqrt(np.outer(diagonal, diagonal).clip(0.0))

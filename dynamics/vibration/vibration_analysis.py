@@ -1,4 +1,4 @@
-"""How a housing vibrates under its bearings, and through what where it does most."""
+"""Vibration of a housing under its bearings, and its largest parts by bearings and modes."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from dynamics.vibration.housing_vibration import (
     point_rows,
     surface_weight,
 )
+from model_studies.record import under_key
 
 RESIDUAL = "residual"
-"""Name of what the modes that are not kept contribute: static flexibility of the seats."""
+"""Name of the contribution of all modes that are not kept: static flexibility of the seats."""
 
 FREQUENCIES = 800
-"""Of the transfer functions, evenly spaced; resonances kept are among them."""
+"""Number of evenly spaced frequencies of the transfer functions, to which the natural frequencies are added.
+"""
 
 
 @dataclass(frozen=True)
@@ -34,11 +36,12 @@ class Parts:
     """A motion as a coherent sum."""
 
     name: tuple[str, ...]
-    """Bearing seats, or modes by their number from 1; `RESIDUAL` is what is left."""
+    """Bearing seats, or modes by their number from 1; `RESIDUAL` is the rest."""
     frequency: FloatArray
-    """Natural frequencies in Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies in Hz; NaN for parts that are no mode. Shape (p,)."""
     motion: ComplexArray
-    """Of the reduced coordinates, m and rad; their sum is the whole motion. Shape (p, r)."""
+    """Motion of the reduced coordinates by each part, m and rad; the sum is the whole motion. Shape (p, r).
+    """
 
     @classmethod
     def of_bearings(cls, housing: ReducedHousing, frequency: float, force: ComplexArray) -> Parts:
@@ -47,9 +50,9 @@ class Parts:
         Parameters
         ----------
         frequency : float
-            Hz.
+            Frequency, Hz.
         force : (s,) complex array
-            On the motions of the seats (`seat_forces`).
+            Forces on the motions of the seats (`seat_forces`).
         """
         owner = np.repeat(np.arange(len(housing.seats)), [len(seat.motions) for seat in housing.seats])
         separate = np.where(owner == np.arange(len(housing.seats))[:, None], force, 0.0)
@@ -107,12 +110,12 @@ def transfer_functions(
     Parameters
     ----------
     housing : ReducedHousing
-        With mass.
+        Housing with mass.
     frequency : (n,) array
-        Hz.
+        Frequencies, Hz.
     response : (q, r) array
     excitation : (e, r) array, optional
-        By default the motions of the seats.
+        Excited coordinates; by default the motions of the seats.
 
     Returns
     -------
@@ -134,9 +137,9 @@ def mean_square_mobility(housing: ReducedHousing, frequency: FloatArray, weight:
     Parameters
     ----------
     frequency : (n,) array
-        Hz.
+        Frequencies, Hz.
     weight : (r, r) array
-        Of the surface (`surface_weight`).
+        Weight of the surface (`surface_weight`).
 
     Returns
     -------
@@ -152,13 +155,14 @@ class SurfaceShape:
     """Complex peak amplitudes of the motion of a surface."""
 
     points: FloatArray
-    """m. Shape (p, 3)."""
+    """Points of the surface, m. Shape (p, 3)."""
     triangles: IntArray
     """Corners, counter-clockwise from outside, then mid-side nodes, if it has them. (t, 6) or (t, 3) int
     array.
     """
     motion: ComplexArray
-    """m, m/s or m/s^2; of a mode, real, with the largest motion 1. Shape (p, 3)."""
+    """Motion of the points, m, m/s or m/s^2; that of a mode is real, with the largest motion 1. Shape (p, 3).
+    """
 
     @property
     def facets(self) -> IntArray:
@@ -216,28 +220,28 @@ class Shares:
 
     name: tuple[str, ...]
     frequency: FloatArray
-    """Natural frequencies, Hz; NaN of what is no mode. Shape (p,)."""
+    """Natural frequencies, Hz; NaN for parts that are no mode. Shape (p,)."""
     point: FloatArray
-    """To the mean square velocity of each point. Shape (k, p)."""
+    """Contributions to the mean square velocity of each point. Shape (k, p)."""
     surface: FloatArray
-    """To that of the outer hull; NaN without a surface. Shape (p,)."""
+    """Contributions to the mean square velocity of the outer hull; NaN without a surface. Shape (p,)."""
 
 
 @dataclass(frozen=True)
 class VibrationAnalysis:
-    """Vibration over speed, and what makes it at one speed and order."""
+    """Vibration over speed, and its causes at one speed and order."""
 
     housing: str
     vibration: HousingVibration
     mobilities: _Mobilities
     at_speed: int
     at_order: int
-    """`at_speed`, `at_order`: Indices of the speed and the order looked at."""
+    """`at_speed`, `at_order`: Indices of the speed and the order of `deflection` and shares."""
     bearings: Shares
     modes: Shares
     deflection: SurfaceShape | None = None
-    """Velocity of the surface there; None without a surface."""
-    facts: Json = field(default_factory=dict)
+    """Velocity of the surface at that speed and order; None without a surface."""
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
     """Plain JSON, of the response."""
 
 
@@ -260,11 +264,11 @@ def analyze_vibration(
     response : ReportedHarmonics
         A forced response, or the orders of a run.
     housing : ReducedHousing
-        With mass, and with a surface or named points.
+        Housing with mass, and with a surface or named points.
     name : str
-        Of the housing.
+        Name of the housing.
     bearings, points
-        As in `housing_vibration`.
+        Arguments of `housing_vibration`.
     speed, order : float, optional
         Whose parts are wanted, the nearest ones, rad/s; by default where the motion is largest
         (`HousingVibration.largest`).
@@ -284,7 +288,7 @@ def analyze_vibration(
         _shares(housing, Parts.of_bearings(housing, hertz, force), points),
         _shares(housing, Parts.of_modes(housing, hertz, force), points),
         None if housing.surface is None else operating_deflection(housing, rate),
-        response.facts,
+        response.metadata,
     )
 
 

@@ -1,3 +1,3 @@
-"""The main flow: gear pair in, STE database out; and what happens on its flanks."""
+"""The main computation, from a gear pair to its STE database, and the results on the flanks."""
 
 import host.analysis  # noqa: F401 (says what to install)

@@ -1,4 +1,4 @@
-"""Transmission error over a revolution or a hunting cycle, by derivatives held against exact pitches."""
+"""Transmission error over a revolution or a hunting cycle, by derivatives, with errors by solved pitches."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from model_studies import in_unit
 from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
-"""In a base pitch where none are requested."""
+"""Positions in a base pitch of a request that names none."""
 
 
 @brief
@@ -36,18 +36,21 @@ class DeviatingCycle:
     """Transmission error over T base pitches, P even positions in each, at L loads."""
 
     teeth: tuple[int, int]
-    """Of the driving and the driven gear."""
+    """Numbers of teeth of the driving and the driven gear."""
     load: FloatArray = field(metadata=in_unit("n", "force"))
     """Normal forces, N. Shape (L,)."""
     ste: FloatArray = field(metadata=in_unit("m", "pitch", "position", "force"))
-    """m, positive = the driven gear lags. Shape (T, P, L)."""
+    """Transmission error, m, positive = the driven gear lags. Shape (T, P, L)."""
     solved: BoolArray
     """Pitches whose contact was solved; the others are by derivatives. Shape (T,)."""
     error: FloatArray = field(metadata=in_unit("m", "force"))
-    """Of a position in a pitch that was not solved, m: what derivatives miss, not what meshes do. Shape (L,).
+    """Error of a position in a pitch that was not solved, by the derivatives alone, without the error of the
+    mesh, m. Shape (L,).
     """
     quantity_error: FloatArray = field(metadata=in_unit("m", "quantity", "force"))
-    """The same of mean, peak-to-peak, orders beside the mesh orders, and mesh harmonics, m. Shape (23, L)."""
+    """Error of mean, peak-to-peak, orders other than mesh orders, and mesh harmonics, by the derivatives
+    alone, m. Shape (23, L).
+    """
     predicted: CycleSeconds
 
     def orders(self, load: int = -1) -> Spectrum:

@@ -21,7 +21,8 @@ from model_studies.progress import Report, unreported
 MAX_ROUNDS = 10
 
 PROBES = np.array([0.25, 0.5, 0.75])
-"""Points of every interval where the interpolant is held against a solution; the middle becomes a node."""
+"""Points of every interval at which the interpolant is compared with a solution; the middle becomes a node.
+"""
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class PositionNodes:
 
     @property
     def error(self) -> FloatArray:
-        """Largest error beside each node, m; shape of `interval_error`."""
+        """Largest error near each node, m; shape of `interval_error`."""
         return np.maximum(self.interval_error, np.roll(self.interval_error, 1, axis=0))
 
 

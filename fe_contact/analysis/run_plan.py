@@ -30,7 +30,7 @@ _DESIGN = 0.75
 
 @dataclass(frozen=True)
 class PlannedLevel:
-    """One mesh level with its slices: what it is predicted to cost, and its expected error."""
+    """A mesh level with its slices: its predicted cost, and its expected error."""
 
     model: str
     level: str
@@ -55,13 +55,13 @@ class RunPlan:
     passes: tuple[PlannedLevel, ...]
     """Predictions for the mesh that would be taken and, where it is tried first, for the one behind it."""
     levels: tuple[PlannedLevel, ...]
-    """That and the other mesh levels of the same model; and what the tolerance needs, where the time does not
-    allow it.
+    """Predictions for the chosen mesh and the other mesh levels of the same model. Where the time does not
+    allow the mesh that the tolerance needs, its prediction is here too.
     """
     conflict: str
-    """Why tolerance and time cannot both be had; empty if they can, or if not both were given."""
+    """Reason why tolerance and time budget cannot both be met; empty if they can, or if one was not given."""
     cache: Path | None = None
-    """Of the prediction."""
+    """Cache directory that the prediction assumes."""
 
     @property
     def chosen(self) -> PlannedLevel:
@@ -129,25 +129,25 @@ class PredictedDesigns(NamedTuple):
     """CPU seconds of other flanks, loads and alignments on the same gears."""
 
     bodies: float
-    """To condense both gears, coarse meshes too."""
+    """CPU seconds to condense both gears, coarse meshes included."""
     design: float
-    """One pair of flanks at one alignment, all loads at once."""
+    """CPU seconds of one pair of flanks at one alignment, all loads at once."""
     errors: float
-    """The solutions that measure the errors of one."""
+    """CPU seconds of the solutions that measure the errors of one design."""
     positions: int
-    """Of one."""
+    """Number of positions of one design."""
     across_face: bool
-    """Whether the gears are those of three dimensions."""
+    """Whether the gears are condensed in three dimensions."""
     bytes: float
-    """Largest resident memory of the process."""
+    """Largest resident memory of the process, bytes."""
     table: float
-    """A whole one at one alignment, its errors included."""
+    """CPU seconds of a whole table at one alignment, its errors included."""
     work: ContactWork
-    """Of which the contact of a design is made."""
+    """Work of the contact solution of one design, by kind."""
 
 
 def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
-    """Predict what is solved on condensed gears; nothing is meshed.
+    """Predict the cost of solutions on condensed gears; nothing is meshed.
 
     Parameters
     ----------

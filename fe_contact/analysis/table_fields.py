@@ -1,4 +1,4 @@
-"""Arrays of the STE database from what a table keeps of the contact."""
+"""Arrays of the STE database from stored arrays of the contact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.types import FloatArray, Status
 
 
@@ -43,7 +43,7 @@ def table_of_solution(
         torque=pair.torque(solution.load),
         misalignment=np.array([misalignment]),
         center_distance_change=np.zeros(1),
-        facts=PairFacts.of(pair),
+        geometry=PairGeometry.of(pair),
         period=period,
         error_estimate=np.full((*solution.deflection.shape, 1, 1), np.nan),
         metadata=Metadata(),

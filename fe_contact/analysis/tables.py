@@ -1,7 +1,4 @@
-"""Positions of a table, and what is solved at them.
-
-A table as solved, before its errors are known: plan, positions, solutions.
-"""
+"""The solved table of a run, before its errors are known: plan, positions, solutions."""
 
 from __future__ import annotations
 
@@ -31,7 +28,7 @@ from fe_contact.planning.cost_model import Prediction, unit_work
 from fe_contact.planning.cost_of_derivatives import CycleSeconds
 from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.types import FloatArray
 from model_studies.progress import Report, announce, by_cost, unreported
 from model_studies.stage_clock import StageClock
@@ -40,26 +37,28 @@ from model_studies.workers import InProcess, pays
 
 @dataclass(frozen=True)
 class SolvedTable(SolvedRun):
-    """One run up to its table."""
+    """A run up to its solved table."""
 
     decision: Decision
     """Model and discretization."""
     prediction: Prediction
-    """What it was expected to cost."""
+    """Predicted cost of the run."""
     nodes: PositionNodes
     contacts: Sequence[SolvedContact]
     support: Sequence[SolvedContact]
-    """`contacts`, `support`: Of every place at the loads of the table, and at the support loads."""
+    """`contacts`, `support`: Contacts of every operating point at the loads of the table, and at the support
+    loads.
+    """
     table: SteDatabase
-    """Its errors not yet estimated."""
+    """Table whose errors are not yet estimated."""
     condition: FloatArray | None = None
     """Condition numbers of the compliances, where workers found them."""
     derived: DerivedCycle | None = None
-    """What came of derivatives, where they were tried."""
+    """Outcome of the derivatives over the cycle; None where they were not tried."""
 
     @property
     def edge_depths(self) -> list[FloatArray]:
-        """See `SolvedRun`; they were found with the solutions."""
+        """Largest depths of tip edges inside the mating flanks at every operating point, (L,) in m."""
         return [contact.edge_depth for contact in self.contacts]
 
 
@@ -143,7 +142,7 @@ def _solved_places(
 
 
 def _subject(checked: Checked, prediction: Prediction) -> str:
-    """Return what is announced, and its memory where the period is long."""
+    """Return the subject of the progress report, with its memory where the period is long."""
     period, gigabytes = checked.model.period, 1e-9 * prediction.memory_bytes
     return "table" if period == 1 else f"table of {period} base pitches in {engineering(gigabytes, 2)} GB"
 
@@ -202,7 +201,7 @@ def assembled_table(
         torque=request.torque,
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
-        facts=PairFacts.of(request.pair),
+        geometry=PairGeometry.of(request.pair),
         period=points.period,
         error_estimate=np.full((position.size, request.load.size, *points.shape), np.nan),
         metadata=Metadata(),

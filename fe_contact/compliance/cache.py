@@ -1,4 +1,4 @@
-"""Disk cache of flank compliances and root stresses, by the hash of everything that decides them."""
+"""Disk cache of flank compliances and root stresses, by the hash of all their inputs."""
 
 from __future__ import annotations
 
@@ -25,9 +25,11 @@ from fe_contact.types import Json
 from host import lock
 
 CACHED_KEYS = 64
-"""Hashes of what was requested last, kept in memory."""
+"""Number of the hashes of the last requests that stay in memory."""
 PATIENCE_S = 600.0
-"""How long another process may take for a result before it is computed here too: it may have been stopped."""
+"""Longest wait for a result that another process computes, s. That process may have been stopped: after this
+time the result is computed here too.
+"""
 _LOOK_S = 0.05
 NOT_ARRAYS = ("facts", "checksum")
 Cached = TypeVar("Cached", FlankCompliance, FlankCompliance3D, UnitRootStress)
@@ -87,7 +89,7 @@ def _alone(directory: Path, key: str) -> Iterator[None]:
 
 
 def _locked(descriptor: int) -> bool:
-    """Wait for a lock; say whether it is ours."""
+    """Wait for a lock; return whether this process holds it."""
     deadline = time.monotonic() + PATIENCE_S
     while True:
         try:

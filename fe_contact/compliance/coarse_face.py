@@ -1,4 +1,8 @@
-"""Elements whose lower face is half of a face of a twice as thick layer."""
+"""Elements whose lower face is half of a face of a layer that is twice as thick.
+
+The nodes of the thin layer that are no nodes of the thick one hang on its coarse face: they follow its
+functions.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +20,20 @@ ALONG = np.array([-1.0, 1.0, -1.0, 1.0, 0.0, 0.0, -1.0, 1.0])
 ACROSS = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 1.0, 0.0, 0.0])
 
 SIDE = [0, 1, 0, 1, 4, 4, 0, 1]
-"""Node of the quadrilateral that each of them stands above."""
+"""Node of the quadrilateral below each node of a coarse face."""
 
 
 @dataclass(frozen=True)
 class _CoarseFace:
-    """The face that hanging nodes lie on."""
+    """The coarse faces that hanging nodes lie on."""
 
     nodes: FloatArray
-    """Its nodes, m. Shape (m, 8, 3)."""
+    """Nodes of the coarse faces, m. Shape (m, 8, 3)."""
     weights: FloatArray
-    """Value of each of its functions (column) at each hanging node (row). Shape (8, 8)."""
+    """Value of each face function (column) at each hanging node (row). Shape (8, 8)."""
 
     def attach(self, nodes: FloatArray) -> FloatArray:
-        """Return element nodes (m, 20, 3) with the hanging ones placed on this face."""
+        """Return element nodes (m, 20, 3) with the hanging nodes placed on the coarse face."""
         attached = nodes.copy()
         attached[:, LOWER_FACE] = self.weights @ self.nodes
         return attached

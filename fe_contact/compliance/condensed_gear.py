@@ -26,18 +26,18 @@ FACE_SHARES = np.array([[-1.0, 4.0, -1.0], [4.0, 0.0, 4.0], [-1.0, 4.0, -1.0]]) 
 
 @dataclass(frozen=True)
 class CondensedGear:
-    """All that the checks need of one solved gear."""
+    """A condensed gear: mesh, matrices and factors of one sector, and the ring that sectors close."""
 
     sector: SweptSector
     """Mesh of one sector."""
     stiffness: ElementStiffness
-    """Its element matrices."""
+    """Element matrices of the sector."""
     condensation: Condensation
-    """How its freedoms follow from the kept ones: flank, left cut, right cut."""
+    """Map from the kept freedoms (flank, left cut, right cut) to all freedoms of the sector."""
     condensed: HeldSector
-    """The sector on its cuts."""
+    """Sector condensed on its cuts."""
     ring: RingSolution
-    """The gear under the loads `probe_loads`."""
+    """Solution of the ring under the loads `probe_loads`."""
 
     def flank(self, tooth: int, loads: FloatArray) -> FloatArray:
         """Return the flank displacements (nf, p) of a tooth under the probe `loads` (nf, p) on tooth 0."""

@@ -17,8 +17,8 @@ class CondensedSector:
     """One tooth sector seen from its boundary, in the tooth frame, per unit face width."""
 
     boundary: IntArray
-    """Sector nodes on the boundary, clamped ones left out; freedom 2 i + c of the arrays below is component c
-    of its node i. Shape (nb,).
+    """Sector nodes on the boundary without clamped nodes; freedom 2 i + c of the arrays below is component c
+    of node i of this array. Shape (nb,).
     """
     stiffness: FloatArray
     """Condensed stiffness, Pa. Shape (2 nb, 2 nb)."""

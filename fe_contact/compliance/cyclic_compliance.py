@@ -1,4 +1,4 @@
-"""From a gear to its flank compliance over the face width: mesh, condense a sector, close the ring, check."""
+"""Flank compliance of a gear over the face width: mesh, condense a sector, close the ring, check."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def flank_compliances_3d(
 
 
 def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
-    """Return the hash of all that decides a compliance but for the hand of the helix."""
+    """Return the hash of all inputs of a compliance except the hand of the helix."""
     return _key(gear, recipe, reach, support.name, MODEL_VERSION)
 
 

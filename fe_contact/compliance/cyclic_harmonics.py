@@ -1,4 +1,4 @@
-"""Loads that turn from tooth to tooth of a ring, harmonic by harmonic, and what they sum up to."""
+"""Loads that turn from tooth to tooth of a ring, harmonic by harmonic, and the sum of their displacements."""
 
 from __future__ import annotations
 

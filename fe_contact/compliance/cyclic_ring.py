@@ -100,9 +100,11 @@ class RingSolution:
     Shape (z,).
     """
     solved: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    """Displacement of the left cuts under these, m, but for rounding. Shape (z, nc, p)."""
+    """Displacement of the left cuts under the loads with `shares`, m, exact except for rounding. Shape (z,
+    nc, p).
+    """
     error: float = 0.0
-    """What `blocks` may be off, over the largest entry of A; estimated."""
+    """Estimated error of `blocks`, over the largest entry of A."""
     bore: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
     """Displacement of the left cut of every sector under unit forces on the bore of sector 0, where it is
     free to turn, m/N. Shape (z, nc, p).

@@ -99,7 +99,7 @@ def _mirrored_back(values: FloatArray, mirror: IntArray | None) -> FloatArray:
 
 
 def _teeth_in_view(loaded: IntArray, unloaded: int, teeth: int) -> IntArray:
-    """Return consecutive tooth numbers from the first to the last loaded one and beside them, at most all."""
+    """Return consecutive tooth numbers: loaded teeth with `unloaded` ones on either side, at most all."""
     teeth_in_view = np.arange(loaded.min() - unloaded, loaded.max() + unloaded + 1)
     return teeth_in_view if len(teeth_in_view) <= teeth else np.arange(teeth) - (teeth - 1) // 2
 

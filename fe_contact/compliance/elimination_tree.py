@@ -1,4 +1,8 @@
-"""Elimination tree of a body: the order of its freedoms by nested bisection, and what elimination costs."""
+"""Elimination tree of a body: the order of its freedoms by nested bisection, and its cost.
+
+A front is a group of freedoms that are eliminated together. Its border are the freedoms that the elimination
+couples; they pass to the parent of the front.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +28,8 @@ class Front:
     """The halves of the group."""
     inner: IntArray
     border: IntArray
-    """`inner`, `border`: Freedoms eliminated here, and those that go up, both by increasing position in the
-    elimination.
+    """`inner`, `border`: Freedoms that the front eliminates, and freedoms that it passes to its parent, both
+    by increasing position in the elimination.
     """
 
     @property
@@ -46,9 +50,9 @@ class EliminationTree:
     """The order of an elimination."""
 
     root: Front
-    """Its border are the kept freedoms."""
+    """Root of the tree. Its border holds the kept freedoms."""
     order: IntArray
-    """Position of each freedom in the elimination; kept ones are last, in the order they were requested.
+    """Position of each freedom in the elimination; kept freedoms are last, in the order they were requested.
     Shape (n,).
     """
 
@@ -68,7 +72,7 @@ class EliminationTree:
         return sum((len(f.inner) + len(f.border)) ** 2 for f in self.root.fronts())
 
     def working_entries(self) -> int:
-        """Most numbers held at a time besides factors, and what they leave behind."""
+        """Most numbers in memory at a time besides factors, with the results that fronts leave."""
         return _working(self.root)
 
 

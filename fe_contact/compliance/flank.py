@@ -27,10 +27,10 @@ class ComplianceChecks:
     energy: float
     """Largest difference among u' K u, f' u and q' S q."""
     least_eigenvalue: float
-    """Of S, 1/Pa; above 0."""
+    """Least eigenvalue of S, 1/Pa; above 0."""
     residual_rounding: float
     energy_rounding: float
-    """`residual_rounding`, `energy_rounding`: What rounding alone may leave of `residual` and `energy`
+    """`residual_rounding`, `energy_rounding`: Bounds of the rounding errors in `residual` and `energy`
     (`fe_contact.compliance.flank`).
     """
 
@@ -161,23 +161,26 @@ class FlankCompliance3D:
     contact_modulus: float
     """E / (1 - nu^2), Pa."""
     base_helix_angle: float
-    """rad; > 0 is right hand: the same s is further counter-clockwise at larger z."""
+    """Base helix angle, rad; > 0 is right hand: the same s is further counter-clockwise at larger z."""
     teeth: int
     """Number of teeth of the gear."""
     checks: ComplianceChecks
-    """Laws kept."""
+    """Breaches of the laws of the compliance."""
     unknowns: int
     """Free freedoms of the mesh of the whole gear."""
     seconds: dict[str, float]
     """CPU seconds by stage, children included."""
     solver: str
-    """How the equations were solved."""
+    """Method and software that solved the equations."""
     from_cache: bool = False
     """Whether it was read from disk; `seconds` are then those of the computation."""
     key_rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    """Of a keyed bore, by tooth from -s to s around tooth 0; else empty. Shape (2 s + 1, r, nf)."""
+    """Rows of the update by a keyed bore, by tooth from -s to s around tooth 0; else empty. Shape (2 s + 1,
+    r, nf).
+    """
     key_core: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
-    """``block(t, o)`` is that of `blocks` plus ``key_rows[t].T @ key_core @ key_rows[o]``, m/N. Shape (r, r).
+    """Core of the update by a keyed bore, m/N. ``block(t, o)`` is the block of `blocks` plus ``key_rows[t].T
+    @ key_core @ key_rows[o]``. Shape (r, r).
     """
 
     @property

@@ -1,4 +1,4 @@
-"""From a gear to its flank compliance in the transverse plane: mesh, assemble, condense, check."""
+"""Flank compliance of a gear in the transverse plane: mesh, assemble, condense, check."""
 
 from __future__ import annotations
 
@@ -183,6 +183,6 @@ def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis) 
 
 
 def tooth_indices(mesh: GearMesh, teeth: int) -> IntArray:
-    """Return where the `teeth` teeth around tooth 0 stand in `mesh.teeth`."""
+    """Return the positions of the `teeth` teeth around tooth 0 in `mesh.teeth`."""
     center = int(np.flatnonzero(mesh.teeth == 0)[0])
     return center + np.arange(teeth) - (teeth - 1) // 2

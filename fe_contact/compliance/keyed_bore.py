@@ -34,10 +34,10 @@ class _KeyUpdate(NamedTuple):
     """The contribution of the key to the compliance of the ring."""
 
     rows: FloatArray
-    """By tooth from -span to span. Shape (2 span + 1, r, nf)."""
+    """Rows of the update by tooth from -span to span. Shape (2 span + 1, r, nf)."""
     core: FloatArray
-    """The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core @ rows[o]``, m/N. Shape
-    (r, r).
+    """Core of the update, m/N. The compliance of tooth t under forces on tooth o grows by ``rows[t].T @ core
+    @ rows[o]``. Shape (r, r).
     """
 
 
@@ -50,7 +50,7 @@ class _KeyPoints(NamedTuple):
 
 
 def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -> _KeyUpdate:
-    """Return what the key of a right-hand gear adds.
+    """Return the update of the compliance by the key of a right-hand gear.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def key_update(gear: Toothing, solved: CondensedGear, twist: float, span: int) -
 
 
 def _unit_motion(solved: CondensedGear, distances: IntArray) -> FloatArray:
-    """Return what unit forces on the bore of sector 0 move: flank and bore of the sectors `distances`.
+    """Return the displacements of flank and bore of the sectors `distances` under unit forces on bore 0.
 
     (m, nf + p, p): flank, bore between the cuts, bore on the left cut; p loads on the latter two.
     """

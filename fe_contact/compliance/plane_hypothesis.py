@@ -1,4 +1,4 @@
-"""Plane hypotheses: what the missing dimension does."""
+"""Plane hypotheses about the direction along the face: plane strain and plane stress."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ def first_harmonics(teeth: int) -> list[int]:
 
 
 def least_passed(teeth: int) -> float:
-    """Return the share of the compliance that tells loads apart; more where all harmonics are solved."""
+    """Return the share of the compliance from which loads count as different; more with all harmonics."""
     return MIN_SIGNIFICANT if len(first_harmonics(teeth)) > teeth // 2 else MIN_PASSED
 
 
@@ -115,7 +115,7 @@ def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatAr
 def _residual_energy(
     ring: TurningLoads, basis: FloatArray, solutions: list[ComplexArray], modes: FloatArray
 ) -> FloatArray:
-    """Return the energy of what is unbalanced under unit load, by harmonic and flank node or other load.
+    """Return the energy of the unbalanced forces under unit load, by harmonic and flank node or other load.
 
     That is told by the squares of `SKETCH` sums of all forces with random signs.
     """

@@ -18,11 +18,11 @@ class Ring:
     """Condensed stiffness of one gear, bore clamped, per unit face width."""
 
     mesh: GearMesh
-    """Its mesh."""
+    """Mesh of the gear."""
     sector: CondensedSector
-    """One tooth."""
+    """Condensed sector of one tooth."""
     hub_matrix: sp.csc_array | None
-    """Stiffness of the hub on its own freedoms."""
+    """Stiffness of the hub on its own freedoms; None without a hub."""
     matrix: sp.csc_array
     """Condensed stiffness of the whole gear. (n, n) sparse array."""
     position: IntArray
@@ -82,7 +82,7 @@ def _turned_matrix(matrix: FloatArray, angle: float) -> FloatArray:
 
 
 def flank_matrices(ring: Ring, teeth: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Return what loads on flanks move across and along them.
+    """Return the displacements of flanks by loads on flanks, across and along them.
 
     Only rows that the loaded sectors touch are solved for.
 

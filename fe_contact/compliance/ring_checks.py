@@ -19,7 +19,7 @@ class Field:
     """Displacement of the whole mesh under a flank load on one tooth, per unit face width."""
 
     displacement: FloatArray
-    """m per N/m of load. Shape (N, 2)."""
+    """Displacement of the nodes, m per N/m of load. Shape (N, 2)."""
     load: FloatArray
     internal: FloatArray
     """`load`, `internal`: Applied nodal forces and K u, N/m. Shape (N, 2) each."""
@@ -30,9 +30,9 @@ class _FlankLoad:
     """Inward normal forces on the involute of one tooth."""
 
     forces: FloatArray
-    """At the flank's nodes, N/m. Shape (k,)."""
+    """Inward normal forces at the flank's nodes, N/m. Shape (k,)."""
     moment: float
-    """Their moment about the gear's axis, N: every normal of an involute touches the base circle."""
+    """Moment of the forces about the gear's axis, N. Every normal of an involute touches the base circle."""
 
     def work(self, matrix: FloatArray) -> float:
         """Return q' S q with S the middle diagonal block of a flank compliance."""

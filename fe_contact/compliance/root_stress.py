@@ -29,8 +29,8 @@ class UnitRootStress:
     """Unit-load stress on the surface of the tooth roots of one gear, in the plane or over the face."""
 
     distance: IntArray
-    """How many teeth the stressed tooth is ahead of the loaded one, counter-clockwise; consecutive, symmetric
-    about 0. Shape (d,).
+    """Number of teeth by which the stressed tooth is ahead of the loaded one, counter-clockwise; consecutive,
+    symmetric about 0. Shape (d,).
     """
     stress: FloatArray
     """Stress per force at each flank freedom. Second axis: the root beside the loaded (right) flank, which
@@ -53,13 +53,13 @@ class UnitRootStress:
     index: IntArray
     """Flank freedom at plane and profile node; (1, k) in the plane. Shape (2 L + 1, k)."""
     checks: RootStressChecks
-    """Laws kept."""
+    """Breaches of the laws of root stress."""
     unknowns: int
     """Free freedoms of the mesh of the whole gear."""
     seconds: dict[str, float]
     """CPU seconds by stage, children included."""
     solver: str
-    """How the equations were solved."""
+    """Method and software that solved the equations."""
     from_cache: bool = False
     """Whether it was read from disk; `seconds` are then those of the computation."""
 

@@ -15,7 +15,7 @@ STATIONS = np.array([-1.0, 1.0]) / np.sqrt(3.0)
 """Stations of an edge at which its strain is evaluated, in its coordinate from -1 to 1."""
 
 COMPONENTS = 3
-"""Along the profile, across it, and the shear between them."""
+"""Components of the surface stress: along the profile, across it, and the shear between them."""
 
 
 @dataclass(frozen=True)

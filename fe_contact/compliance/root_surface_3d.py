@@ -53,11 +53,11 @@ class SurfaceElements(NamedTuple):
     """Eight-node quadrilaterals of a surface."""
 
     nodes: FloatArray
-    """Places in the order of `ALONG` and `ACROSS`, m. Shape (m, 8, 3)."""
+    """Coordinates of the nodes in the order of `ALONG` and `ACROSS`, m. Shape (m, 8, 3)."""
     frames: FloatArray
     """Axes of the freedoms of each node, one per column. Shape (m, 8, 3, 3)."""
     freedoms: IntArray
-    """Their numbers; -1 where held. Shape (m, 8, 3)."""
+    """Numbers of the freedoms of each node; -1 where held. Shape (m, 8, 3)."""
 
 
 def face_stress(elements: SurfaceElements, material: Material, size: int) -> sp.csr_array:

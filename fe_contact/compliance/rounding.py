@@ -12,7 +12,9 @@ from fe_contact.material import Material
 from fe_contact.types import FloatArray
 
 LARGEST_ROUNDING = 1e-6
-"""Largest part of the strain energy that rounding may change: a thousandth of what fine meshes leave."""
+"""Largest part of the strain energy that rounding may change: a thousandth of the discretization error of
+fine meshes.
+"""
 
 
 NORM = 4.0
@@ -29,7 +31,7 @@ EPSILON = float(np.finfo(float).eps)
 def left_by_rounding(
     stiffness: FloatArray, displacement: FloatArray, load: FloatArray, work: float
 ) -> tuple[float, float]:
-    """Return what rounding may leave of residual and energy, both relative.
+    """Return bounds of the rounding errors in residual and energy, both relative.
 
     Parameters
     ----------

@@ -23,15 +23,15 @@ INNER = REFERENCE[:8] / np.sqrt(3.0)
 
 @dataclass(frozen=True)
 class _Part:
-    """One batch: its elements (c, m) and, in the frame of its layers, what turns freedoms into stresses."""
+    """A batch of elements (c, m), with what turns freedoms into stresses in the frame of the layers."""
 
     elements: IntArray
     frames: FloatArray
-    """Cartesian displacement per freedom. Shape (m, 60, 60)."""
+    """Cartesian displacements of the element's nodes per freedom. Shape (m, 60, 60)."""
     gradient: FloatArray
-    """Gradients of the functions at `INNER`. Shape (m, 8, 20, 3)."""
+    """Gradients of the element functions at `INNER`. Shape (m, 8, 20, 3)."""
     turns: FloatArray
-    """From the frame of each layer to that of mid-face. Shape (c, 3, 3)."""
+    """Rotations from the frame of each layer to the frame of mid-face. Shape (c, 3, 3)."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,16 @@ class SectorElements:
     """The elements of one sector, in the frame of mid-face, tooth on +y."""
 
     nodes: FloatArray
-    """m, in the order of `SweptSector.elements`, which is VTK's; none of an elastic seat. Shape (e, 20, 3).
+    """Nodes of the elements, m, in the order of `SweptSector.elements`, which is VTK's. Elements of an
+    elastic seat are left out. Shape (e, 20, 3).
     """
     numbers: IntArray
-    """Point of each; nodes that hang on a coarser face have points of their own. Shape (e, 20)."""
+    """Point number of each node; nodes that hang on a coarser face have points of their own. Shape (e, 20).
+    """
     points: int
     """Number of points."""
     quality: dict[str, FloatArray]
-    """By name, (e,)."""
+    """Quality measures of the elements by name, (e,)."""
     sector: SweptSector
     lame: tuple[float, float]
     parts: tuple[_Part, ...]

@@ -23,9 +23,11 @@ class ElementStiffness:
     """Stiffness of the elements of a sector."""
 
     matrices: FloatArray
-    """N/m; freedoms in the order of `SweptSector.element_freedoms`. Shape (p, 60, 60)."""
+    """Different element matrices, N/m; freedoms in the order of `SweptSector.element_freedoms`. Shape (p, 60,
+    60).
+    """
     of_element: IntArray
-    """Which of them each element has. Shape (e,)."""
+    """Index of each element's matrix in `matrices`. Shape (e,)."""
 
 
 def twist(gear: Toothing) -> float:

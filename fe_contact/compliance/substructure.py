@@ -28,12 +28,12 @@ class _FrontFactor:
 
 @dataclass(frozen=True)
 class Condensation:
-    """How all freedoms of a sector follow from its kept ones."""
+    """Static condensation of a sector: recovers all freedoms from the kept ones."""
 
     factors: tuple[_FrontFactor, ...]
-    """From the root down: parents before their children."""
+    """Factors of the fronts from the root down: parents before their children."""
     retained: IntArray
-    """The kept freedoms. Shape (k,)."""
+    """Numbers of the kept freedoms. Shape (k,)."""
     size: int
     """Number of all freedoms."""
 
@@ -50,7 +50,7 @@ class Condensation:
 def condense(
     tree: EliminationTree, freedoms: IntArray, stiffness: ElementStiffness, report: Report = unreported
 ) -> tuple[FloatArray, Condensation]:
-    """Eliminate all freedoms but those `tree` keeps.
+    """Eliminate all freedoms except those that `tree` keeps.
 
     Raises `SolveError`: the stiffness is not positive definite.
 

@@ -1,14 +1,13 @@
-"""From a gear to the unit-load stress of its tooth roots, in the plane or over the face, with its cache.
+"""Unit-load stress of the tooth roots of a gear, in the plane or over the face, with its cache.
 
-The mesh and the hypotheses are those of the flank compliances; only who asks for a stress pays for it.
+Mesh and hypotheses are those of the flank compliances. The stress is computed on request only.
 
 In the plane, with the sector's stiffness split as in `ring_2d` and R the rows that make stresses of
 displacements,
 
     sigma = R_i u_i + R_b u_b = (N' X)' q + (R_b - X' K_ib) u_b,    X = K_ii^-1 R_i',
 
-so a stress costs one right-hand side, however many forces it is wanted for. Over the face see
-`root_stress_3d`.
+so a stress costs one right-hand side for any number of forces. Over the face see `root_stress_3d`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
+"""Loaded contact of gear teeth: points of contact, forces on them, and lag of the driven gear."""
 
 import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.contact.adjoint import adjoint, force_changes, load_arm

@@ -37,9 +37,11 @@ class _Adjoint:
     m).
     """
     arm_weight: FloatArray
-    """The same of the load arm; of it this sum is 0. Shape (P, L, m)."""
+    """Change of the load arm per normal approach taken away at each candidate. The sum over the candidates,
+    times `Candidates.motion_arm`, is 0. Shape (P, L, m).
+    """
     added_arm: FloatArray
-    """Arm of a little more load, m. Shape (P, L)."""
+    """Arm of a small further load, m. Shape (P, L)."""
     middle: FloatArray
     half: FloatArray
     """`middle`, `half`: Middle of each contact strip from the touching point on, towards tip 1, and half its

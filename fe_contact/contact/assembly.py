@@ -16,7 +16,7 @@ NEAR = 1e-3
 """Way over half a patch by which patches are displaced to see how their forces change."""
 
 _STRETCH = 0.25
-"""Part of its length by which a patch at an edge is longer or shorter to see how its forces change."""
+"""Relative change of the length of a patch at an edge, by which the change of its forces is measured."""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
@@ -206,7 +206,7 @@ def _add_gear(
 def _turned(
     block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
 ) -> float:
-    """Return what an edge yields to the load on it, nodes first to last - 1, along the normal of its mate."""
+    """Return the yield of an edge under its load, nodes first to last - 1, along the normal of its mate."""
     across = _work(block, load, first, last)
     turn = _work(along, load, first, last) / across
     return across * (1.0 + turn * (lever - 1.0)) ** 2

@@ -26,7 +26,7 @@ Line loads that vary within a slice are felt that far: waves of a slice and shor
 of two slices, the shortest ones that the bodies carry, move them as patches of 0.72 slices would.
 """
 LONGEST_LAW = 0.5
-"""The same at most, in modules: about half the thickness of a tooth."""
+"""Largest reference length of the local law in modules: about half the thickness of a tooth."""
 
 _FLUSH = 1e-6
 """Faces that stand apart by less than this part of their width end together."""
@@ -270,7 +270,7 @@ def _tip_inclination(gear: Toothing) -> float:
 
 
 def corner_softness(gear: Toothing) -> float:
-    """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
+    """Return the softness of the corner at a tip edge over that of a half plane; see `wedge_softness`.
 
     Flank and tip circle meet at a right angle and the pressure angle at the tip.
     """

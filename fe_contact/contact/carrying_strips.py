@@ -16,7 +16,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 _POINTS = 8
-"""Of a strip at which a change is spread over the flank."""
+"""Points of a strip at which a change of the flanks is sampled."""
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,13 @@ class CarryingStrips:
     shape: tuple[int, int, int]
     """Numbers of positions, loads and candidates."""
     index: IntArray
-    """Of each among all of these, flattened. Shape (k,)."""
+    """Index of each strip among all positions, loads and candidates, flattened. Shape (k,)."""
     strips: Strips
     closing: ClosingLag
     turned: TurnedForces
-    """Of all candidates."""
+    """Motions of the bodies by turned forces, of all candidates."""
     following: FollowingPatches | None
-    """Of all candidates; None where patches stay."""
+    """Motions of the load patches, of all candidates; None where patches stay."""
     normal: float
     """Normal approach taken away per depth removed in the transverse section."""
     weight: FloatArray
@@ -41,11 +41,11 @@ class CarryingStrips:
     each.
     """
     added_arm: FloatArray
-    """Arm of a little more load, m. Shape (P, L)."""
+    """Arm of a small further load, m. Shape (P, L)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> CarryingStrips:
-        """Gather them from a solution of a problem."""
+        """Return the carrying strips of a solution of a problem."""
         weights = adjoint(pair, problem, solution)
         at = np.nonzero(weights.weight)
         turned = TurnedForces.of(pair, problem, solution.force)
@@ -115,11 +115,11 @@ class CarryingStrips:
         return np.asarray(opened)
 
     def change(self, opened: FloatArray) -> FloatArray:
-        """Return what normal approach taken away (k,) in m adds to the transmission error, (P, L) in m."""
+        """Return the change of the transmission error by normal approach taken away (k,), (P, L); m."""
         return self._by_row(self.weight * opened)
 
     def arm_change(self, opened: FloatArray) -> FloatArray:
-        """Return the same of the load arm, (P, L) in m; places and shares of the contacts stay."""
+        """Return the change of the load arm, (P, L) in m; places and shares of the contacts stay."""
         return self._by_row(self.arm_weight * opened)
 
     def _by_row(self, values: FloatArray) -> FloatArray:
@@ -129,7 +129,7 @@ class CarryingStrips:
     def on_flank(
         self, gear: int, roll_length: FloatArray, face_position: FloatArray, rows: FloatArray
     ) -> FloatArray:
-        """Return what material removed at each node of a grid on a flank does, bilinear between nodes.
+        """Return derivatives by material removed at each node of a grid on a flank, bilinear between nodes.
 
         Parameters
         ----------

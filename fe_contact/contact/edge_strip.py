@@ -1,4 +1,4 @@
-r"""Strips near a tip edge: where their load presses, and what the corner under them yields.
+r"""Strips near a tip edge: the center of their load, and the yield of the corner under them.
 
 The load patch of finite elements at an edge has one length. The strip is shorter under less load, so that its
 middle is nearer to the edge, where the bodies yield more; and it moves as flanks tilt, less if the edge holds
@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 from host.loops import inner, njit
 
 SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
-"""Columns of a table (..., n, 8), those of `EdgeStrips`."""
+"""Columns of a table of edge strips (..., n, 8), in the order of the fields of `EdgeStrips`."""
 EDGE_REACH = 2.0
 """Distance from an edge over half a patch within which strips may reach it, of twice the largest load too."""
 _SHORTEST = 1e-12
@@ -49,13 +49,13 @@ class EdgeStrips(NamedTuple):
     radius: FloatArray
     """Relative radius in the normal section, m."""
     softness: FloatArray
-    """4/(pi E*) over the width, 1/N m."""
+    """Softness of a half plane, 4/(pi E*), over the width, 1/N m."""
     patch: FloatArray
     """Distance of the patch's centroid from the edge, m."""
     missing: FloatArray
-    """Part of the corner that the local law has not, 0 to 1."""
+    """Part of the corner's softness that is missing in the local law, 0 to 1."""
     corner: FloatArray
-    """What the corner yields over a half plane, over the width, m/N."""
+    """Additional softness of the corner beyond a half plane, over the width, m/N."""
     length: FloatArray
     """Half-width of the patch on a half plane, m."""
 
@@ -72,7 +72,7 @@ def no_edges(slices: int) -> FloatArray:
 
 
 class EdgeMotion(NamedTuple):
-    """Derivatives of the energy E by force and tilt, and what the local law lacks of the corner."""
+    """Derivatives of the energy E by force and tilt, and the corner's yield that the local law lacks."""
 
     by_force: float
     by_tilt: float
@@ -112,7 +112,7 @@ def edge_position(
 
 @inner(error_model="numpy")
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
-    """Return what a force in N on slice i and a tilt of its flanks do; `edge` (n, 8) is a table."""
+    """Return the motion by a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
     position = edge_position(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
     centroid, middle, turned, twice, growth = position

@@ -16,7 +16,9 @@ from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 TOGETHER = 8
-"""Positions that are assembled together, always the same ones: sums round by what is beside them."""
+"""Number of positions that are assembled together. Groups are always the same, since the rounding of sums
+depends on the other members.
+"""
 
 _DOUBLED = ("lever", "teeth", "low", "high", "present")
 
@@ -72,7 +74,7 @@ class KeyedFlanks(NamedTuple):
     couple_teeth: bool
 
     def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
-        """Return what is added between patches (n, n) on the teeth (n,)."""
+        """Return the compliance between patches on the teeth (n,), (n, n) in m/N."""
         rows = self.rows[tooth + len(self.rows) // 2]
         motion = np.empty((len(tooth), rows.shape[1]))
         for i, (row, nodes, forces, used) in enumerate(
@@ -115,7 +117,7 @@ class _FaceGear:
             yield rows, added
 
     def displaced(self) -> _DisplacedGear:
-        """Return it with two loads on each slice: the patches, and how they change."""
+        """Return the loads with two on each slice: the patches, and their derivatives by displacement."""
         doubled = {name: np.repeat(getattr(self, name), 2, axis=-1) for name in _DOUBLED}
         return _DisplacedGear(**(vars(self) | doubled))
 

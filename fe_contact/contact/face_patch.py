@@ -39,7 +39,7 @@ class FaceLoads(NamedTuple):
     used: IntArray
 
     def rows(self, keep: BoolArray) -> FaceLoads:
-        """Keep some loads."""
+        """Return the loads selected by `keep`."""
         return FaceLoads(self.nodes[keep], self.forces[keep], self.used[keep])
 
     def plus(self, part: float, other: FaceLoads, times: float) -> FaceLoads:
@@ -124,7 +124,7 @@ def _most_nodes(
 
 @inner()
 def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
-    """Return one of the equal parts of a range."""
+    """Return part q of a range that is divided into `count` equal parts."""
     step = (high - low) / count
     return low + q * step, low + (q + 1) * step
 
@@ -243,22 +243,22 @@ class _SliceForces(NamedTuple):
 
     low: IntArray
     width: IntArray
-    """`low`, `width`: First place among those freedoms that each slice loads, and how many from there on.
-    Shape (n,) each.
+    """`low`, `width`: First needed freedom that each slice loads, and number of freedoms from there on. Shape
+    (n,) each.
     """
     start: IntArray
-    """Sums of the widths before each. Shape (n + 1,)."""
+    """Sum of the widths of all slices before each slice. Shape (n + 1,)."""
     force: FloatArray
-    """Those of slice i, (P, width), from P start[i] on."""
+    """Forces of the slices one after the other: those of slice i, (P, width), begin at P start[i]."""
     lever: FloatArray
-    """Shape (P, n)."""
+    """Lever of the load of each slice. Shape (P, n)."""
 
 
 @inner()
 def _slice_forces(
     loads: FaceLoads, at: IntArray, lever: FloatArray, rank: IntArray, ends: IntArray
 ) -> _SliceForces:
-    """Lay the forces of all slices beside each other."""
+    """Lay the forces of all slices out one after the other."""
     low, width, start = _ranges(loads, at[1], rank, ends)
     count = lever.shape[0]
     force = np.zeros(start[-1] * count)
@@ -272,7 +272,7 @@ def _slice_forces(
 
 @inner()
 def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatArray) -> FloatArray:
-    """Return the rows and columns of a block beside each other in memory, within `room`."""
+    """Return the rows and columns of a block side by side in memory, within `room`."""
     gathered = room[: rows.size * columns.size].reshape(rows.size, columns.size)
     for k in range(rows.size):
         row = block[rows[k]]
@@ -285,7 +285,7 @@ def _gathered(block: FloatArray, rows: IntArray, columns: IntArray, room: FloatA
 def _add_teeth(
     block: FloatArray, slices: _SliceForces, ends: IntArray, a: int, b: int, out: FloatArray
 ) -> None:
-    """Add what the slices of tooth b move at those of tooth a, and back."""
+    """Add the displacements at the slices of tooth a by those of tooth b, and the reverse."""
     low, width, start, forces, lever = slices
     count = lever.shape[0]
     motion = np.empty((count, block.shape[1]))

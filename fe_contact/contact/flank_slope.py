@@ -1,4 +1,4 @@
-"""Roll lengths along both flanks of a contact, and the slopes of what is removed from them."""
+"""Roll lengths along both flanks of a contact, and the slopes of the material removed from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-r"""How much more a body gives way near its free end than an endless half plane does.
+r"""Additional approach of a body near its free end beyond that of an endless half plane.
 
 A line load that runs to the free end of a body presses on a quarter space. Its mirror image in the end plane
 frees that plane of shear; the normal stress that is left there is freed by loads that amplify the image by a
@@ -40,8 +40,8 @@ class FreeEnds(NamedTuple):
 
     low: float
     high: float
-    """`low`, `high`: Face positions of its ends, m from the pinion's mid-face; infinite where the body goes
-    on.
+    """`low`, `high`: Face positions of the ends of the body, m from the pinion's mid-face; infinite where the
+    body goes on.
     """
     softness: float
     """(psi - 1)/2."""

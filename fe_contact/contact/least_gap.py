@@ -1,4 +1,4 @@
-"""Least of many gaps along flanks, by their true values: from samples to the lowest place beside them."""
+"""Least of many gaps along flanks, by their true values: from samples to the lowest point nearby."""
 
 from __future__ import annotations
 
@@ -14,13 +14,15 @@ from host.loops import inner, njit
 TrueGap = Callable[[FloatArray, IntArray], FloatArray]
 """Gap in m at ways (k,) in m along the flanks of the contacts (k,)."""
 _VALLEYS = 8
-"""Samples from which the gap is followed at most."""
+"""Most valleys of the samples from which the gap is followed."""
 _DEEPER = 4.0
-"""How much deeper than its parabola a valley may be: its curvature may jump at a node of a surface."""
+"""Possible depth of a valley below its samples over the depth of the parabola through them. The curvature may
+jump at a node of a surface.
+"""
 _STEPS, _MIN_STEPS = 15, 6
-"""Refinements of a place at most, and at least: each side of it is halved once."""
+"""Most and fewest refinements of a point. Each side of it is halved once."""
 _HALVED = 3
-"""One in so many of them halves the longer side: parabolas alone can keep one end of a bracket."""
+"""Period of the refinements that halve the longer side. Parabolas alone can keep one end of a bracket."""
 _NEAREST = 1e-3
 """Least distance of a refinement from the lowest place, over the bracket."""
 
@@ -134,7 +136,7 @@ def _lowest_valleys(
 def _refinements(
     ways: FloatArray, values: FloatArray, on: IntArray, halving: bool
 ) -> tuple[FloatArray, FloatArray]:
-    """Return where to look next between points (3, n) of contacts `on` (m,), and what a parabola gains."""
+    """Return the next points between points (3, n) of contacts `on` (m,), and the gain by a parabola."""
     places, gains = np.empty(on.size), np.empty(on.size)
     for m in range(on.size):
         i = on[m]
@@ -179,16 +181,16 @@ def _narrow(
 
 
 class Nodes(NamedTuple):
-    """Coordinates at which gaps of n contacts are looked at, in sorted lists one after the other."""
+    """Sorted lists of the coordinates at which gaps of n contacts are sampled, one list after the other."""
 
     s: FloatArray
     """Coordinates along the flank, m."""
     start: IntArray
-    """Where the lists begin. Shape (L + 1,)."""
+    """Start of each list in `s`. Shape (L + 1,)."""
     list_of: IntArray
-    """Lists of each contact. Shape (K, n)."""
+    """Numbers of the lists of each contact. Shape (K, n)."""
     origin: FloatArray
-    """Coordinates of the contact by which those of each list count, m. Shape (K, n)."""
+    """Origin of each list's coordinates at the contact, m. Shape (K, n)."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -199,7 +201,7 @@ def samples(
     nodes: Nodes,
     alike: FloatArray,
 ) -> tuple[FloatArray, IntArray]:
-    """Return ways in m at which gaps are looked at, and their contacts, ordered by contact and way.
+    """Return ways in m at which gaps are sampled, and their contacts, ordered by contact and way.
 
     Within windows (n,): a place (n,) to begin at, `parts` (k,) of the window, and nodes. Of those that are no
     further from the one below than `alike` (n,) in m there is none.

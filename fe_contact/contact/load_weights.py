@@ -1,4 +1,4 @@
-"""What the gaps of candidates do to the transmission error and to sums over the load, by one adjoint."""
+"""Effect of candidates' gaps on the transmission error and on means over the load, by one adjoint."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ def load_sums(problem: ContactProblem, solution: ContactSolution, rows: FloatArr
     Parameters
     ----------
     problem, solution
-        Of P positions, L loads and m candidates.
+        Contact at P positions, L loads and m candidates.
     rows : ndarray, shape (Q, P, m)
-        The quantities.
+        Quantities of the candidates.
     """
     loaded = solution.force * problem.candidates.torque_share[:, None]
     return np.asarray(np.einsum("plm,qpm->plq", loaded, rows) / solution.load[:, None])
@@ -28,16 +28,16 @@ def load_sums(problem: ContactProblem, solution: ContactSolution, rows: FloatArr
 def load_weights(
     problem: ContactProblem, solution: ContactSolution, rows: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Find what normal approach taken away at each candidate does; parameters of `load_sums`.
+    """Return derivatives by the normal approach of each candidate; parameters of `load_sums`.
 
-    With the terms of `adjoint`: dF = S (m dSTE - dg) and n'dF = 0.
+    They follow, with the terms of `adjoint`, from dF = S (m dSTE - dg) and n'dF = 0.
 
     Returns
     -------
     weight : ndarray, shape (P, L, m)
-        To the transmission error, 1.
+        Change of the transmission error per normal approach taken away, 1.
     weights : ndarray, shape (Q, P, L, m)
-        To the sums, in their unit per m.
+        Change of the means per normal approach taken away, in their unit per m.
     """
     c = problem.candidates
     shares = c.torque_share * np.concatenate([np.ones((1, *c.gap.shape)), rows])

@@ -37,7 +37,7 @@ class LocalLaw(NamedTuple):
     """The law of m contacts at one position."""
 
     gap: FloatArray
-    """About the touching points, a `gap_table`. Shape (m, 4 + 3 B)."""
+    """Gaps about the touching points, a `gap_table`. Shape (m, 4 + 3 B)."""
     strip: FloatArray
     """Length of contact line of each in m; half strip in m up to which its gap is a parabola alone; contact
     modulus E* in Pa, less where a tip corner yields; middle and half length of the strip found last, from

@@ -34,7 +34,7 @@ class Break:
         return self.position - s_1 if self.gear == 0 else s_2 - self.position
 
     def height(self, beyond: FloatArray) -> FloatArray:
-        """Return what it removes in m at distances from it in m towards the pinion's tip."""
+        """Return the material removed at distances towards the pinion's tip, m; distances in m."""
         depth = np.maximum(self.side * beyond, 0.0)
         return np.asarray(depth * (self.jump + 0.5 * self.bend * depth))
 
@@ -83,8 +83,8 @@ class MeetingTeeth:
 
     pair: ParallelAxes
     meeting: IntArray
-    """Which pair since position 0. Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at
-    position k, with the k-th next teeth of both gears.
+    """Number of the pair that meets, counted from position 0. Meeting 0 is pair 0 at position 0. Meeting k
+    touches at the pitch point at position k, with the k-th next teeth of both gears.
     """
     roll_1: FloatArray
     roll_2: FloatArray
@@ -119,7 +119,7 @@ class ToothGap(Protocol):
         """Bounds of the gap all over the usable flanks, arrays over the teeth of the gear, or numbers."""
 
     def tooth(self, meeting: IntArray) -> IntArray:
-        """Return which of its teeth meet, the first is 0."""
+        """Return the numbers of the gear's teeth that meet, the first is 0."""
 
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths in m, between two of which the profile of a tooth turns back once at most."""
@@ -129,7 +129,7 @@ class ToothGap(Protocol):
 
 
 class ComplianceTerm(Protocol):
-    """Compliance of what carries the gears, added to that of the teeth and bodies.
+    """Compliance of shafts and seats that carry the gears, added to that of teeth and bodies.
 
     Hashable, so that an assembled problem can be kept with the terms that are in it.
     """
@@ -155,8 +155,8 @@ class ContactModel:
     across_face: bool = False
     """Load distributes over the face width: three dimensions instead of the plane."""
     finite_width: bool = False
-    """The plane stands in for gears of finite width: their compliance is that of plane strain and what their
-    free ends add. In three dimensions it is in the compliance anyway.
+    """Whether the plane is corrected for the finite width: the compliance is that of plane strain plus that
+    of the free ends. In three dimensions the compliance has both anyway.
     """
     parts: tuple[str, ...] = ()
     """Parts of the gears' bodies that are in their compliance (`Toothing.with_parts`); without any they are

@@ -1,4 +1,4 @@
-"""Gaps made of parabolas along flanks: where they are least, and the gaps about there."""
+"""Gaps made of parabolas along flanks: their least values, and the gaps about these points."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class Patches:
     """Whether a patch ends at the tip edge."""
 
     def rows(self, keep: IntArray) -> Patches:
-        """Keep some positions."""
+        """Return the patches at the positions `keep`."""
         bulge, at_tip = (
             np.asarray(np.broadcast_to(values, self.center.shape)[keep])
             for values in (self.bulge, self.at_tip)

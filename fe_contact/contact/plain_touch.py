@@ -1,4 +1,4 @@
-"""Touching points of plain involutes, with or without tip edges, and what is known of a touching point."""
+"""Touching points of plain involutes, with or without tip edges, and their local geometry."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Touch:
     s_2: FloatArray
     """`s_1`, `s_2`: Flank coordinates, m."""
     gap: FloatArray
-    """On the line of action, m; infinite = the pair cannot touch."""
+    """Gap on the line of action, m; infinite where the pair cannot touch."""
     radius: FloatArray
     """Relative radius of curvature in the transverse section, m."""
     lever_1: FloatArray
@@ -39,21 +39,23 @@ class Touch:
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
-    """`offset`, `jump`, `bend`: Its breaks. Shape (P, n, B) each."""
+    """`offset`, `jump`, `bend`: Breaks of the gap: place, slope and curvature from there on. Shape (P, n, B)
+    each.
+    """
     shift: FloatArray
-    """How far modifications move the touching point, or the middle of the strip, towards tip 1, m."""
+    """Way by which modifications move the touching point, or the middle of the strip, towards tip 1, m."""
     approach_error: FloatArray
     """Error of the approach on rough flanks; see `RoughStrip`."""
     lag: FloatArray
-    """Lag of gear 2 that closes a depth removed there, over that depth."""
+    """Lag of gear 2 that closes a removed depth at the touching point, over that depth."""
     slope_1: FloatArray
     slope_2: FloatArray
-    """`slope_1`, `slope_2`: How fast what is removed from each flank grows over its roll length towards the
-    tip, of a ring towards the root; zero at its edge.
+    """`slope_1`, `slope_2`: Growth of the material removed from each flank per roll length towards the tip
+    (ring gear: towards the root); zero at its edge.
     """
     turn_1: FloatArray
     turn_2: FloatArray
-    """`turn_1`, `turn_2`: Their changes along the flanks towards tip 1, 1/m."""
+    """`turn_1`, `turn_2`: Changes of these slopes along the flanks towards tip 1, 1/m."""
     roll_1: FloatArray
     """Nominal roll lengths of gear 1, m."""
 
@@ -73,15 +75,15 @@ class Touch:
         return Gap(*(getattr(self, name) for name in Gap._fields))
 
     def with_breaks(self, count: int) -> Touch:
-        """Return the same with at least so many breaks; those that come to them are at infinity."""
+        """Return the touching points with at least `count` breaks; added ones are at infinity."""
         return replace(self, **with_breaks(self.about, count)._asdict())
 
     def rows(self, keep: IntArray) -> Touch:
-        """Keep some positions."""
+        """Return the touching points at the positions `keep`."""
         return Touch(*(getattr(self, name)[keep] for name in self.__dataclass_fields__))
 
     def columns(self, keep: BoolArray) -> Touch:
-        """Keep some pairs."""
+        """Return the touching points of the pairs `keep`."""
         return Touch(*(getattr(self, name)[:, keep] for name in self.__dataclass_fields__))
 
 

@@ -15,32 +15,36 @@ from host.loops import inner
 
 
 class PointProblems(NamedTuple):
-    """All P positions as the compiled solver reads them; position p has the bodies of row p modulo Q."""
+    """Contact problems of P positions for the compiled solver; position p has bodies p modulo Q."""
 
     bodies: FloatArray
     tilt: FloatArray
-    """`bodies`, `tilt`: The tilt is empty where flanks do not roll. Shape (Q, n, n) each."""
+    """`bodies`, `tilt`: Arrays of `PointProblem` of all slices; the tilt is empty where flanks do not roll.
+    Shape (Q, n, n) each.
+    """
     radius: FloatArray
-    """Ndarray, shape (P, n) where flanks roll, else (Q, n)."""
+    """Array `radius` of `PointProblem`. Shape (P, n) where flanks roll, else (Q, n)."""
     edge: FloatArray
-    """Of `EdgeStrips`. Ndarray, shape (Q, n, 8) where flanks roll, else (1, n, 8)."""
+    """Tables of `EdgeStrips`. Shape (Q, n, 8) where flanks roll, else (1, n, 8)."""
     present: BoolArray
-    """Shape (Q, n)."""
+    """Whether any contact can press on a slice. Shape (Q, n)."""
     curves: FloatArray
     heights: FloatArray
-    """`curves`, `heights`: Ndarray, shapes (points of a pair, K), (K, K)."""
+    """`curves`, `heights`: Arrays of `Candidates`. Shapes (points of a pair, K), (K, K)."""
     gap: FloatArray
     motion_arm: FloatArray
     torque_arm: FloatArray
     width: FloatArray
-    """`gap`, `motion_arm`, `torque_arm`, `width`: Shape (P, m) each."""
+    """`gap`, `motion_arm`, `torque_arm`, `width`: Arrays of `Candidates`. Shape (P, m) each."""
     about: FloatArray
-    """A `gap_table`. Shape (P, m, 4 + 3 B)."""
+    """Gap about the touching points, a `gap_table`. Shape (P, m, 4 + 3 B)."""
     length: float
     """Reference length away from free ends, m."""
     lengths: FloatArray
     modulus: FloatArray
-    """`lengths`, `modulus`: Shape (Q, m) each."""
+    """`lengths`, `modulus`: Reference length, m, and contact modulus, Pa, under each candidate. Shape (Q, m)
+    each.
+    """
 
 
 def point_problems(problem: ContactProblem) -> PointProblems:
@@ -74,21 +78,21 @@ class PointProblem(NamedTuple):
     """One position: m contacts that can carry force, on n = J K curves of J pairs."""
 
     bodies: FloatArray
-    """Height of curve i per unit force on j, without what is in the local law, m/N. Shape (n, n)."""
+    """Height of curve i per unit force on j without the compliance of the local law, m/N. Shape (n, n)."""
     tilt: FloatArray
     """Tilt of the flanks at curve i per unit force on j, 1/N; see `ContactProblem`. Ndarray, shape (n, n), or
     (0, 0) where no radius is above zero.
     """
     radius: FloatArray
-    """How far tilted flanks move their strip, m. Shape (n,)."""
+    """Way of the strip per tilt of the flanks, m. Shape (n,)."""
     edge: FloatArray
-    """Of `EdgeStrips`. Shape (n, 8)."""
+    """Tables of `EdgeStrips`. Shape (n, 8)."""
     curve: FloatArray
-    """Parts of the force of each contact on w curves beside each other, and of their heights there. Shape (m,
-    w).
+    """Shares of the force of each contact on w neighboring curves, and of the height of these curves at the
+    contact. Shape (m, w).
     """
     first: IntArray
-    """The first of those curves. Shape (m,)."""
+    """Index of the first of the w curves. Shape (m,)."""
     gap: FloatArray
     """Normal rigid gap in m. Shape (m,)."""
     motion_arm: FloatArray
@@ -100,23 +104,22 @@ class PointProblem(NamedTuple):
 
 
 class RowBodies(NamedTuple):
-    """What all problems of one row of bodies have in common."""
+    """Arrays that all problems of one row of bodies have in common."""
 
     there: BoolArray
     """Slices that any contact can press on. Shape (n,)."""
     compliance: FloatArray
     tilt: FloatArray
-    """`compliance`, `tilt`: See `bodies` and `tilt` of `PointProblem`."""
+    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `there`."""
     curve: FloatArray
     first: IntArray
-    """`curve`, `first`: See `PointProblem`, of the points of one pair. Ndarray, shapes (points, w),
-    (points,).
+    """`curve`, `first`: Arrays of `PointProblem` for the points of one pair. Shapes (points, w), (points,).
     """
 
 
 @inner(error_model="numpy")
 def row_bodies(every: PointProblems, row: int) -> RowBodies:
-    """Return what positions share that repeat row `row` in further base pitches."""
+    """Return the arrays that all positions of row `row` share, in any base pitch."""
     there = every.present[row]
     slices = np.flatnonzero(there)
     motion, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
@@ -177,19 +180,21 @@ def _banded(curves: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 class State(NamedTuple):
-    """The state of an iteration."""
+    """State of an iteration: forces and displacements of the n curves, and forces of the m contacts."""
 
     curve_load: FloatArray
     """Forces on the curves h, N. Shape (n,)."""
     displacement: FloatArray
-    """What they move, u(h), m. Shape (n,)."""
+    """Displacement of the curves by these forces, u(h), m. Shape (n,)."""
     yielding: FloatArray
-    """Its derivative, m/N. Shape (n, n)."""
+    """Derivative of the displacement in the forces, m/N. Shape (n, n)."""
     force: FloatArray
     slope: FloatArray
-    """`force`, `slope`: Of the contacts under these motions: N, N/m. Shape (m,) each."""
+    """`force`, `slope`: Forces of the contacts under these displacements, N, and their derivatives, N/m.
+    Shape (m,) each.
+    """
     pressed: FloatArray
-    """Those forces on the curves N'F, N. Shape (n,)."""
+    """Forces of the contacts on the curves, N'F, N. Shape (n,)."""
 
 
 @inner(error_model="numpy")

@@ -1,4 +1,9 @@
-"""The contact problem of all positions as plain arrays, independent of how they were obtained."""
+"""The contact problem of all positions as plain arrays, independent of their source.
+
+The common face is divided into slices. A candidate is a point at which a pair of teeth can touch; in three
+dimensions a slice has several. A load patch is the stretch of the profile over which a mesh takes the force
+of a candidate. A strip is the true contact width, which the local law resolves within the patch.
+"""
 
 from __future__ import annotations
 
@@ -18,15 +23,18 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 _SMALL_LOAD = 0.01
-"""Over the load of `PatchRule.edge_load`: of strips so short that they tell where those of any load are."""
+"""Small load over the load of `PatchRule.edge_load`. Its strips are so short that their middles stand for
+those under any load.
+"""
 
 _USUAL_STRIP = 0.012
 """Half strip over the relative radius of curvature; gears under rated loads have 0.01 to 0.04."""
 ALONG_FLANK = 1.1
-"""How far bodies move along a flank over its roll angle and how far they move across it, under a load.
+"""Displacement of bodies along a flank per roll angle over their displacement across it, under a load.
 
-A gear that turned about its axis would have 1, teeth in finite elements have 1.0 to 1.4 (12 to 90 teeth and
-ring gears). Chosen on five pairs: points on reliefs are as far off full contact as those of plain flanks.
+A gear that turns about its axis has 1. Teeth in finite elements have 1.0 to 1.4 (12 to 90 teeth and ring
+gears). The value was chosen on five pairs: their points on reliefs are then as far off full contact as points
+on plain flanks.
 """
 
 
@@ -39,7 +47,9 @@ class LoadedSlices:
     face_position: FloatArray
     """Distance of the slice's middle from the pinion's mid-face, m. Shape (n,)."""
     present: BoolArray
-    """Whether any contact can press on it; else its other entries are harmless numbers. Shape (P, n)."""
+    """Whether any contact can press on a slice; else the other entries of the slice are harmless numbers.
+    Shape (P, n).
+    """
     touch: Touch
     """Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
     where the middle is beyond them.
@@ -50,29 +60,29 @@ class LoadedSlices:
     contact line.
     """
     slice_width: float
-    """Along the face, m."""
+    """Width of a slice along the face, m."""
     base_helix_angle: float
     """beta_b of gear 1 in rad, > 0 right hand."""
     corner_1: float
     corner_2: float
-    """`corner_1`, `corner_2`: What the tip corner of either gear yields over a half plane; see
+    """`corner_1`, `corner_2`: Softness of the tip corner of either gear over that of a half plane; see
     `fe_contact.hertz.wedge_softness`.
     """
     tip_inclinations: tuple[float, float]
     """Tangent of the pressure angle at the tip of either gear."""
     law_length: float
-    """Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
-    local law, what is further in the finite elements.
+    """Reference length that separates the contact from the bodies, m. Compliance nearer to the strip is in
+    the local law, compliance further away in the finite elements.
     """
     edge_load: float
-    """See `PatchRule`."""
+    """Load whose strips the patches at tip edges follow; see `PatchRule`."""
     lateral_shares: tuple[float, float]
     """`fe_contact.hertz.lateral_share` of both gears."""
     turned_normals: FloatArray
-    """By how much normals turn within the strip under each patch, rad. Shape (P, m)."""
+    """Angle by which normals turn within the strip under each patch, rad. Shape (P, m)."""
     end_1: FreeEnds = ENDLESS
     end_2: FreeEnds = ENDLESS
-    """`end_1`, `end_2`: Of the bodies of either gear, in the face positions of the slices."""
+    """`end_1`, `end_2`: Free ends of the bodies of either gear, in the face positions of the slices."""
 
     @property
     def edge_side(self) -> FloatArray:
@@ -101,7 +111,7 @@ class LoadedSlices:
         return np.asarray(values.reshape(*self.present.shape, -1).mean(axis=2))
 
     def rows(self, keep: IntArray) -> LoadedSlices:
-        """Keep some positions."""
+        """Return the slices at the positions `keep`."""
         return replace(
             self,
             present=self.present[keep],
@@ -121,7 +131,7 @@ class Candidates:
     """
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
     """Pair index; +1 is ahead. Candidates of one pair stand together. Shape (m,)."""
     face_position: FloatArray
@@ -129,15 +139,15 @@ class Candidates:
     touch: Touch
     """Touching points of the rigid flanks, arrays (P, m)."""
     width: FloatArray
-    """Length of contact line of each, m; less than usual where the line ends. Shape (P, m)."""
+    """Length of the contact line of each candidate, m; less than usual where the line ends. Shape (P, m)."""
     point_width: float
-    """Part of the face that each stands for, m."""
+    """Part of the face that each candidate represents, m."""
     slices: LoadedSlices
-    """On which they press, at Q positions: position p at row p modulo Q."""
+    """Slices on which the candidates press, at Q positions: position p has row p modulo Q."""
     curves: FloatArray
     heights: FloatArray
-    """`curves`, `heights`: Of the motion over the face; see `Slices.curves`. Ndarray, shapes (points of a
-    pair, K), (K, slices of a pair).
+    """`curves`, `heights`: Interpolation of the motion over the face; see `Slices.curves`. Shapes (points of
+    a pair, K), (K, slices of a pair).
     """
 
     @property
@@ -166,7 +176,7 @@ class Candidates:
         return self.gap_at(...)
 
     def gap_at(self, places: Any) -> Gap:
-        """Return the same of some of the candidates, by an index of arrays (P, m)."""
+        """Return the gap about some of the candidates, by an index of arrays (P, m)."""
         normal, touch = math.cos(self.base_helix_angle), self.touch
         return Gap(
             touch.slope[places] * normal,
@@ -180,19 +190,19 @@ class Candidates:
 
     @cached_property
     def strips(self) -> StripMiddles:
-        """Where the middles of strips under a two-hundredth of the largest load are, arrays (P, m)."""
+        """Middles of strips under one two-hundredth of the largest load, arrays (P, m)."""
         return StripMiddles(
             *(values.reshape(self.gap.shape) for values in strip_middles(*self._small_strips))
         )
 
     @property
     def rolling_radius(self) -> FloatArray:
-        """How far those middles move back from tip 1 (P, m) as flanks tilt by 1, m."""
+        """Way of the middles of small strips back from tip 1 per tilt of the flanks (P, m), m."""
         return rolling_radii(*self._small_strips).reshape(self.gap.shape)
 
     @cached_property
     def _small_strips(self) -> tuple[FloatArray, FloatArray]:
-        """Gaps about all touching points, and half strips there in m; none where there is no candidate."""
+        """Return gaps about all touching points, and half strips there in m; 0 without a candidate."""
         table = gap_table(self.gap_about)
         half = np.sqrt(_SMALL_LOAD * self.slices.edge_load * self.radius)
         return table.reshape(-1, table.shape[2]), np.where(np.isfinite(self.gap), half, 0.0).ravel()
@@ -240,7 +250,7 @@ class Candidates:
         return replace(self, touch=touch)
 
     def following(self, touch: Touch) -> Candidates:
-        """Return the same candidates with touching points that say how far the middles of strips moved."""
+        """Return the candidates with touching points whose `shift` is that of the middles of strips."""
         there = self.touching(touch)
         return self.touching(replace(touch, shift=touch.shift + there.strips.middle - self.strips.middle))
 
@@ -255,8 +265,8 @@ class ContactProblem:
 
     candidates: Candidates
     compliance: FloatArray
-    """Of position p at row p modulo Q, P a multiple of Q. Normal approach of slice i per unit normal force on
-    j, both gears, m/N. Shape (Q, n, n).
+    """Normal approach of slice i per unit normal force on slice j, both gears, m/N. Position p has row p
+    modulo Q, and P is a multiple of Q. Shape (Q, n, n).
     """
     modulus: float
     """Contact modulus E*, Pa."""
@@ -264,9 +274,9 @@ class ContactProblem:
     half_plane_2: float
     """`half_plane_1`, `half_plane_2`: 2 (1 - nu^2)/(pi E) of the gears, 1/Pa."""
     tilt: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    """How fast the compliance grows as the patches of slice i move towards tip 1, 1/N: how much force on j
-    tilts the flanks at i. By it patches follow the slope of the flanks, and in the plane their tilt. Ndarray,
-    shape (Q, n, n), or (0, 0, 0) where patches stay.
+    """Growth of the compliance per way of the patches of slice i towards tip 1, 1/N: a unit force on slice j
+    tilts the flanks at slice i by it. Patches follow the slope of the flanks by it, and in the plane also
+    their tilt. Ndarray, shape (Q, n, n), or (0, 0, 0) where patches stay.
     """
     share_1: FloatArray | float = 0.5
     """Part of gear 1 in the compliance of each slice. Ndarray, shape (Q, n), or float."""
@@ -343,17 +353,17 @@ class ContactProblem:
 
     @property
     def rolling(self) -> FloatArray:
-        """The `tilt` by which flanks roll under load: in the plane; over the face it is empty.
+        """The `tilt` by which flanks roll under load, in the plane; empty over the face.
 
-        There it moves STE by up to 0.01 um, and takes half of the time of a solution more.
+        Over the face rolling moves STE by up to 0.01 um, and makes a solution half as long again.
         """
         return self.tilt if len(self.candidates.heights) == 1 else self.tilt[:0, :0, :0]
 
     @property
     def radius(self) -> FloatArray:
-        """How far flanks that roll move the middles of their strips back as they tilt by 1, m.
+        """Way of the middles of strips back from tip 1 per tilt of rolling flanks, m.
 
-        Of each position (P, n); zeros (Q, n) where no flank rolls.
+        The shape is (P, n), one row a position; zeros (Q, n) where no flank rolls.
         """
         if not self.rolling.size:
             return np.zeros(self.candidates.slices.present.shape)
@@ -431,7 +441,7 @@ class ContactProblem:
 
 @njit(cache=True)
 def _displace(compliance: FloatArray, tilt: FloatArray, way: FloatArray) -> None:
-    """Add what patches that are displaced by `way` (Q, n) in m change of the compliance (Q, n, n)."""
+    """Add the change of the compliance (Q, n, n) by patches that are displaced by `way` (Q, n) in m."""
     for q in range(tilt.shape[0]):
         for i in range(tilt.shape[1]):
             for j in range(tilt.shape[1]):

@@ -1,4 +1,4 @@
-"""How rough flanks may be: surfaces on all teeth of a gear, and what differs from tooth to tooth."""
+"""Bounds of the roughness of flanks: surfaces on all teeth of a gear, and gaps of single teeth."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class DesignedSurface(NamedTuple):
 
     @classmethod
     def of(cls, pair: ParallelAxes, gear: int, grid: FlankGrid) -> DesignedSurface:
-        """Return that of a surface of the pinion, gear 0, or the wheel."""
+        """Return the extent of a surface of the pinion, gear 0, or the wheel."""
         toothing = (pair.pinion, pair.wheel)[gear]
         ends = toothing.form_roll_length, toothing.tip_roll_length
         return cls(gear, grid.extent(ends), profile_nodes(ends, 0.0, grid))
@@ -36,7 +36,7 @@ class DeviatingTeeth(NamedTuple):
     meeting: IntArray
 
     def gap(self, pair: ParallelAxes, rolls: tuple[FloatArray, FloatArray], face: FloatArray) -> FloatArray:
-        """Return their sum at roll lengths of both gears, m."""
+        """Return the sum of the gaps at roll lengths of both gears, m."""
         there = MeetingTeeth(pair, self.meeting, *rolls, face)
         return np.asarray(sum((term(there) for term in self.gaps), np.zeros(())))
 
@@ -55,7 +55,7 @@ class DeviatingTeeth(NamedTuple):
         return sets
 
     def rows(self, of: IntArray | slice) -> DeviatingTeeth:
-        """Return those of some of the candidates."""
+        """Return the gaps at some of the candidates."""
         return self._replace(meeting=self.meeting[of])
 
 

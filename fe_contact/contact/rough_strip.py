@@ -1,4 +1,4 @@
-r"""Strips of rough flanks: the even gap of parabolas that gives way under load as they do.
+r"""Strips of rough flanks: even gaps of parabolas with the same approach under load.
 
 Flanks with waves as short as the strip touch at a crest, then at the crests beside it, then all over: no
 parabola describes that. Two half planes with the true gap are solved under some loads [1]_, and the breaks of
@@ -26,24 +26,29 @@ from host.loops import inner, njit
 
 _RATIO = 1.6
 HALF_STRIPS: FloatArray = np.array([0.0025 * _RATIO**k for k in range(8)])
-"""Of plain flanks under the loads that are solved; rated gears have 0.01 to 0.04."""
+"""Half strips of plain flanks under the solved loads, over the relative radius. Gears under rated loads have
+0.01 to 0.04.
+"""
 LOADS: FloatArray = 0.5 * HALF_STRIPS**2
 BREAKS = 2 * HALF_STRIPS.size
 _USUAL = 4
-"""Load whose centroid is that of the patch: a half strip of 0.016."""
+"""Index of the load whose centroid the patch has: a half strip of 0.016."""
 _CELLS = 48
 _MIN_WINDOW, _LARGEST_WINDOW = 2.7, 12.0
-"""Half of what is looked at over the half strip of plain flanks: flanks lie on crests beside the first one as
-far out as deviations make up for what round flanks part, and load makes them yield."""
+"""Half of the sampled window over the half strip of plain flanks, least and largest. Besides the first crest,
+flanks touch at further crests. These lie as far out as deviations and deflections make up for the gap of
+round flanks.
+"""
 FLATTEST = 0.02
 """Least curvature of the even gap: its strip grows with the load."""
 _NARROWER, _WIDER = math.exp(-10.0), math.e
-"""Bounds of a strip over that of plain flanks."""
+"""Bounds of a strip over the strip of plain flanks."""
 _GROWTH = 1.15
-"""Least growth of a strip from one load to the next: a gap as steep as a wall stays steep behind it."""
+"""Least growth of a strip from one load to the next. A gap as steep as a wall stays steep behind it."""
 _STEPS, _TOLERANCE = 200, 2e-3
-"""Of the conjugate gradients, and the change of the forces over the load that ends them: the approach has its
-square."""
+"""Most steps of the conjugate gradients, and the change of the forces over the load that ends them. The error
+of the approach is of the order of its square.
+"""
 _HALVINGS = 24
 _AT_ONCE = 512
 """Contacts whose gaps are sampled together."""
@@ -53,14 +58,15 @@ GapOf = Callable[[FloatArray, IntArray], FloatArray]
 
 
 class RoughStrip(NamedTuple):
-    """The even gap of n contacts, without ends, and what comes with it."""
+    """Even gaps of n contacts, without ends, and their errors."""
 
     gap: Gap
     center: FloatArray
-    """Where the load lies from the touching point, m. Shape (n,)."""
+    """Distance of the load's centroid from the touching point, m. Shape (n,)."""
     approach_error: FloatArray
-    """Largest error of its approach over the geometric mean of relative radius and 2 p/(pi E*), under the
-    loads that are solved: waves miss more under a larger load, but no more than they are high. Shape (n,).
+    """Largest error of the approach of the even gap under the solved loads, over the geometric mean of
+    relative radius and 2 p/(pi E*). Under a larger load the error is larger, but at most the height of the
+    waves. Shape (n,).
     """
 
 
@@ -99,7 +105,7 @@ def rough_strip(gap_of: GapOf, position: FloatArray, curvature: FloatArray, spre
 def _excess(
     gap_of: GapOf, part: IntArray, position: FloatArray, curvature: FloatArray, spread: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how much more than plain ones flanks give way (n, K) under the loads, and centroids (n,).
+    """Return the approach (n, K) of flanks beyond that of plain ones under the loads, and centroids (n,).
 
     What cells miss is the same on plain flanks.
     """
@@ -140,7 +146,7 @@ def half_planes(gap: FloatArray, window: float) -> tuple[FloatArray, FloatArray]
 
 @inner(error_model="numpy")
 def _kernel(count: int, cell: float) -> FloatArray:
-    """Return what a unit force on a cell moves all (2 N - 1,), the mean of -ln|x|; in the middle its own."""
+    """Return the displacements of all cells by a unit force on the middle one, (2 N - 1,): mean -ln|x|."""
     kernel = np.empty(2 * count - 1)
     kernel[count - 1] = 1.0 - math.log(0.5 * cell)
     for d in range(1, count):

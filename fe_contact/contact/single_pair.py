@@ -1,4 +1,4 @@
-"""Deflection of one pair of teeth that carries the whole load alone: a bound of what a mesh gives way.
+"""Deflection of one pair of teeth that carries the whole load alone: a bound of the deflection of a mesh.
 
 The energy of an elastic contact is the least of all forces that balance the torque (complementary energy).
 Forces even over one pair are among these: with its gap G, its strain energy W and the load F their energy is
@@ -43,7 +43,7 @@ class _SinglePairs:
     share: FloatArray
     """Part of the force on each candidate; sums to 1 where there are any. Shape (Q, J, m/J)."""
     length: FloatArray
-    """Of the contact lines, m; 0 where the pair is not on the line of action. Shape (Q, J)."""
+    """Length of the contact lines, m; 0 where the pair is not on the line of action. Shape (Q, J)."""
 
     @classmethod
     def of(cls, problem: ContactProblem, usable: BoolArray) -> _SinglePairs:
@@ -69,7 +69,7 @@ class _SinglePairs:
         return np.asarray(np.einsum("qjn,qnk,qjk->qj", pressed, self.problem.bodies, pressed, optimize=True))
 
     def _strips(self, load: FloatArray) -> FloatArray:
-        """Return what strips add (Q, J, L), m: 2/p times the integral of k p [ln(l/b) + 1/4] over p."""
+        """Return the approach of strips (Q, J, L), m: 2/p times int k p [ln(l/b) + 1/4] dp."""
         problem, shape = self.problem, self.share.shape
         k = np.broadcast_to(sum(problem.half_planes), (shape[0], shape[1] * shape[2])).reshape(shape)
         radius = problem.candidates.radius[: shape[0]].reshape(shape)

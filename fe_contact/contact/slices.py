@@ -22,9 +22,9 @@ class Slices:
     center: FloatArray
     """Distance of the middle of each slice from the pinion's mid-face, m. Shape (K,)."""
     width: float
-    """Along the face, m."""
+    """Width of a slice along the face, m."""
     points: int = 1
-    """Of the contact line in each slice."""
+    """Number of points of the contact line in each slice."""
 
     @classmethod
     def of_pair(cls, pair: ParallelAxes, count: int, points: int | None = None) -> Slices:

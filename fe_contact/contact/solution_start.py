@@ -12,17 +12,17 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class Start:
-    """Forces of a solution on bodies, slices, gaps or at positions a little different.
+    """Forces of another solution, with bodies, slices, gaps or positions that are a little different.
 
-    The solution does not depend on them but for rounding: there is one alone. They spare the search for the
-    candidates that carry, half of the iterations and more.
+    The solution is unique: its start changes it by rounding alone. The start saves the search for the
+    carrying candidates, at least half of the iterations.
     """
 
     candidates: Candidates
-    """Those that the forces act on."""
+    """Candidates on which the forces act."""
     force: FloatArray
-    """In N at the positions and loads to be solved; zeros where there is no solution to start from. Shape (P,
-    L, n).
+    """Forces at the positions and loads to be solved, N; zeros where there is no solution to start from.
+    Shape (P, L, n).
     """
 
     def on(self, candidates: Candidates) -> FloatArray:

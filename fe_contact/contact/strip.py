@@ -34,10 +34,12 @@ from fe_contact.types import FloatArray
 from host.loops import inner, njit
 
 _TOLERANCE = 1e-9
-"""Of strip and middle over the strip; the approach is stationary in both."""
+"""Error of strip and middle over the strip that ends an iteration. The approach is stationary in both."""
 _STEPS = 100
 _NEWTON_STEPS, _EDGE_STEPS, _NEWTON_TOLERANCE = 8, 12, 1e-8
-"""Of strip and middle at once, and their last step over the strip, which leaves its square."""
+"""Most steps of Newton's method for strip and middle together, without and with an edge, and the last step
+over the strip that ends it. The error left is of the order of the square of that step.
+"""
 _TILTED = 0.1
 """Way of the middle by which its response to tilt is found, over half the strip."""
 _NEAR = 1e-6
@@ -60,7 +62,7 @@ class Gap(NamedTuple):
     """
     low: FloatArray
     high: FloatArray
-    """`low`, `high`: Where the bodies end, m; infinite = nowhere near. Shape (n,) each."""
+    """`low`, `high`: Ends of the bodies, m; infinite where there is no end. Shape (n,) each."""
     offset: FloatArray
     jump: FloatArray
     bend: FloatArray
@@ -69,7 +71,7 @@ class Gap(NamedTuple):
 
 
 def with_breaks(gap: Gap, count: int) -> Gap:
-    """Return gaps (...,) with at least so many breaks; those that come to them are at infinity."""
+    """Return gaps (...,) with at least `count` breaks; added ones are at infinity."""
     more = max(count - gap.offset.shape[-1], 0)
     width = [(0, 0)] * (gap.offset.ndim - 1) + [(0, more)]
     offset = np.pad(gap.offset, width, constant_values=np.inf)
@@ -249,7 +251,7 @@ class StripMiddles(NamedTuple):
 
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: From the touching point, and half the length, m."""
+    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m."""
     slope: FloatArray
     curvature: FloatArray
     """`slope`, `curvature`: Means of g' and g'' over the strip; 1 and 1/m. The slope is zero but where an
@@ -341,7 +343,7 @@ def strip_at(
 def _strip_at_edge(
     gap: FloatArray, i: int, value: float, length: float, half: float, side: float
 ) -> tuple[float, float, float, float]:
-    """Return what `strip_at` does of a strip that begins at the lower edge (`side` 1) or ends at the upper.
+    """Return the values of `strip_at` for a strip from the lower edge on (`side` 1) or to the upper edge.
 
     The mean of g' then pushes it against the edge; the pressure there is singular.
     """
@@ -365,7 +367,7 @@ def _strip_at_edge(
 
 @inner(error_model="numpy")
 def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
-    """Return integrals over the angle of a strip of what lies past a break, d from it on.
+    """Return integrals over the angle of a strip of the distance d past a break, from the break on.
 
     Parameters
     ----------

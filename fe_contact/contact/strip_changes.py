@@ -37,7 +37,9 @@ class Strips:
     """Distance from the pinion's mid-face, m. Shape (k,)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Of the strip from the touching point on, m. Shape (k,) each."""
+    """`middle`, `half`: Distance of the strip's middle from the touching point, and half its length, m. Shape
+    (k,) each.
+    """
 
     def removed(self, gap: GapTerm) -> FloatArray:
         """Return the mean of a gap over the strips (k,), m."""
@@ -69,7 +71,7 @@ class Strips:
         return gap(self.pair, *rolls, self.face) - of_breaks, breaks
 
     def _past(self, start: Break, distance: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the means over the strips of what a break removes, m, and of its slope."""
+        """Return the means over the strips of the material that a break removes, m, and of its slope."""
         beyond = start.side * (distance - self.middle)  # from the middle to the break
         jump, bend = (np.broadcast_to(value, beyond.shape) for value in (start.jump, start.bend))
         return means_past_break(beyond, self.half, jump, bend)
@@ -88,14 +90,14 @@ class Strips:
 
 @dataclass(frozen=True)
 class ClosingLag:
-    """How small gaps change the lag that closes the rigid flanks, beside their depth under the strips."""
+    """Change of the lag that closes the rigid flanks, by small gaps, beyond their depth under the strips."""
 
     strips: Strips
-    """Of k contacts."""
+    """Strips of k contacts."""
     excess: FloatArray
     """Normal approach taken away per depth removed at the touching point, less that depth. Shape (k,)."""
     lag: FloatArray
-    """The same per slope of gear 2's flank (`flank_slope`): how far that flank lags, m. Shape (k,)."""
+    """Lag of gear 2 per slope of its flank (`flank_slope`), m. Shape (k,)."""
     way: FloatArray
     """Way of the touching point per slope of the gap, m; zero where an edge or a break holds it. Shape (k,).
     """
@@ -106,7 +108,7 @@ class ClosingLag:
 
     @classmethod
     def of(cls, strips: Strips, candidates: Candidates, at: tuple[IntArray, ...]) -> ClosingLag:
-        """Take those of candidates at positions and numbers (k,)."""
+        """Return the closing lag of candidates at positions and numbers (k,)."""
         touch, arm = candidates.touch, candidates.motion_arm[at]
         lag = arm * np.where(touch.low[at] < 0.0, touch.gap[at] * touch.lag[at], 0.0)
         near_break = (np.abs(touch.offset[at]) < _AT_TOUCH * STEP * touch.radius[at][:, None]).any(axis=1)
@@ -131,7 +133,7 @@ class ClosingLag:
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return how far the touching points move (k,), m: those at breaks with these."""
+        """Return the ways of the touching points (k,), m; points at breaks move with these."""
         strips, near = self.strips, _AT_TOUCH * self._step
         slope = (self._change(gap, over, near) - self._change(gap, over, -near)) / (2.0 * near)
         shift = self.way * slope
@@ -185,23 +187,23 @@ class ClosingLag:
 
 @dataclass(frozen=True)
 class FollowingPatches:
-    """How patches follow the slope of small gaps, and what motions of the bodies that adds."""
+    """Motions of load patches that follow slopes of small gaps, and displacements of bodies by them."""
 
     problem: ContactProblem
     slice_force: FloatArray
     """Forces on the slices, N. Shape (P, L, n)."""
     at_rest: Strips
-    """Strips under a small load of all candidates, by which patches follow; k = P m."""
+    """Strips of all candidates under a small load, which the patches follow; k = P m."""
     index: IntArray
-    """Of each among all positions and candidates, flattened. Shape (k,)."""
+    """Index of each strip among all positions and candidates, flattened. Shape (k,)."""
     way: FloatArray
-    """Motion of its patch towards tip 1 per slope of the gap, m; patches of a slice move by their mean. Shape
-    (k,).
+    """Motion of the patch of each strip towards tip 1 per slope of the gap, m; patches of a slice move by
+    their mean. Shape (k,).
     """
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> FollowingPatches:
-        """Take those of a solved problem."""
+        """Return the moving patches of a solved problem."""
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         touch, rest = c.touch, c.strips
         free = (rest.slope == 0.0) & (np.abs(touch.shift) < c.slices.law_length) & np.isfinite(c.gap)
@@ -213,7 +215,7 @@ class FollowingPatches:
         return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
     def opened(self, slopes: FloatArray) -> FloatArray:
-        """Return what normal approach small slopes (k,) take away from the candidates (P, L, m), m."""
+        """Return the normal approach that small slopes (k,) take away from the candidates (P, L, m), m."""
         c, shift = self.problem.candidates, np.zeros(self.problem.candidates.gap.shape)
         shift.flat[self.index] = self.way * slopes
         by_slice = c.on_mean(shift)[:, None]
@@ -226,7 +228,7 @@ class FollowingPatches:
         return self._times(self.slice_force)
 
     def by_slope(self, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a gap at each strip adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the gap's slope at each strip (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """
@@ -243,20 +245,20 @@ class FollowingPatches:
 
 @dataclass(frozen=True)
 class TurnedForces:
-    """How slopes of small gaps change the motions of the bodies by the forces that they turn."""
+    """Changes of the displacements of bodies by forces that turn with the slopes of small gaps."""
 
     problem: ContactProblem
     slice_force: FloatArray
     displacement: FloatArray
-    """`slice_force`, `displacement`: Forces on the slices, N, and what they move, m. Shape (P, L, n)."""
+    """`slice_force`, `displacement`: Forces on the slices, N, and their displacements, m. Shape (P, L, n)."""
     closing: ClosingLag
-    """Of the k candidates whose slices carry."""
+    """Lag of the k candidates whose slices carry."""
     index: IntArray
-    """Of each among all positions and candidates, flattened. Shape (k,)."""
+    """Index of each candidate among all positions and candidates, flattened. Shape (k,)."""
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, force: FloatArray) -> TurnedForces:
-        """Take those of a solved problem."""
+        """Return the turned forces of a solved problem."""
         c, pressed = problem.candidates, problem.candidates.on_slices(force)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(loaded & np.isfinite(c.gap))
@@ -268,7 +270,7 @@ class TurnedForces:
         )
 
     def opened(self, gap: GapTerm, over: GapTerm) -> FloatArray:
-        """Return what normal approach a gap takes away so over another near it (P, L, m), m."""
+        """Return the normal approach that a gap takes away so over another near it (P, L, m), m."""
         c, slopes = self.problem.candidates, np.zeros((2, *self.problem.candidates.gap.shape))
         for gear, slope in enumerate(slopes):
             slope.flat[self.index] = self.closing.slope(gear, gap, over)
@@ -277,7 +279,7 @@ class TurnedForces:
         return c.at_points(motion)
 
     def by_slope(self, gear: int, weight: FloatArray, rows: FloatArray) -> FloatArray:
-        """Return what the slope of a flank of a gear adds (Q, k) to sums `rows` (Q, P, L), m.
+        """Return the contributions of the slope of a gear's flank (Q, k) to sums `rows` (Q, P, L), m.
 
         Of the transmission error, to which motions at the candidates add by their `weight` (P, L, m).
         """

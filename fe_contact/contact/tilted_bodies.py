@@ -1,4 +1,4 @@
-"""Motions of the bodies under forces on them, where flanks that tilt press in another place; compiled."""
+"""Motions of the bodies under forces, where tilted flanks move the points of application; compiled."""
 
 from __future__ import annotations
 

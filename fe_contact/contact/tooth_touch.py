@@ -1,4 +1,4 @@
-"""Touching points of flanks that differ from tooth to tooth, beside those that all teeth have in common."""
+"""Touching points of flanks that differ from tooth to tooth, from those that all teeth have in common."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 _AT_ONCE = 16_384
-"""Candidates whose gaps are found together: what they take stays in the cache of the processor."""
+"""Candidates whose gaps are computed together: their arrays stay in the cache of the processor."""
 _SLOPES = ("lag", "slope_1", "slope_2", "turn_1", "turn_2")
 _MOVING = ("s_1", "s_2", "gap", "approach_error", *_SLOPES, *Gap._fields)
-"""What the gaps of teeth change of touching points."""
+"""Arrays of touching points that the gaps of single teeth change."""
 
 
 class _Part(NamedTuple):
-    """Some candidates of a touch: rows (k,) of those that the teeth have in common, and what meets there."""
+    """Candidates of a touch: rows (k,) of touching points that teeth share, and the teeth that meet there."""
 
     pair: ParallelAxes
     model: ContactModel
@@ -52,21 +52,21 @@ class _Part(NamedTuple):
 def tooth_touch(
     pair: ParallelAxes, touch: Touch, model: ContactModel, meeting: IntArray, face: FloatArray
 ) -> Touch:
-    """Add the gaps of teeth that meet: they slope along the flank, so the least gap is beside the point.
+    """Add the gaps of teeth that meet: they slope along the flank, so that the least gap is nearby.
 
     Parameters
     ----------
     touch : Touch
-        Of the flanks that all teeth have in common, with the gaps of the model.
+        Touching points of the flanks that all teeth have in common, with the gaps of the model.
     meeting : ndarray of int, shape (R, m)
-        Which pair of teeth meets there; see `MeetingTeeth`.
+        Number of the pair of teeth that meets at each candidate; see `MeetingTeeth`.
     face : ndarray, shape (m,)
         Distance of each candidate from the pinion's mid-face, m.
 
     Notes
     -----
-    Load patches stay where the common flanks touch: `shift` is theirs. What differs from tooth to tooth
-    counts as a lag: a pitch error of gear 2 turns its flank, and as much of a lag closes it on any slope.
+    Load patches stay where the common flanks touch: they define `shift`. Deviations of single teeth count
+    as a lag: a pitch error of gear 2 turns its flank, and a lag of the same size closes it on any slope.
     """
     there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
     parts = list(
@@ -91,7 +91,7 @@ def _with_breaks(moving: tuple[FloatArray, ...], count: int) -> tuple[FloatArray
 
 
 def _touching(part: _Part) -> tuple[FloatArray, ...]:
-    """Return what `_MOVING` names.
+    """Return the arrays that `_MOVING` names.
 
     Where the teeth are less hollow than the flanks are round, one parabola leads to the least gap; where
     they are not, or where the true gap there is another, it is searched for together with the common gap.
@@ -107,7 +107,7 @@ def _touching(part: _Part) -> tuple[FloatArray, ...]:
 
 
 def _stepped(part: _Part) -> tuple[tuple[FloatArray, ...], BoolArray]:
-    """Step to the least of the common gap and a parabola of the teeth's, and say where that is poor."""
+    """Step to the least sum of the common gap and a parabola of the teeth's gap, and mark poor steps."""
     common, none = part.common, np.zeros(part.face.size)
     half = np.minimum(STEP / common.curvature, 0.2 * (common.high - common.low))
     middle = np.clip(none, common.low + half, common.high - half)

@@ -23,33 +23,37 @@ from host.loops import njit
 
 _SAMPLES = 17
 _PASSES, _CUT_TIP_PASSES = 2, 4
-"""How often the touching point is looked for, from the lowest sample on; where a tip is cut, further off."""
+"""Most passes of the search for the touching point, from the lowest sample on; more where a tip is cut, since
+the sample may be further off.
+"""
 STEP = 0.01
 """Step of differences along the flank over the relative radius: about half a contact strip."""
 _REACH = 0.5
-"""How far a touching point may move, over the flanks' lengths from the base circle."""
+"""Largest way of a touching point over the length of the flank from its base circle."""
 FLATTEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
 ALLOWED = 1e-7
-"""What the gap may be above its least value, over the relative radius: 0.5 nm at 5 mm."""
+"""Allowed gap above the least gap, over the relative radius: 0.5 nm at 5 mm."""
 ROUGH, WAVY = 0.25, 0.05
 """Curvature of deviations over that of plain flanks above which flanks may touch at another crest, and above
 which no parabola describes them under load."""
 _STEP_ERROR = 10.0
-"""How far the true gap after a step may be from its parabola, over that: what is left is of higher order."""
+"""Allowed difference of the true gap after a step from its parabola, over `ALLOWED`. The remaining error is
+of higher order.
+"""
 _ALIKE = 1e-4
-"""Distance of samples over the step of differences below which they are one."""
+"""Distance of samples over the step of differences below which they count as one."""
 _AT_ONCE = 8192
-"""Touching points that are followed together: what they take stays in the cache of the processor."""
+"""Touching points that are followed together: their arrays stay in the cache of the processor."""
 _AT_EDGE = 1e-12
 """Distance from an edge in m below which a touching point is at it."""
 STEEPEST = 0.5
 """Largest slope of a relief over the roll length by which gear 2 is turned; usual ones have 0.02."""
 _NEAR = 1e-4
-"""Of `STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
+"""Step of differences of the exact gap over `STEP`. The slope of the exact gap is nowhere rounded."""
 _Arrays: TypeAlias = tuple[FloatArray, ...]
 _SIDES: tuple[Side, Side] = ("exit", "approach")
-"""Where the tips of the pinion and of the wheel leave contact."""
+"""Ends of the path of contact, at the tip of the pinion and at the tip of the wheel."""
 
 
 def modified_touch(
@@ -98,7 +102,7 @@ def _shifted(
     gaps: tuple[GapTerm, ...],
     teeth: DeviatingTeeth | None,
 ) -> Touch:
-    """Move the touching points to where conjugate gap, `gaps` and those of teeth together are least."""
+    """Move the touching points to the least sum of conjugate gap, `gaps` and gaps of the teeth."""
     shape, possible = touch.gap.shape, np.flatnonzero(np.isfinite(touch.gap))
     plain = {name: values.reshape(touch.gap.size, *values.shape[2:]) for name, values in vars(touch).items()}
     near = Touch(**{name: values[possible] for name, values in plain.items()})
@@ -127,7 +131,7 @@ def _shifted(
 
 
 class _Touching(NamedTuple):
-    """Where flanks touch (n,), the true gap there, how far off the load lies, all in m; see `Touch`."""
+    """Touching points of n flanks: their shift, true gap and offset of the load, all in m; see `Touch`."""
 
     shift: FloatArray
     gap: FloatArray
@@ -445,11 +449,11 @@ class _Flanks:
         return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x))
 
     def _removed(self, x: FloatArray, of: IntArray | slice = slice(None)) -> FloatArray:
-        """Return what is removed at x, m, of some of the touching points."""
+        """Return the material removed at x from the flanks of some of the touching points, m."""
         return self._removed_at(rolls_at(self._pair, self._touch.s_1[of] + x, self._touch.s_2[of] - x), of)
 
     def _removed_at(self, rolls: tuple[FloatArray, FloatArray], of: IntArray | slice) -> FloatArray:
-        """Return the same at roll lengths of both gears."""
+        """Return the material removed at roll lengths of both gears, m."""
         return self._designed(rolls, of) + self._of_teeth(rolls, of)
 
     def _of_teeth(

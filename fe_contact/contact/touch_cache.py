@@ -20,7 +20,7 @@ _lock = threading.Lock()
 
 
 class _Entry(NamedTuple):
-    """Touching points, the digest of the arrays that they follow from, and what else they follow from."""
+    """Touching points, the digest of the arrays that they follow from, and their other inputs."""
 
     digest: bytes
     origin: tuple[object, ...]

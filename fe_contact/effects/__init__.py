@@ -1,4 +1,4 @@
-"""Optional physics of the contact analysis: only what the scene calls for."""
+"""Effects: optional physics of the contact analysis, used where a scene calls for it."""
 
 from fe_contact.effects.composer import LedgerEntry, acting, compose, contributed
 from fe_contact.effects.effect import ContactScene, Effect, Verdict, named

@@ -24,7 +24,7 @@ class BoreSeatElasticity(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either bore has a seat that is not fixed all over."""
+        """Call for the effect where either bore has a seat that is not fixed over its whole surface."""
         seated = [name for name, gear in scene.gears.items() if gear.seat != CLAMPED]
         if not seated:
             return Verdict(False, "both bores are fixed over their whole surface", neutral=True)

@@ -1,4 +1,4 @@
-"""Compose the contact model from the effects a scene calls for, and keep the ledger of what was left out."""
+"""Composition of the contact model from the effects that a scene calls for, and the ledger of all effects."""
 
 from __future__ import annotations
 
@@ -43,10 +43,12 @@ class LedgerEntry:
     choice: str
     """"on", "off" or "auto", as requested."""
     verdict: Verdict
-    """What the scene calls for; its reason stands even when the caller decided otherwise."""
+    """Verdict of the effect on the scene. Its reason stands even when the caller decided otherwise."""
     cost: str
     override: str = ""
-    """Why it is not as the verdict has it, though the choice is "auto"; empty if it is."""
+    """Reason why the effect differs from its verdict though the choice is "auto"; empty if it does not
+    differ.
+    """
 
     @property
     def decision(self) -> str:
@@ -102,7 +104,7 @@ def acting(ledger: Sequence[LedgerEntry]) -> tuple[str, ...]:
 
 
 def contributed(scene: ContactScene, names: Sequence[str]) -> ContactModel:
-    """Return what effects, by their names, contribute to the model of a scene."""
+    """Return the contributions of effects, by their names, to the model of a scene."""
     model = ContactModel()
     for effect in scene.registry:
         if effect.name in names:

@@ -16,7 +16,9 @@ from fe_contact.geometry.iso6336_stiffness import modulus_ratio
 from fe_contact.hertz import relative_radius
 
 _STEEL_STIFFNESS = 14e9
-"""N/m per m of face: about the single stiffness of steel teeth on solid bodies after ISO 6336."""
+"""Stiffness of a pair of steel teeth on solid bodies, N/m per m of face: about the single stiffness of ISO
+6336.
+"""
 _ALONG_EDGE = 33
 _ALONG_FLANK = 401
 
@@ -34,7 +36,7 @@ class CornerContact(Effect):
     valid_for: ClassVar[str] = "sharp, rounded and chamfered tip edges"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On unless tip relief keeps the edges and the flanks beside them apart."""
+        """Call for the effect unless tip relief keeps the edges and the flanks next to them apart."""
         pair = scene.pair
         deflection = _largest_deflection(scene)
         relief = _least_tip_gap(pair)
@@ -53,7 +55,7 @@ class CornerContact(Effect):
         return replace(model, corner_contact=True)
 
     def extent(self, scene: ContactScene) -> Extent:
-        """Return how far deflections exceed the gaps at the tip edges: so much more the gears give way."""
+        """Return bounds of the change: from 0 to the excess of deflections over the gaps at the tip edges."""
         return Extent(0.0, max(_largest_deflection(scene) - _least_tip_gap(scene.pair), 0.0))
 
     def without(self, scene: ContactScene) -> ContactScene:
@@ -77,7 +79,7 @@ def _least_tip_gap(pair: ParallelAxes) -> float:
 
 @lru_cache(maxsize=16)
 def _gap_at_tip(gear: Toothing, radius: float) -> float:
-    """Least of material removed and gap of plain flanks beside the tip edge of one gear, m."""
+    """Return the least sum of material removed and gap of plain flanks near the tip edge of one gear, m."""
     if gear.modification.neutral:
         return 0.0
     face = np.linspace(-0.5, 0.5, _ALONG_EDGE) * gear.face_width

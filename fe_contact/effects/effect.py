@@ -21,21 +21,22 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ContactScene:
-    """The scene that the effects assess by."""
+    """Pair, loads and axes of a table, by which effects decide."""
 
     pair: ParallelAxes
     torque: FloatArray
     """Torques on the driving gear, N m."""
     registry: Sequence[Effect]
-    """The effects that there are."""
+    """All effects that the analysis knows."""
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
     """Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
     action, zero at its middle.
     """
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
-    """Changes of the table axis, m."""
+    """Changes of the center distance on the table axis, m."""
     pitches: int | None = None
-    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
+    """Number of base pitches of the table where teeth differ; None: until the contact of all teeth repeats.
+    """
 
     @property
     def largest_misalignment(self) -> float:
@@ -74,7 +75,7 @@ class Verdict:
 
 
 class Effect:
-    """An effect; what it does not say itself is as of one that the flanks and the plane hold.
+    """An effect. Its defaults are those of an effect on the gap that a plane model can hold.
 
     Class attributes: `name`; `needs` and `adds` (terms such as "position", "load", "gap", "coupling",
     "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used;
@@ -100,11 +101,11 @@ class Effect:
         raise NotImplementedError
 
     def across_face(self, scene: ContactScene) -> str | None:
-        """Say what of it acts across the face, so that a plane cannot hold it; None: nothing."""
+        """Return why the effect acts across the face, so that a plane cannot hold it; None: it does not."""
         return None
 
     def refuse_plane(self, scene: ContactScene) -> None:
-        """Refuse what of it a plane model cannot hold, by field name; raises `InputError`."""
+        """Refuse parts of the effect that a plane model cannot hold, by field name; raises `InputError`."""
 
     def without(self, scene: ContactScene) -> ContactScene | None:
         """Return the scene as if there were nothing for the effect.
@@ -114,7 +115,7 @@ class Effect:
         return None
 
     def extent(self, scene: ContactScene) -> Extent:
-        """Return bounds of what leaving it out changes of the transmission error anywhere, by its gaps.
+        """Return bounds of the change of the transmission error anywhere without the effect, by its gaps.
 
         Gaps shift the transmission error by no more than their bounds, at single places too, which a sample
         may pass by. Without gaps it acts everywhere alike: no bounds beside the estimate.
@@ -128,7 +129,7 @@ class Effect:
         return extent
 
     def estimable(self, scene: ContactScene) -> bool:
-        """Whether springs for teeth can tell its influence."""
+        """Whether the slice model can estimate its influence."""
         return True
 
 
@@ -138,7 +139,7 @@ def named(registry: Sequence[Effect], brings: str) -> str:
 
 
 def across_face(scene: ContactScene) -> list[str]:
-    """List what in the scene acts across the face."""
+    """Return the parts of the scene that act across the face, in words."""
     pair = scene.pair
     reasons = []
     if pair.pinion.helix_angle != 0.0:

@@ -23,7 +23,7 @@ class FaceLoadDistribution(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where anything acts across the face."""
+        """Call for the effect where anything in the scene acts across the face."""
         reasons = across_face(scene)
         if reasons:
             return Verdict(True, "; ".join(reasons))
@@ -34,5 +34,5 @@ class FaceLoadDistribution(Effect):
         return replace(model, across_face=True)
 
     def estimable(self, scene: ContactScene) -> bool:
-        """Return False where a plane would stand for what acts across the face."""
+        """Return False where the reference would be a plane without the parts that act across the face."""
         return not across_face(scene)

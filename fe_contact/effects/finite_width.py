@@ -1,4 +1,4 @@
-"""Finite width: a plane that stands in for a spur gear is corrected for the free ends of its face."""
+"""Finite width: the plane model of a spur gear is corrected for the free ends of its face."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class FiniteWidth(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where the plane can stand in for three dimensions."""
+        """Call for the effect where the plane can replace the model in three dimensions."""
         reasons = across_face(scene)
         if reasons:
             return Verdict(

@@ -96,7 +96,7 @@ def _modification_extent(modification: FlankModification, gear: Tooth, tip_form:
 
 
 def _part_extent(part: FlankPart, gear: Tooth, tip_form: float) -> Extent:
-    """Bound a part by its values on a lattice, and by what it can do between the points."""
+    """Bound a part by its values on a lattice, and by its slopes between the points."""
     grid: FlankGrid | None = getattr(part, "flank_grid", None)
     if grid is not None:
         return grid.extent((gear.form_roll_length, gear.tip_roll_length))
@@ -130,7 +130,7 @@ class ProfileModification(Effect):
     valid_for: ClassVar[str] = "slopes below about 0.05; tip edges that open further"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a modification along its profile."""
+        """Call for the effect where either gear has a modification along its profile."""
         modified = [name for name, gear in scene.gears.items() if not gear.modification.along_profile.neutral]
         if not modified:
             return Verdict(False, "both profiles are plain involutes", neutral=True)
@@ -159,7 +159,7 @@ class LeadModification(Effect):
     valid_for: ClassVar[str] = "every pair in three dimensions"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a modification that differs over its face."""
+        """Call for the effect where either gear has a modification that varies over its face."""
         modified = [name for name, gear in scene.gears.items() if gear.modification.varies_along_face]
         if not modified:
             return Verdict(False, "both leads are plain", neutral=True)

@@ -86,7 +86,7 @@ class Misalignment(Effect):
     valid_for: ClassVar[str] = "every pair in three dimensions"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where any value of the axis is not zero."""
+        """Call for the effect where any value of the misalignment axis is not zero."""
         largest = float(np.abs(scene.misalignment).max())
         if largest == 0.0:
             return Verdict(False, "the gears are aligned", neutral=True)

@@ -1,4 +1,4 @@
-"""Pitch error: teeth of either gear out of their places, tooth by tooth."""
+"""Pitch error: teeth of either gear displaced from their nominal places, tooth by tooth."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class PitchError(Effect):
     valid_for: ClassVar[str] = "flanks displaced as a whole"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where a tooth of either gear is out of its place."""
+        """Call for the effect where a tooth of either gear has a pitch deviation."""
         erring = [
             (name, gear.pitch_deviation)
             for name, gear in scene.gears.items()
@@ -97,5 +97,5 @@ class PitchError(Effect):
 
 
 def _period(scene: ContactScene) -> int:
-    """Return the pitches requested, or those after which the deviations of both gears repeat together."""
+    """Return the requested period, or the period after which the deviations of both gears repeat together."""
     return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in scene.gears.values()))

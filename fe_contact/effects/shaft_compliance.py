@@ -1,4 +1,4 @@
-"""Compliance between tooth contacts because the shafts of the gears give way."""
+"""Compliance between tooth contacts by the shafts of the gears."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ class ShaftDeflection(Effect):
     valid_for: ClassVar[str] = "round shafts on two bearings, the gear rigid on its seat"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a shaft."""
+        """Call for the effect where either gear has a shaft."""
         carried = [name for name, shaft in zip(("pinion", "wheel"), scene.pair.shafts, strict=True) if shaft]
         if not carried:
             return Verdict(False, "the gears are on rigid shafts", neutral=True)

@@ -12,7 +12,7 @@ from fe_contact.errors import InputError
 
 @dataclass(frozen=True)
 class ThinRim(Effect):
-    """A rim on a web gives way where a solid body does not."""
+    """Compliance of a rim on a web, in place of a solid body."""
 
     name: ClassVar[str] = "thin_rim"
     needs: ClassVar[tuple[str, ...]] = ("gear blank",)
@@ -23,7 +23,7 @@ class ThinRim(Effect):
     of_bodies: ClassVar[bool] = True
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a web."""
+        """Call for the effect where either gear has a web."""
         with_web = [name for name, gear in scene.gears.items() if gear.web is not None]
         if not with_web:
             return Verdict(False, "both bodies are solid", neutral=True)

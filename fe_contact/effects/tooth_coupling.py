@@ -21,7 +21,7 @@ class ToothCoupling(Effect):
     valid_for: ClassVar[str] = "every pair"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On wherever two pairs can share load."""
+        """Call for the effect in every scene: two neighboring pairs can share load."""
         ratio = scene.pair.active_contact_ratio
         return Verdict(True, f"contact ratio {ratio:.3f}: neighboring pairs share the load")
 

@@ -21,7 +21,7 @@ from fe_contact.geometry import (
 )
 
 _PLACES = 513
-"""Places of the path of contact at which surfaces are looked at."""
+"""Number of places of the path of contact at which surfaces are sampled."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class ToothDeviations(Effect):
     valid_for: ClassVar[str] = "waves longer than the contact strip is wide"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has any."""
+        """Call for the effect where either gear has run-out, wobble, waves or teeth that differ."""
         figures = [f"{name} {_figures(gear)}" for name, gear in scene.gears.items() if gear.deviates]
         if not figures:
             return Verdict(False, "no gear has run-out, wobble, waves or teeth that differ", neutral=True)
@@ -57,7 +57,7 @@ class ToothDeviations(Effect):
         return " and ".join(causes) or None
 
     def refuse_plane(self, scene: ContactScene) -> None:
-        """Refuse what varies along the face."""
+        """Refuse deviations that vary along the face."""
         for name, gear in scene.gears.items():
             for field, text in _across_face(gear).items():
                 raise InputError(f"{name}.{field}", text, "none for a plane model", "Use the 3-D model.")
@@ -109,7 +109,7 @@ def _hollow(gear: Toothing) -> float:
 
 
 def _across_face(gear: Toothing) -> dict[str, str]:
-    """Return the fields of what varies along the face of a gear, in words."""
+    """Return the fields of the deviations that vary along the face of a gear, in words."""
     inclined = any(wave.amplitude and wave.face_waves for wave in gear.waves)
     flanks = any(flank.varies_along_face for flank in gear.tooth_flanks)
     causes = {
@@ -133,7 +133,7 @@ def _figures(gear: Toothing) -> str:
 
 
 def _period(scene: ContactScene) -> int:
-    """Return the pitches requested, or those after which both gears repeat together."""
+    """Return the requested period, or the period after which both gears repeat together."""
     periods = (
         deviations_period(gear.run_out, gear.waves, gear.tooth_flanks, gear.teeth)
         for gear in scene.gears.values()

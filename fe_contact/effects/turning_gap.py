@@ -1,4 +1,4 @@
-"""Gap by what turns with a gear: run-out and wobble of its axis, waves and flanks of its single teeth."""
+"""Gap by deviations that turn with a gear: run-out and wobble, waves, flanks of single teeth."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ _TERMS = tuple((-1.0) ** k * math.pi ** (2 * k + 1) / math.factorial(2 * k + 1) 
 
 @dataclass(frozen=True)
 class TurningGap:
-    """Gap along the line of action by what turns with one gear, m."""
+    """Gap along the line of action by the deviations that turn with one gear, m."""
 
     gear: int
     """0 is the pinion, 1 the wheel."""
     teeth: int
-    """Of that gear."""
+    """Number of teeth of the gear."""
     base_radius: float
-    """Of that gear, m."""
+    """Base radius of the gear, m."""
     period: int
-    """Base pitches after which it is taken to repeat."""
+    """Base pitches after which the gap repeats."""
     turn: float
     """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
@@ -48,7 +48,7 @@ class TurningGap:
 
     @classmethod
     def of(cls, index: int, gear: Toothing, period: int) -> TurningGap:
-        """Return that of a gear, 0 the pinion."""
+        """Return the gap of a gear, 0 the pinion, 1 the wheel."""
         flanks = gear.tooth_flanks
         waves = sum(wave.amplitude for wave in gear.waves)
         deviation = max((flank.largest for flank in flanks), default=0.0)
@@ -83,7 +83,7 @@ class TurningGap:
 
     @cached_property
     def extents(self) -> Extent:
-        """Bounds of what turns with the gear, and of the flanks of its teeth, arrays (T,)."""
+        """Bounds of the gaps that turn with the gear, and of the flanks of its teeth, arrays (T,)."""
         out, radius = self.run_out.eccentricity + 0.5 * self.run_out.wobble, self.base_radius
         waves = sum(wave.amplitude for wave in self.waves)
         amplitude, along, order = self._harmonics[:, :3].T
@@ -156,22 +156,22 @@ class TurningGap:
 
 
 class Turning(NamedTuple):
-    """How a gear turns, in revolutions, from where a tooth touches at the pitch point in mid-face."""
+    """Turn of a gear in revolutions, counted from the contact of a tooth at the pitch point in mid-face."""
 
     period: int
     teeth: int
-    """`period`, `teeth`: Base pitches after which its teeth repeat, and their number."""
+    """`period`, `teeth`: Base pitches after which the teeth of the gear repeat, and their number."""
     pitch_point: float
-    """Roll length there, m."""
+    """Roll length at the pitch point, m."""
     per_roll: float
     """`per_roll`, `per_face`: Revolutions over roll length, and over distance from the pinion's mid-face;
     1/m.
     """
     axial_offset: float
-    """Of its mid-face from the pinion's, m."""
+    """Distance of the gear's mid-face from the pinion's, m."""
     per_face: float
     face_width: float
-    """m."""
+    """Face width of the gear, m."""
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,1 +1,1 @@
-"""The flank of a gear: the involute, and its modifications by what they act along."""
+"""The flank of a gear: the involute, and modifications along the profile, along the face and over both."""

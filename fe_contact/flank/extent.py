@@ -9,7 +9,9 @@ import numpy as np
 from fe_contact.types import FloatArray, IntArray
 
 _KINK = 1000.0
-"""Relative radii over which a jump of the slope counts as a curvature: what it hides is below 1 nm then."""
+"""Length over which a jump of the slope counts as a curvature, over the relative radius. The error of the gap
+is then below 1 nm.
+"""
 
 
 @dataclass(frozen=True)
@@ -20,15 +22,15 @@ class Extent:
     high: FloatArray | float = 0.0
     """`low`, `high`: Bounds from below and above, m."""
     slope: FloatArray | float = 0.0
-    """Bound of its change per way along the line of action, m/m."""
+    """Bound of the slope of the gap along the line of action, m/m."""
     spread: FloatArray | float = 0.0
-    """Bound of its highest less its lowest value along a profile, m."""
+    """Bound of the range of the gap along a profile, m."""
     kink: FloatArray | float = 0.0
     bend: FloatArray | float = 0.0
     """`kink`, `bend`: Bounds of jumps of the slope, and of the curvature in 1/m, over the roll length."""
     turn: FloatArray | float = 0.0
-    """Slope times the square of the base radius of what turns with a gear, m^2: its angle grows with the root
-    of the length along the flank, so that it bends by that, too.
+    """Bound of the slope times the square of the base radius, for deviations that turn with a gear, m^2. The
+    angle of the gear grows with the root of the length along the flank, so that such a gap bends too.
     """
 
     def __add__(self, other: Extent) -> Extent:

@@ -15,11 +15,15 @@ from fe_contact.types import FloatArray
 
 _LARGEST = 0.01  # m; catches micrometers given as meters
 LARGEST_INVENTION = 0.1e-6
-"""How far the surface may leave the nodes around it, m, beyond what their curvature makes it."""
+"""Allowed distance of the surface from the range of the nodes around it, m, beyond what their curvature
+explains.
+"""
 _CONFIRMING = 4
-"""Neighboring second differences that confirm a curvature; beside a border of five nodes three."""
+"""Neighboring second differences that confirm a curvature; three next to a border of five nodes."""
 _MAX_UNLIKE = 3.0
-"""Their ratio: 1 of a parabola; a flat between two reliefs has several times the curvature beside it."""
+"""Largest ratio of second differences that confirm a curvature. A parabola has 1; a flat between two reliefs
+has next to it several times its own curvature.
+"""
 _STEEPEST = 3.0
 """Bound of the slope of a monotone cubic over that of its chord."""
 
@@ -144,7 +148,7 @@ def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
 
 
 def _slope(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
-    """Limited slopes at the nodes; of the straight line where two are all."""
+    """Return limited slopes at the nodes; the slope of the line where there are two nodes only."""
     along = np.moveaxis(values, direction, 0)
     step = np.diff(axis)[:, None]
     secant = np.diff(along, axis=0) / step
@@ -184,12 +188,12 @@ def _curvature(secant: FloatArray, step: FloatArray) -> FloatArray:
 
 
 def _lesser(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Return the one nearer to 0, 0 where they differ in sign."""
+    """Return the value nearer to 0; 0 where they differ in sign."""
     return np.where(first * second > 0.0, np.copysign(np.minimum(np.abs(first), np.abs(second)), first), 0.0)
 
 
 def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray:
-    """How far the surface leaves its nodes in each cell, m, less what the curvature in the cell makes it."""
+    """Return the distance of the surface from its nodes in each cell, m, less the height by curvature."""
     at = np.linspace(0.0, 1.0, 9)
     weights = [_hermite_weights(at, axis) for axis in (roll, face)]
     value, along_roll, along_face, mixed = nodes
@@ -202,7 +206,7 @@ def _beyond(nodes: FloatArray, roll: FloatArray, face: FloatArray) -> FloatArray
 
 
 def _corner(ends: FloatArray, a: int, b: int) -> FloatArray:
-    """Return what is kept at one corner of every cell."""
+    """Return the nodal data at one corner of every cell."""
     m, n = ends.shape[-2:]
     return ends[..., a : m - 1 + a, b : n - 1 + b]
 
@@ -216,7 +220,7 @@ def _hermite_weights(at: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def _sagitta(values: FloatArray, axis: FloatArray, direction: int) -> FloatArray:
-    """Height in each cell of the parabola over the chord, m; of the higher of both sides of a cell."""
+    """Return the height of the parabola over the chord in each cell, m, the higher of both sides."""
     if len(axis) < 3:
         return np.zeros(())
     along = np.moveaxis(values, direction, 0)

@@ -34,7 +34,7 @@ PARTS: tuple[type[FlankPart], ...] = (*AlongProfile.__bases__, *AlongFace.__base
 """The modifications that there are, each a line of these lists, in the order of their figures."""
 Flank = TypeVar("Flank")
 _DEFAULTS = {kind: (kind(), {entry.name: entry.default for entry in fields(kind)}) for kind in PARTS}
-"""Every part as it is by default, which most parts of most flanks are, and its fields."""
+"""All parts at their defaults, which most parts of most flanks have, with their fields."""
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
@@ -164,7 +164,7 @@ class FlankModification(_Figures):
 
 
 FLANK_FIELDS = declarations(FlankModification)
-"""What every figure of a flank is, by its name."""
+"""Declaration of every figure of a flank, by its name."""
 
 
 def fields_of(*kinds: Kind) -> tuple[str, ...]:

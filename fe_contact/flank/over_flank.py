@@ -162,7 +162,7 @@ class _FreeForm(FlankPart):
         return Direction.PROFILE | across
 
     def check_fits(self, gear: Tooth) -> None:
-        """Raise `InputError` if the grid lies beside the flank."""
+        """Raise `InputError` if the grid lies outside the flank."""
         if self.flank_grid is not None:
             with inside("modification"):
                 check_reach(self.flank_grid, gear)
@@ -174,7 +174,7 @@ class _FreeForm(FlankPart):
 
 
 def check_reach(grid: FlankGrid, gear: Tooth) -> None:
-    """Refuse a grid beside the flank, or deeper than half the module: a wrong unit or origin."""
+    """Refuse a grid outside the flank, or deeper than half the module: a wrong unit or origin."""
     half = 0.5 * gear.face_width
     for axis, (low, high) in {"roll_length": involute(gear), "face_position": (-half, half)}.items():
         nodes = getattr(grid, axis)

@@ -1,4 +1,4 @@
-"""What a modification of a flank is, and what it needs to know of its tooth."""
+"""A modification of a flank, and the numbers of the tooth that it depends on."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fe_contact.types import FloatArray
 
 _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 SHORTEST = 1e-9
-"""m; what is shorter is a step, and its slope no number."""
+"""Shortest length over which an amount acts, m. A shorter one is a step, whose slope is undefined."""
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,16 @@ class ReliefStart:
     """Start of a relief or of the tip's edge along the profile; jump d + bend d^2/2 a distance d inside."""
 
     roll_length: FloatArray | float
-    """m; an array of as many as there are face positions, if it differs over the face."""
+    """Roll length, m; an array over the face positions where it varies over the face."""
     towards_tip: bool
-    """Whether it runs to the tip; else to the root."""
+    """Whether the relief runs to the tip; else to the root."""
     jump: FloatArray | float
     bend: FloatArray | float
-    """`jump`, `bend`: Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
+    """`jump`, `bend`: Slope and curvature at the start of the relief, over the arc length of the flank; 1 and
+    1/m.
     """
     ends_flank: bool = False
-    """Whether it is the edge of a rounded or chamfered tip, where the usable flank ends."""
+    """Whether the start is the edge of a rounded or chamfered tip, where the usable flank ends."""
 
 
 @dataclass(frozen=True)
@@ -54,25 +55,25 @@ class FlankPart:
 
     @cached_property
     def along(self) -> Direction:
-        """Directions along which it can act."""
+        """Directions along which the modification can act."""
         return reduce(or_, (fact.along for fact in declarations(type(self)).values()), Direction.NONE)
 
     @cached_property
     def varies(self) -> Direction:
-        """Directions along which it does act; none if nothing is removed anywhere."""
+        """Directions along which the modification acts; none if it removes nothing."""
         items = declarations(type(self)).items()
         acting = (fact.along for field, fact in items if fact.kind in _ACTING and getattr(self, field))
         return reduce(or_, acting, Direction.NONE)
 
     def check_fits(self, gear: Tooth) -> None:
-        """Raise `InputError` if the gear has no room for it."""
+        """Raise `InputError` if the gear has no room for the modification."""
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Material removed in m at roll lengths inside the involute and at face positions, both in m."""
         raise NotImplementedError
 
     def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
-        """Return where it begins along the profile at face positions in m, if it does so within the flank."""
+        """Return the starts along the profile at face positions, m, that are within the flank."""
         return ()
 
 
@@ -86,11 +87,11 @@ class Polynomial(FlankPart):
     """A depth times u^m v^n - c, u and v running from -1 to 1 over the roll length and over the face."""
 
     powers: ClassVar[tuple[int, int]]
-    """m and n."""
+    """Exponents m and n."""
     weight: ClassVar[float] = 1.0
-    """Of the depth: one half where it is the difference between two ends."""
+    """Weight of the depth: one half where the depth is the difference between two ends."""
     mean: ClassVar[float] = 0.0
-    """c: 1/3 where the mean line of a parabola is zero."""
+    """Constant c: 1/3 where the mean line of a parabola is zero."""
 
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.types import FloatArray
 
 Shape = Literal["linear", "parabolic", "circular", "exponential", "logarithmic"]
-"""Names of the shapes, those of REXS 2.0 (attribute ``shape_of_relief``)."""
+"""Names of the shapes, as in REXS 2.0 (attribute ``shape_of_relief``)."""
 
 
 _GROWTH = math.e - 1.0

@@ -1,4 +1,4 @@
-"""Where reliefs start as drawings state it (ISO 21771-1): by diameter, roll length or roll angle.
+"""Starts of reliefs as drawings state them (ISO 21771-1): by diameter, roll length or roll angle.
 
 The point of a flank at the roll length l has the roll angle xi = tan(alpha_y) = l/r_b and the diameter
 d_y = d_b sqrt(1 + xi^2).
@@ -33,7 +33,7 @@ _REMEDY = "A relief starts on the involute, before the end of the flank to which
 
 @dataclass(frozen=True)
 class _Way:
-    """A way to name a point of a flank, and how it and roll lengths in m follow from each other."""
+    """A coordinate that names a point of a flank, with its conversion to roll length and back."""
 
     text: str
     unit: str
@@ -41,7 +41,9 @@ class _Way:
     """Largest value, in SI."""
     of_roll_length: Callable[[float, float], float]
     roll_length: Callable[[float, float], float]
-    """`of_roll_length`, `roll_length`: Of the base radius in m and the other."""
+    """`of_roll_length`, `roll_length`: Functions of the base radius, m, and a roll length or the named value;
+    each returns the other one.
+    """
 
 
 WAYS = {

@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 Side = Literal["approach", "exit"]
 _ITERATIONS = 50
 _ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Of a gap, in parts of the center distance: it is a difference of lengths of that order."""
+"""Rounding error of a gap over the center distance. A gap is a difference of lengths of that order."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class CornerContact:
     driving gear's angle held.
     """
     flank_roll_length: FloatArray
-    """Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit.
-    The edge itself stays at its own gear's tip roll length.
+    """Roll length at which the edge touches the mating flank, m: of gear 1 at approach, of gear 2 at exit.
+    The edge itself stays at the tip roll length of its gear.
     """
     slope_angle: FloatArray
     """Angle phi in rad, >= 0, between the two flanks at the edge: they open by phi per length away from it.
@@ -172,7 +172,7 @@ def _touch_by_tip_gear(
 
 
 def _masked(touch: _Touch, flank: Toothing, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
-    """Blank what lies off the flank's involute or cannot drive."""
+    """Blank points that lie off the flank's involute or cannot drive."""
     slack = 1e-9 * flank.normal_module
     roll = touch.flank_roll_length
     valid = flank.sign * (roll - flank.form_roll_length) >= -slack

@@ -80,30 +80,30 @@ def _sizes(gear: Toothing) -> tuple[float, float, float]:
 
 
 def _cumulative_pitch(gear: Toothing) -> float:
-    """Of class 5, um."""
+    """Return the cumulative pitch tolerance of class 5, um."""
     module, diameter, _ = _sizes(gear)
     return cumulative_pitch_of_class(module, diameter)
 
 
 def _profile_slope(gear: Toothing) -> float:
-    """Of class 5, um."""
+    """Return the profile slope tolerance of class 5, um."""
     module, diameter, _ = _sizes(gear)
     return 0.4 * module + 0.001 * diameter + 4.0
 
 
 def _profile_form(gear: Toothing) -> float:
-    """Of class 5, um."""
+    """Return the profile form tolerance of class 5, um."""
     return 0.55 * _sizes(gear)[0] + 5.0
 
 
 def _helix_slope(gear: Toothing) -> float:
-    """Of class 5, um."""
+    """Return the helix slope tolerance of class 5, um."""
     _, diameter, width = _sizes(gear)
     return 0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0
 
 
 def _helix_form(gear: Toothing) -> float:
-    """Of class 5, um."""
+    """Return the helix form tolerance of class 5, um."""
     _, diameter, width = _sizes(gear)
     return 0.07 * math.sqrt(diameter) + 0.45 * math.sqrt(width) + 4.0
 
@@ -137,7 +137,7 @@ class MisalignmentRange:
 
     tolerance_class: int
     by_source: Mapping[str, float]
-    """m, to either side, in the plane of action."""
+    """Misalignment by source, m, to either side, in the plane of action."""
 
     @property
     def likely(self) -> float:

@@ -90,7 +90,7 @@ class Gear(Toothing):
 
     @cached_property
     def form_point(self) -> FormPoint:
-        """Where involute and fillet meet."""
+        """Point at which involute and fillet meet."""
         sine = math.sin(self.transverse_pressure_angle)
         flank_end = float(self.trochoid.height(np.array(self.normal_pressure_angle)))
         tangent_roll_length = self.reference_radius * sine + flank_end / sine
@@ -104,7 +104,7 @@ class Gear(Toothing):
 
     @cached_property
     def web(self) -> Web | None:
-        """Where the body is narrower than the face; None for a solid gear."""
+        """Web between rim and hub, where the body is narrower than the face; None for a solid gear."""
         if self.blank is None:
             return None
         return self.blank.web(self.face_width, self.root_radius, self.bore_diameter)

@@ -1,4 +1,4 @@
-"""Refusal of gears that cannot exist, by the standard term for what is wrong."""
+"""Refusal of gears that cannot exist, with the standard's term for the defect."""
 
 from __future__ import annotations
 

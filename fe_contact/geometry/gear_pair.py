@@ -33,7 +33,7 @@ class GearPair(ParallelAxes):
         refuse_infeasible_pair(self)
 
     def swapped(self) -> GearPair:
-        """Return the same pair with the wheel driving: the same flanks loaded, the gears turning back."""
+        """Return the pair with the wheel driving: the same flanks loaded, the gears turning back."""
         return replace(
             self,
             pinion=self.wheel.turning_back,

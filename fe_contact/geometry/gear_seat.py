@@ -1,4 +1,4 @@
-"""A gear on its seat: whether the seat fits, and what it adds to the compliance."""
+"""A gear on its seat: fit of the seat, and its contribution to the compliance."""
 
 from __future__ import annotations
 

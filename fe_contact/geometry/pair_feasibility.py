@@ -1,4 +1,4 @@
-"""Refusal of pairs that cannot run, by the standard term for what is wrong."""
+"""Refusal of pairs that cannot run, with the standard's term for the defect."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def refuse_infeasible_pair(pair: ParallelAxes) -> None:
 
 
 def _refuse_face_overlap(pair: ParallelAxes) -> None:
-    """Refuse gears that pass beside each other."""
+    """Refuse gears whose faces do not overlap."""
     finite("axial_offset", pair.axial_offset, SiNote("In m: 5 mm is 0.005."))
     low, high = pair.common_face
     if high <= low:
@@ -87,7 +87,7 @@ def _refuse_jamming(pair: ParallelAxes) -> None:
 
 
 def _beyond_rounding(pair: ParallelAxes) -> Text:
-    """Say how large a jam is beside what rounding of printed data makes."""
+    """Return the text of how large a jam is against the rounding of printed data."""
     jam, rounding = (
         -pair.transverse_base_backlash,
         backlash_rounding(pair.pinion, pair.wheel, pair.center_distance),

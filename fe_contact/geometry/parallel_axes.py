@@ -145,7 +145,7 @@ class ParallelAxes:
         return self.transverse_contact_ratio + self.overlap_ratio
 
     def tilt_arm(self, roll_1: FloatArray | float, face: FloatArray | float) -> FloatArray:
-        """Return what a tilt of the axes in the plane of action opens on the line of action, m per rad.
+        """Return the gap on the line of action by a tilt of the axes in the plane of action, m per rad.
 
         About the pitch point in the pinion's mid-face. It is also the arm of a force there about that axis.
         At roll lengths of gear 1 on the line of action and face positions, m: the face position, less

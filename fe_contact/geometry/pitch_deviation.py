@@ -15,7 +15,7 @@ from fe_contact.geometry.tooth_flank import repeats_after
 from fe_contact.types import FloatArray
 
 LARGEST = 1e-3
-"""m; larger deviations are micrometers given as meters."""
+"""Largest pitch deviation, m. Larger ones are taken for micrometers given as meters."""
 
 _IN_M = SiNote("In m: 5 µm is 5e-6.")
 

@@ -1,4 +1,4 @@
-"""The digits that data sheets print, and what their rounding does to backlash (docs/theory/geometry.md).
+"""Printed digits of data sheets, and the change of backlash by their rounding (docs/theory/geometry.md).
 
 Nominal gears have no backlash: their profile shifts follow from the center distance, or it from them. A sheet
 prints both rounded, and the printed ones may jam. Each printed value is off by at most half its last digit,
@@ -24,9 +24,11 @@ class _PrintedDigits:
     """The printed form of a quantity."""
 
     last: tuple[float, ...]
-    """What one of the last digit may be: a sheet has the first one that fits all its values."""
+    """Customary units of the last digit, m or 1. A sheet prints the first of them that all its values are
+    multiples of.
+    """
     round_grid: float = 0.0
-    """Multiples of it are exact."""
+    """Grid of chosen values: its multiples are exact. 0: no grid."""
 
     def rounding(self, *values: float) -> float:
         """Return the most that printing moved each of the values, which stand on one sheet."""
@@ -67,7 +69,7 @@ def backlash_rounding(pinion: Toothing, wheel: Toothing, center_distance: float)
 
 
 def _by_shift(pinion: Toothing, wheel: Toothing) -> float:
-    """Return what rounding of both profile shifts does, m; a shift of 0 is none."""
+    """Return the change of backlash by the rounding of both profile shifts, m; a shift of 0 is exact."""
     shifts = [gear.profile_shift_coefficient for gear in (pinion, wheel)]
     shifts = [shift for shift in shifts if shift]
     base_module = pinion.base_pitch / math.pi

@@ -121,7 +121,7 @@ class RingGear(Toothing):
 
     @cached_property
     def form_point(self) -> FormPoint:
-        """Where involute and fillet meet, always with a common tangent."""
+        """Point at which involute and fillet meet, always with a common tangent."""
         roll_length = self.cutter.common_tangent + self.cutter.flank_end_roll_length
         return FormPoint(roll_length, self.cutter.first_tool_angle, undercut=False)
 

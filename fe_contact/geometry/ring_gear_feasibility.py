@@ -1,4 +1,4 @@
-"""Refusal of ring gears that cannot exist or cannot be cut, by the standard term for what is wrong."""
+"""Refusal of ring gears that cannot exist or cannot be cut, with the standard's term for the defect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Refusal of a pinion in a ring gear that cannot run, by the standard term for what is wrong."""
+"""Refusal of a pinion in a ring gear that cannot run, with the standard's term for the defect."""
 
 from __future__ import annotations
 

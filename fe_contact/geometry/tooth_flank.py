@@ -91,7 +91,7 @@ class ToothFlank:
 
     @property
     def shape(self) -> Hashable:
-        """What teeth have in common that are alike."""
+        """Key of a flank's shape: equal for teeth whose flanks are alike."""
         return None if self.neutral else replace(self, tooth=1)
 
     @property

@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from fe_contact.flank.tooth import Tooth
 
 _IN_CELL = 4
-"""Parts of a cell between the nodes of a surface, and of a wave between its crest and its trough."""
+"""Parts into which a cell between the nodes of a surface, and a wave between crest and trough, is divided."""
 
 
 class PackedGrids(NamedTuple):
     """Surfaces of several teeth one after the other."""
 
     of_tooth: IntArray
-    """Which surface a tooth has; -1: none. Shape (T,)."""
+    """Index of the surface of each tooth; -1: none. Shape (T,)."""
     sizes: IntArray
     starts: IntArray
-    """`sizes`, `starts`: Nodes along the profile, along the face and in all of each surface, and where they
-    begin. Shape (G, 3) each.
+    """`sizes`, `starts`: Numbers of nodes along the profile, along the face and in all of each surface, and
+    index of its first entry in each of these arrays. Shape (G, 3) each.
     """
     roll: FloatArray
     face: FloatArray
@@ -61,16 +61,16 @@ class ToothSurfaces:
     ends: tuple[float, float]
     """Roll lengths at the form circle and at the tip, m."""
     face_width: float
-    """m."""
+    """Face width of the gear, m."""
     amounts: FloatArray
     """Slopes and forms of each tooth in the order of meshing, m, and the numbers of their waves. Shape (T,
     6).
     """
     grids: PackedGrids
     extents: Extent
-    """Of the gaps that they make, arrays (T,): material missing, less that in excess."""
+    """Extents of the gaps by these flanks, arrays (T,): material missing, less material in excess."""
     nodes: tuple[FloatArray, ...]
-    """Roll lengths in m of each tooth between two of which its profile turns back once at most."""
+    """Roll lengths of each tooth, m. Between two neighbors the profile turns back at most once."""
 
     @classmethod
     def of(cls, gear: Tooth, amounts: FloatArray, grids: Sequence[FlankGrid | None]) -> ToothSurfaces:

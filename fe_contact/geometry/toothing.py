@@ -75,7 +75,7 @@ _OF_TEETH = "Deviations of the loaded flanks of single teeth; teeth without an e
 _TOOTH_FLANKS = Declared(Kind.PARTS, "", None, _OF_TEETH, part=ToothFlank, later=True, maximum=MAX_TEETH)
 
 MATING = ("normal_module", "normal_pressure_angle", "helix_angle")
-"""Fields in which mating gears agree, but for the hand of external ones."""
+"""Fields in which mating gears agree, except for the hand of the helix of external gears."""
 
 
 def cutter_infeed(thickness_allowance: float, normal_pressure_angle: float) -> float:
@@ -131,7 +131,7 @@ class Toothing:
 
         @property
         def form_point(self) -> FormPoint:
-            """Where involute and fillet meet."""
+            """Point at which involute and fillet meet."""
 
     def _check_fields(self) -> None:
         """Check all numbers one by one, and the allowance against the tooth it is taken from."""
@@ -266,7 +266,7 @@ class Toothing:
 
     @property
     def web(self) -> Web | None:
-        """Where the body is narrower than the face; None if it is not."""
+        """Web between rim and hub, where the body is narrower than the face; None for a solid body."""
         return None
 
     @property

@@ -15,13 +15,13 @@ from fe_contact.material import Material
 def torsion_compliance(inner: float, outer: float, material: Material) -> float:
     """Angle per moment between the edges of a disc, times its thickness: m rad / (N m).
 
-    Shear alone: (1/r_i^2 - 1/r_o^2) / (4 pi G); radii in m.
+    The disc shears only: (1/r_i^2 - 1/r_o^2) / (4 pi G); radii in m.
     """
     return (inner**-2 - outer**-2) / (4.0 * math.pi * shear_modulus(material))
 
 
 def shift_compliance(inner: float, outer: float, material: Material) -> float:
-    """In-plane shift per force between the rigid edges of a disc, times its thickness: m^2 / N.
+    """Shift per force in the plane of a disc, between its rigid edges, times its thickness: m^2 / N.
 
     (kappa ln(r_o/r_i) - (r_o^2 - r_i^2) / (kappa (r_o^2 + r_i^2))) / (2 pi G (1 + kappa)), with
     kappa = (3 - nu) / (1 + nu); radii in m.

@@ -15,7 +15,7 @@ from fe_contact.types import BoolArray, FloatArray
 
 
 class BoreSupport(Protocol):
-    """Decides which freedoms of a sector are held, and on what the bore rests; alike in all."""
+    """Rule that holds freedoms of a sector and seats its bore; alike in all sectors."""
 
     @property
     def name(self) -> str:
@@ -23,7 +23,10 @@ class BoreSupport(Protocol):
 
     @property
     def seat(self) -> BoreSeat:
-        """Its finite stiffnesses are elements on the bore; groups of layers end where it ends."""
+        """Seat of the bore.
+
+        Its finite stiffnesses are elements on the bore. Groups of layers end where it ends.
+        """
 
     def constrained(self, grid: SectorGrid, z: FloatArray) -> BoolArray:
         """Return which components (radial, tangential, axial) are held, (planes, n, 3); `z` (planes,), m."""

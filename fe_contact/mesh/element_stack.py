@@ -21,9 +21,10 @@ class Batch:
     quads: IntArray
     """Quadrilaterals of the section. Shape (m,)."""
     thickness: float
-    """Of the layer, m."""
+    """Thickness of the layer, m."""
     half: int
-    """0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
+    """Coarser side of the elements. 0: conforming. -1, +1: the lower face is the lower or upper half of a
+    face of the next coarser layer.
     """
     elements: IntArray
     """Rows of `SweptSector.elements`, one line for each of the c layers. Shape (c, m)."""

@@ -57,15 +57,15 @@ class GearMesh:
     teeth: IntArray
     """Consecutive numbers of the real teeth, 0 among them. Shape (t,)."""
     pitch_angle: float
-    """rad."""
+    """Angle of a pitch, rad."""
     sector: ToothSector
-    """The mesh of one tooth in its own frame."""
+    """Mesh of one tooth in the frame of the tooth."""
     sector_nodes: IntArray
-    """Node of the gear mesh that each sector node is. Shape (t, n_sector)."""
+    """Number of each sector node in the gear mesh. Shape (t, n_sector)."""
     hub_nodes: IntArray
-    """Node of the gear mesh that each hub node is. Shape (n_hub,)."""
+    """Number of each hub node in the gear mesh. Shape (n_hub,)."""
     hub: Hub | None
-    """None if the sectors reach down to that circle."""
+    """Mesh of the hub; None if the sectors reach down to the held circle."""
 
 
 def real_teeth(teeth: int, modeled: int | None) -> IntArray:

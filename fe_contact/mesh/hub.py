@@ -1,4 +1,4 @@
-"""The hub of a gear's mesh: the ring below and beside the real teeth, down to the bore."""
+"""The hub of a gear's mesh: the ring below and between the real teeth, down to the bore."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def _plain_rim(side: Piece, missing: int, pitch: float, inside: float, recipe: M
 
 
 def inner_rings(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> tuple[_InnerRing, ...]:
-    """Return what lies below the sectors from there on: one ring, or the rim's rest, web and hub."""
+    """Return the rings below the sectors: one ring, or the rest of the rim, web and hub."""
     seat_radius, web = gear.seat_radius, gear.web
     radii, thickness = [bottom_radius, seat_radius], [1.0]
     if web is not None:

@@ -21,20 +21,20 @@ class MeshRecipe:
     """
 
     flank_size: float
-    """Along the involute and `flank_margin` below it, m."""
+    """Element size along the involute and `flank_margin` below it, m."""
     tip_size: float
-    """At the tip edge, m. The size grows from there to `flank_size`."""
+    """Element size at the tip edge, m. The size grows from there to `flank_size`."""
     fillet_size: float
-    """Largest along the fillet and the root land, m."""
+    """Largest element size along the fillet and the root land, m."""
     body_size: float
-    """Largest inside the ring next to the teeth, m. Deeper in the body it keeps growing."""
+    """Largest element size inside the ring next to the teeth, m. Deeper in the body it keeps growing."""
     flank_margin: float
     """Length below the form point that is divided as finely as the flank and carries load freedoms, m."""
     growth: float = 0.3
     """Growth of the element size per unit distance, 0.05 to 1."""
     real_teeth: int | None = None
-    """Number of generated teeth, odd, centered on tooth 0; elsewhere the ring is plain, of root radius. None,
-    or no fewer than the gear has: all teeth.
+    """Number of generated teeth, odd, centered on tooth 0; the rest of the ring is plain, of root radius.
+    None, or no fewer than the gear has: all teeth.
     """
 
     def __post_init__(self) -> None:

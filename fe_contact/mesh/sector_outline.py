@@ -44,7 +44,7 @@ class SectorOutline:
     depth: FloatArray
     """Fractions from the root (0) to the bore (1). Shape (q,)."""
     web_rows: tuple[int, int] = (0, 0)
-    """See `SectorGrid`."""
+    """Rows of the web, as in `SectorGrid`."""
 
     @property
     def grid(self) -> SectorGrid:

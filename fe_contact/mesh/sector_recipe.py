@@ -28,7 +28,7 @@ _SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "b
 """Fields that are lengths of elements."""
 
 WOUND = 0.1
-"""Overlap ratio below which the teeth of a helical gear are meshed as those of a spur gear."""
+"""Overlap ratio below which helical gears have the meshes of spur gears at their teeth."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class SectorRecipe:
     """
     depth_limit: float
     body_size: float
-    """Size below the root, towards the bore, m; it grows with `body_growth` to `body_limit`. From a depth of
-    four times the limit on, an element is a quarter of its depth.
+    """Element size below the root, towards the bore, m; it grows with `body_growth` to `body_limit`. From a
+    depth of four times the limit on, an element is a quarter of its depth.
     """
     body_limit: float
     layers: int

@@ -46,7 +46,7 @@ class SweptSector:
     freedoms: IntArray
     """Number of each node's freedoms, -1 where held. Shape (N, 3)."""
     seat: BoreSeat = CLAMPED
-    """What the bore rests on."""
+    """Seat that the bore rests on."""
 
     @property
     def bodies(self) -> int:

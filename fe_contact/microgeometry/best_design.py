@@ -22,15 +22,19 @@ from model_studies.stage_clock import StageClock
 from model_studies.workers import InProcess, OrHere, Workers, WorkersLost, divided
 
 REFINED = 4
-"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
+"""Divisor of the number of designs of a further search. Where the best design exceeds the limits in the full
+analysis, the search goes on with the positions of that analysis too.
+"""
 
 
 ROUNDS = 3
-"""How often: the full analysis of another design has positions of its own, which join those of all before."""
+"""Most further searches. The full analysis of each new best design adds its positions to those of all
+searches before.
+"""
 
 
 STEP = 0.05
-"""Perturbation of the optimum in parts of a variable's range, where it does not scatter."""
+"""Perturbation of the optimum over the range of a variable that does not scatter."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +137,7 @@ def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: Desig
 
 
 def to_the_end(workers: Workers, cancel: Cancel) -> Workers:
-    """Return who does what follows a search: this process once that is cancelled."""
+    """Return the workers of the steps after a search: this process once it is cancelled."""
     if cancel() or isinstance(workers, InProcess):
         return InProcess()
 

@@ -1,4 +1,4 @@
-"""Analyze a design anew as `analyze` would, with the errors of its curves, at every node of the scatter."""
+"""Full analysis of a design as `analyze` does it, with errors, at every node of the scatter."""
 
 from __future__ import annotations
 
@@ -33,30 +33,31 @@ class HarrisMap:
     """Curves of one design at T torques, and their ripple at S nodes of the scatter."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
-    """On the driving gear, N m, increasing. Shape (T,)."""
+    """Torque on the driving gear, N m, increasing. Shape (T,)."""
     position: FloatArray
-    """Base pitches. Shape (P,)."""
+    """Position, base pitches. Shape (P,)."""
     ste: FloatArray = field(metadata=in_unit("m", "position", "torque"))
-    """Without scatter, m. Shape (P, T)."""
+    """Transmission error without scatter, m. Shape (P, T)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
     nominal_error: FloatArray = field(metadata=in_unit("m", "torque"))
-    """`nominal`, `nominal_error`: Peak-to-peak without scatter and its error, m. Shape (T,) each."""
+    """`nominal`, `nominal_error`: Peak-to-peak STE without scatter and its error, m. Shape (T,) each."""
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "node", "torque"))
     error: FloatArray = field(metadata=in_unit("m", "node", "torque"))
-    """`peak_to_peak`, `error`: At the nodes, m. The error is that of the table at the node's misalignment:
-    deviations of the modification change the ripple, not the discretization. Shape (S, T) each.
+    """`peak_to_peak`, `error`: Peak-to-peak STE at the nodes and its error, m. The error is that of the table
+    at the node's misalignment: deviations of the modification change the ripple, not the discretization.
+    Shape (S, T) each.
     """
     weight: FloatArray
-    """Of the nodes. Shape (S,)."""
+    """Weights of the nodes. Shape (S,)."""
 
     @property
     def expected(self) -> FloatArray:
-        """Expectation over the scatter (T,), m."""
+        """Expectation of peak-to-peak STE over the scatter (T,), m."""
         return np.asarray(self.weight @ self.peak_to_peak)
 
     @property
     def expected_error(self) -> FloatArray:
-        """Its error (T,) in m: errors of the nodes may all have the same sign."""
+        """Error of `expected` (T,), m. Errors of the nodes may all have the same sign."""
         return np.asarray(self.weight @ self.error)
 
 
@@ -65,18 +66,19 @@ class ConfirmedDesign:
     """A design as analyzed in full."""
 
     values: dict[str, float]
-    """``gear.quantity`` to m."""
+    """Values of the design variables, ``gear.quantity`` to m."""
     harris_map: HarrisMap
     figures: Evaluation
-    """Pressures, factors and curves at the nodes and the torques that count."""
+    """Pressures, factors and curves at the nodes and the design torques."""
     objective: Estimate
-    """Its error adds that of the analysis and that of the scatter's rule."""
+    """Objective of the design. Its error adds the errors of the analysis and of the scatter's rule."""
     scatter_error: float = field(metadata=in_unit("m"))
-    """The latter, m."""
+    """Error of the objective by the scatter's rule, m."""
     violation: float
-    """Of the limits, in parts of them."""
+    """Largest excess over a limit, relative to the limit."""
     table: SteDatabase | None = field(default=None, metadata=NOT_STORED)
-    """Over torques and misalignments, without scatter of the modifications; of a stored design None."""
+    """Table over torques and misalignments, without scatter of the modifications; None for a stored design.
+    """
 
 
 def confirm(

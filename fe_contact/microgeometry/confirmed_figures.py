@@ -1,4 +1,4 @@
-"""What limits hold of a design, with errors: by what rougher discretizations of the same design change."""
+"""Figures of a design that limits bound, with errors from rougher discretizations of the same design."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.root_influence import RootInfluence
 
 REMAINING = {"pressure": 1.0, "face_load_factor": 1.5, "root_stress": 1.0}
-"""Figures of an evaluation whose errors are told in a field `NAME_error`, and the part of changes that
-is left: set on ten drawn pairs against finer meshes in more slices (benchmarks/limit_coverage.py)."""
+"""Figures of an evaluation whose errors are in the field `NAME_error`, and the error that is left over the
+change between discretizations. The parts were set on ten drawn pairs against finer meshes in more slices
+(benchmarks/limit_coverage.py)."""
 
 
 class _Change(NamedTuple):
-    """A design on a discretization and on a rougher one, and how much of the difference counts."""
+    """A design on a discretization and on a rougher one, and the weight of their difference."""
 
     finer: Evaluation
     rougher: Evaluation
@@ -45,7 +46,7 @@ def confirmed_figures(evaluator: Evaluator, values: Mapping[str, float], cache: 
 
 
 def _left(changes: list[_Change], name: str) -> float:
-    """Return what all changes of a figure that tell of it (not NaN) leave, in parts of it."""
+    """Return the error of a figure by all its changes that are known (not NaN), relative to it."""
     ratios = [getattr(change.rougher, name) / getattr(change.finer, name) for change in changes]
     parts = [
         change.counts * np.abs(np.nan_to_num(ratio, nan=1.0) - 1.0).max()

@@ -42,7 +42,7 @@ class Budget:
         self.used += 1
 
     def tell(self) -> None:
-        """Report what is used."""
+        """Report the used part of the budget."""
         self._report(self.used / self.total)
 
 
@@ -82,7 +82,7 @@ class CountedMerit:
         return self._counted(self.problem.assess(point), point)
 
     def linearize(self, point: FloatArray) -> tuple[float, Merit]:
-        """Assess a design, and return its merit with what is known about it to first order."""
+        """Assess a design, and return its merit to first order."""
         self._budget.take(self._maximum)
         began = spent(self.workers)
         assessed, merit = self.problem.linearize(point, self.workers if self.divides else InProcess())

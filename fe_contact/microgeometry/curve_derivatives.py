@@ -36,15 +36,19 @@ CENTER_DISTANCE, TORQUE = "center_distance_change", "torque"
 
 
 AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-6
-"""Of differences of the flanks: in m, by which the gap is linear in its amounts; and in parts of a length."""
+"""Steps of differences by the flanks: of amounts in m, in which the gap is linear, and of lengths relative to
+the length.
+"""
 
 
 DISTANCE_STEP = 1e-7
-"""To a larger center distance in m, at which the curve is solved: other places of the flanks touch there."""
+"""Step of the center distance to a larger one, m. The curve is solved there too, since other points of the
+flanks touch.
+"""
 
 
 NEAR = 0.8
-"""Pressures from this part of the largest on are followed."""
+"""Least pressure over the largest that is followed."""
 
 
 @dataclass(frozen=True)
@@ -53,12 +57,14 @@ class FlankDerivatives:
 
     roll_length: FloatArray
     face_position: FloatArray
-    """`roll_length`, `face_position`: m, from the gear's mid-face. Ndarray, shapes (R,), (Z,)."""
+    """`roll_length`, `face_position`: Roll length, and distance from the gear's mid-face, m. Ndarray, shapes
+    (R,), (Z,).
+    """
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: m/m. Shape (F, R, Z) each."""
+    """`mean`, `peak_to_peak`: Derivatives of mean and peak-to-peak STE, m/m. Shape (F, R, Z) each."""
     harmonics: FloatArray
-    """Of the amplitudes, m/m. Shape (20, F, R, Z)."""
+    """Derivatives of the amplitudes of the mesh harmonics, m/m. Shape (20, F, R, Z)."""
 
 
 @dataclass(frozen=True)
@@ -66,24 +72,25 @@ class CurveDerivatives:
     """Curves at F torques and their derivatives by A figures."""
 
     names: tuple[str, ...]
-    """``gear.quantity``, "misalignment", "center_distance_change" or "torque"."""
+    """Names of the figures: ``gear.quantity``, "misalignment", "center_distance_change" or "torque"."""
     torque: FloatArray
-    """On the driving gear, N m. Shape (F,)."""
+    """Torque on the driving gear, N m. Shape (F,)."""
     position: FloatArray
-    """Base pitches. Shape (P,)."""
+    """Position, base pitches. Shape (P,)."""
     ste: FloatArray
-    """m. Shape (P, F)."""
+    """Static transmission error, m. Shape (P, F)."""
     by: FloatArray
-    """dSTE/dfigure, m/m; by the torque in m/(N m). Shape (A, P, F)."""
+    """Derivatives of the transmission error by the figures, m/m; by the torque in m/(N m). Shape (A, P, F).
+    """
     load_arm: FloatArray
     """Arm of the load about the axis of a misalignment, m. Shape (P, F)."""
     load_arm_by: FloatArray
-    """Its derivatives, as `by`. Shape (A, P, F)."""
+    """Derivatives of `load_arm`, in the units of `by`. Shape (A, P, F)."""
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: Of the curve's mean and peak-to-peak. Shape (A, F) each."""
+    """`mean`, `peak_to_peak`: Derivatives of mean and peak-to-peak STE by the figures. Shape (A, F) each."""
     harmonics: FloatArray
-    """Of the amplitudes of the mesh harmonics. Shape (A, 20, F)."""
+    """Derivatives of the amplitudes of the mesh harmonics by the figures. Shape (A, 20, F)."""
     _strips: CarryingStrips = field(repr=False)
     _quantities: FloatArray = field(repr=False)
 
@@ -165,7 +172,7 @@ def curve_derivatives(
 def _differences(
     further: SolvedOperatingPoint, solution: ContactSolution, arm: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what a step of the center distance changes of deflection and load arm, per m."""
+    """Return the changes of deflection and load arm by the center distance, per m."""
     _require_solved(further.solution)
     further_arm = load_arm(further.pair, further.problem, further.solution)
     change = further.solution.deflection - solution.deflection
@@ -218,7 +225,7 @@ class Difference:
 
     @classmethod
     def of(cls, pair: ParallelAxes, name: str) -> Difference:
-        """Return that about the figure the pair has."""
+        """Return the difference about the present figure of the pair."""
         if name == MISALIGNMENT:
             return cls(MisalignmentGap(1.0), MisalignmentGap(0.0), 1.0)
         gear, quantity = gear_and_quantity("by", name)

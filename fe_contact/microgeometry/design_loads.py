@@ -20,7 +20,7 @@ Misalignments = float | Levels
 
 
 CALLED_FOR = "called for by designs that remove less"
-"""The reason of an effect that is on although the design by which effects are decided does without."""
+"""Reason of an effect that is on although the design that decides about effects does not call for it."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class DesignLoads:
     """L loads, by rising torque; loads of one torque differ in their misalignment."""
 
     torque: FloatArray
-    """On the driving gear, N m. Shape (L,)."""
+    """Torque on the driving gear, N m. Shape (L,)."""
     misalignment: FloatArray
     """Growth of the gap over the common face width, m: shafts, bearings and housing yield with the torque.
     Shape (L,).

@@ -68,7 +68,7 @@ class DesignMemory:
         return memory
 
     def find(self, values: FloatArray, position: FloatArray) -> Figures | None:
-        """Return what is known of a design (d,) in m at some positions."""
+        """Return the stored evaluation of a design (d,) in m at some positions."""
         return self.known.get(_name(values, position))
 
     def add(self, values: FloatArray, position: FloatArray, figures: Figures) -> None:

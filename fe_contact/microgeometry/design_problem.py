@@ -19,13 +19,16 @@ from fe_contact.types import FloatArray
 from model_studies.workers import InProcess, Workers
 
 PENALTY = 10.0
-"""Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
+"""Merit of a limit that is exceeded by its own size, over the scale: an excess of 1 % costs a tenth of the
+scale.
+"""
 
 SLACK = 0.005
-"""Limits exceeded by less, in parts of them, are kept: a full analysis has more positions than a search."""
+"""Largest relative excess over a limit that counts as kept. A full analysis has more positions than a search.
+"""
 
 USUAL_DESIGNS = 100
-"""Of all walks of a search: workers that are woken by its first designs serve the others, too."""
+"""Designs of all walks of a usual search. The cost of waking workers is shared among them."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +41,12 @@ class Assessed:
 
     @property
     def order(self) -> tuple[float, float]:
-        """By which designs are ranked: first those that keep the limits, then by the objective."""
+        """Sort key of designs: first those that keep the limits, then by the objective."""
         return self.violation, self.objective
 
 
 class Merit(Protocol):
-    """The merit of designs about one of them."""
+    """The merit of designs near one design."""
 
     def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
@@ -53,7 +56,7 @@ class _Memory(Protocol):
     """Objective and violation of designs (d,) at positions (P,)."""
 
     def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
-        """Return what is known."""
+        """Return the stored evaluation of a design at positions; None if there is none."""
 
     def add(self, values: FloatArray, position: FloatArray, figures: tuple[float, float]) -> None:
         """Keep the figures of a design."""
@@ -61,15 +64,15 @@ class _Memory(Protocol):
 
 @dataclass(frozen=True)
 class SearchProblem(ABC):
-    """The variables, what is solved of a design, and the limits that it has to keep."""
+    """The problem of a search: variables, evaluator and limits of the designs."""
 
     evaluator: Evaluator
     variables: tuple[DesignVariable, ...]
     limits: Limits
     scale: float
-    """Objective of the start; merits are relative to it."""
+    """Objective of the start design; merits are relative to it."""
     memory: _Memory | None = None
-    """Of designs that were assessed before."""
+    """Memory of designs that were assessed before; None without such a memory."""
 
     def __getstate__(self) -> dict[str, object]:
         """Leave the memory behind: it is a file of this machine, for one writer."""
@@ -82,7 +85,7 @@ class SearchProblem(ABC):
 
     @property
     def ranges(self) -> FloatArray:
-        """What the variables reach over (d,), m."""
+        """Widths of the variables' ranges (d,), m."""
         return np.array([variable.high - variable.low for variable in self.variables])
 
     def values(self, point: FloatArray) -> dict[str, float]:

@@ -32,15 +32,15 @@ class DesignStudy:
     """A pair whose designs can be assessed."""
 
     decision: Decision
-    """Model and discretization, of all designs and all torques."""
+    """Model and discretization of all designs and all torques."""
     loads: DesignLoads
-    """All T of them: those of the full analysis."""
+    """All T loads of the full analysis."""
     force: FloatArray
-    """Their normal forces, N. Shape (T,)."""
+    """Normal forces of the loads, N. Shape (T,)."""
     counted: IntArray
-    """Which of them count; the others are for maps. Shape (L,)."""
+    """Indices of the loads that count for the objective; the others are for maps. Shape (L,)."""
     evaluator: Evaluator
-    """At the loads that count."""
+    """Evaluator at the loads that count."""
 
     @property
     def torque(self) -> FloatArray:
@@ -54,25 +54,23 @@ class DesignSpace:
 
     pair: ParallelAxes
     varied: Mapping[str, float]
-    """``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
-    decided.
-    """
+    """Design by which effects are decided, ``gear.quantity`` to m: no varied quantity of it is zero."""
     scatter: Scatter
     misalignment: Misalignments
-    """About which it scatters, m: one value, or one for each torque."""
+    """Mean misalignment, m: one value, or one for each torque."""
     positions: int
-    """Equally spaced in a base pitch."""
+    """Number of equally spaced positions in a base pitch."""
     options: AnalysisOptions
-    """Their `positions`, `receipt` and `on_violation` do not count."""
+    """Options of the analysis. Their `positions`, `receipt` and `on_violation` are ignored."""
     minimum: Mapping[str, float] = field(default_factory=dict)
-    """``gear.quantity`` to m of the design with the least removed; effects that it calls for are on."""
+    """Design with the least material removed, ``gear.quantity`` to m. Effects that it calls for are on."""
 
     def check(self, torques: Levels, further_torques: Levels = ()) -> Checked:
         """Check the request of a design in which everything acts that may act in any; computes nothing.
 
-        `torques`, `further_torques`: those that count, each with its misalignment, and others that the table
-        has, N m. Raises `InputError`: a value that cannot be used, or something is varied whose effect is
-        off.
+        `torques`, `further_torques`: Torques that count, each with its misalignment, and further torques of
+        the table, N m. Raises `InputError`: a value that cannot be used, or a quantity is varied whose effect
+        is off.
         """
         integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
         loads = DesignLoads.of(torques, self.misalignment)
@@ -87,7 +85,7 @@ class DesignSpace:
         return _with_effects_of(self._with_the_least_removed(), checked)
 
     def _with_the_least_removed(self) -> ParallelAxes:
-        """Return the pair with every variable at its lower bound, less what scatters."""
+        """Return the pair with every variable at its lower bound, less its scatter."""
         present = {name: figure(self.pair, name) for name in self.scatter.modification} | dict(self.varied)
         removed = present | dict(self.minimum)
         deviation = {name: -amount for name, amount in self.scatter.modification.items()}
@@ -95,7 +93,7 @@ class DesignSpace:
 
 
 def _with_effects_of(barest: ParallelAxes, checked: Checked) -> Checked:
-    """Turn on what only the design with the least removed calls for: tip edges that a relief keeps apart."""
+    """Turn on effects that only the design with the least removed calls for, such as corner contact."""
     _, ledger = compose(replace(checked.request, pair=barest).scene, checked.request.choices)
     missing = {entry.name for entry in checked.ledger if entry.choice == "auto" and not entry.on}
     reasons = {entry.name: CALLED_FOR for entry in ledger if entry.on and entry.name in missing}
@@ -126,13 +124,13 @@ def design_study(
     Parameters
     ----------
     torques, further_torques : sequence of float
-        Those that count, and those that only maps show, N m.
+        Torques that count, and torques that only maps show, N m.
     run : Run
-        Only this process works.
+        Cache and progress; its workers are not used.
     checked : Checked, optional
-        Of `DesignSpace.check`, where that is done.
+        Result of `DesignSpace.check`, if it was called before.
     limits : Limits
-        One of the root stress has its unit loads solved.
+        Limits of the search. A limit of the root stress needs the solution of its unit loads.
     """
     design_loads = DesignLoads.of(torques, space.misalignment)
     loads, counted = design_loads.with_torques(further_torques)
@@ -165,7 +163,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decision:
 
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
-    """Refuse to vary what an effect that is off would hide."""
+    """Refuse to vary quantities that an effect hides because it is off."""
     request = checked.request
     effects = {name: effect_of(name, request.registry) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:

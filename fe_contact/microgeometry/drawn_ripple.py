@@ -1,6 +1,6 @@
-"""The ripple of pairs as they are made, on bodies in memory: a few are solved, tangents stand for the others.
+"""The ripple of pairs as they are made, on bodies in memory: some are solved, the others follow by tangents.
 
-As in a tolerance Monte Carlo, but in parts that are short enough for somebody who waits.
+The method is that of a tolerance Monte Carlo, in parts that are short enough for a live answer.
 """
 
 from __future__ import annotations
@@ -24,16 +24,20 @@ from fe_contact.types import FloatArray
 from model_studies.spread import quantile_bounds, quantiles
 
 DRAWN, SOLVED = 1000, 16
-"""Pairs, and how many of them are solved: by 8 a band is 12 % of its width off, by 16 8 %, by 64 3 %."""
+"""Number of drawn pairs, and of solved pairs among them. The ends of a band are off by 12 % of its width with
+8 solved pairs, 8 % with 16, 3 % with 64.
+"""
 IN_A_PART = 4
-"""Pairs that are solved together, those of the first part with tangents: a fifth of a second."""
+"""Number of pairs that are solved together; those of the first part have tangents. A part takes a fifth of a
+second.
+"""
 FRACTIONS = 0.05, 0.95
 CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
 class Spread:
-    """Ends of what nine of ten pairs have, and what they may be wrong by: m."""
+    """Range of a quantity over nine of ten pairs, and the error of its ends, m."""
 
     low: float
     high: float
@@ -42,13 +46,13 @@ class Spread:
 
 @dataclass(frozen=True)
 class RippleBand:
-    """What nine of ten pairs have at one torque."""
+    """Ripple of nine of ten pairs at one torque."""
 
     position: FloatArray
-    """Base pitches. Shape (P,)."""
+    """Position, base pitches. Shape (P,)."""
     low: FloatArray
     high: FloatArray
-    """`low`, `high`: Transmission error less its mean, m. Shape (P,) each."""
+    """`low`, `high`: Least and largest transmission error less its mean, m. Shape (P,) each."""
     peak_to_peak: Spread
     first_harmonic: Spread
 
@@ -58,15 +62,15 @@ class DrawnRipple:
     """Pairs drawn within their tolerances, of which some are solved by now."""
 
     evaluator: Evaluator
-    """Of the pair as designed."""
+    """Evaluator of the pair as designed."""
     names: tuple[str, ...]
-    """What deviates."""
+    """Names of the quantities that deviate."""
     deviation: FloatArray
-    """m. Shape (N, d)."""
+    """Deviations of the pairs, m. Shape (N, d)."""
     model: TangentModel | None = None
-    """None: not begun."""
+    """Model of the other pairs; None before the first part is solved."""
     ste: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    """Of the first pairs, m. Shape (n, P, 1)."""
+    """Transmission error of the solved pairs, m. Shape (n, P, 1)."""
 
     @classmethod
     def of(

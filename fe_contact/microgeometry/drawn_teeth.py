@@ -31,30 +31,32 @@ from fe_contact.types import ComplexArray, FloatArray
 
 RUN_OUT, WOBBLE, PITCH, FLANK = "run_out", "wobble", "pitch_deviation", "tooth_flanks."
 OF_AXIS = (RUN_OUT, WOBBLE)
-"""What the axis of the teeth does, once per revolution."""
+"""Deviations of the axis of the teeth; they repeat once a revolution."""
 WOBBLE_SHARE = 0.5
-"""Assumed: wobble makes half of the variance of helix slopes from tooth to tooth; it is not measured."""
+"""Assumed share of wobble in the variance of helix slopes from tooth to tooth; no measurement supports it."""
 
 
 @dataclass(frozen=True)
 class PitchBounds:
-    """What a class allows of pitches, those that the eccentricity makes among them."""
+    """Bounds of pitches in a class, with the pitches that the eccentricity makes."""
 
     single: float
     cumulative: float
-    """`single`, `cumulative`: f_pT and F_pT, m, on the reference circle."""
+    """`single`, `cumulative`: Single pitch deviation f_pT and cumulative pitch deviation F_pT, m, on the
+    reference circle.
+    """
     eccentricity: float
-    """The largest that keeps both and the run-out F_rT, m."""
+    """Largest eccentricity that keeps both pitch deviations and the run-out F_rT, m."""
     cosine: float
-    """Of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it."""
+    """Cosine of the transverse pressure angle: an eccentricity moves teeth by 1 / cosine of it."""
     accumulated: float = 0.0
-    """Part of the square of a single pitch that the teeth behind keep: 0, each tooth is out of its place by
-    itself; 1, pitches are.
+    """Share of the accumulated deviation in the square of a single pitch. 0: each tooth is displaced by
+    itself. 1: each pitch deviates by itself, and the following teeth keep the displacement.
     """
 
     @classmethod
     def of(cls, gear: Toothing, tolerance_class: int, accumulated: float = 0.0) -> PitchBounds:
-        """Return those of a gear in a class of ISO 1328-1:2013."""
+        """Return the bounds of a gear in a class of ISO 1328-1:2013."""
         single = single_pitch_tolerance(gear, tolerance_class)
         cumulative = cumulative_pitch_tolerance(gear, tolerance_class)
         cosine = math.cos(gear.transverse_pressure_angle)
@@ -63,7 +65,7 @@ class PitchBounds:
         return cls(single, cumulative, largest, cosine, accumulated)
 
     def places(self, deviation: FloatArray) -> FloatArray:
-        """Return places of teeth (..., z), m, of what each of them is out of its place by itself.
+        """Return places of teeth (..., z), m, with accumulated pitch deviations.
 
         Harmonic j of the teeth grows by the root of 1 - a + a / (2 sin^2(pi j / z)), a the part accumulated:
         the mean square of a single pitch stays, and that of neighbors' difference is the same at every tooth.
@@ -89,7 +91,7 @@ class PitchBounds:
 
 @dataclass(frozen=True)
 class ToothTolerances:
-    """By how much the teeth of one gear differ at most."""
+    """Largest differences between the teeth of one gear."""
 
     gear: str
     teeth: int
@@ -99,18 +101,20 @@ class ToothTolerances:
     tolerance that teeth have not in common.
     """
     distribution: Distribution = "normal"
-    """As of `Tolerances`. Normal eccentricity and wobble are so in both directions."""
+    """Distribution of the deviations, as in `Tolerances`. A normal distribution of eccentricity and wobble
+    holds in both directions.
+    """
     pitches: PitchBounds | None = None
-    """Within which the places of all teeth are scaled; None: nothing bounds them together."""
+    """Bounds to which the places of all teeth are scaled; None: the places have no common bound."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """``gear.what`` in the order of the widths."""
+        """Names of the deviations, ``gear.quantity``, in the order of the widths."""
         return tuple(f"{self.gear}.{name}" for name in self.widths)
 
     @property
     def dimensions(self) -> int:
-        """How many numbers a gear takes."""
+        """Number of random numbers that a gear takes."""
         of_axis = sum(name in self.widths for name in OF_AXIS)
         return 2 * of_axis + (len(self.widths) - of_axis) * self.teeth
 
@@ -155,14 +159,14 @@ class DrawnTeeth:
     """
     by_tooth: Mapping[str, FloatArray]
     """Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in excess.
-    As drawn, of which `made` is what the class leaves. Mapping of str to ndarray, shape (N, z).
+    They are as drawn; `made` is scaled to the class. Mapping of str to ndarray, shape (N, z).
     """
     pitches: PitchBounds | None = None
-    """As of `ToothTolerances`."""
+    """Bounds of the pitches, as in `ToothTolerances`."""
 
     @cached_property
     def made(self) -> Mapping[str, FloatArray]:
-        """`by_tooth` with pitches accumulated, scaled to what the class allows beside the eccentricity."""
+        """`by_tooth` with accumulated pitches, scaled so that pitches and eccentricity keep the class."""
         if self.pitches is None:
             return self.by_tooth
         pitch_deviation = self.pitches.bounded(
@@ -212,7 +216,7 @@ def iso1328_tooth_tolerances(
     distribution: Distribution = "normal",
     finishing: Finishing = "any",
 ) -> ToothTolerances:
-    """Return what of the teeth of one gear differs by ISO 1328-1:2013.
+    """Return the differences between the teeth of one gear by ISO 1328-1:2013.
 
     The eccentricity is at most half the run-out F_rT, a tooth by itself at most half of f_pT out of its
     place. Of the square of a single pitch the teeth behind keep the part `ACCUMULATED`; all places are scaled

@@ -1,4 +1,4 @@
-"""Assess designs of one pair on one compliance: only the gaps are new, and the contact is solved."""
+"""Assessment of designs of one pair on one compliance: contact is solved under the gaps of each design."""
 
 from __future__ import annotations
 
@@ -57,12 +57,12 @@ class Evaluation:
         default_factory=lambda: np.full((1, 1), np.nan), metadata=in_unit("pa", "node", "torque")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full((1, 1), np.nan))
-    """`root_stress_error`, `pressure_error`, `face_load_factor_error`: Of the discretization; NaN where it is
-    not estimated. Shape (S, L) each.
+    """`root_stress_error`, `pressure_error`, `face_load_factor_error`: Errors of these figures by the
+    discretization; NaN where not estimated. Shape (S, L) each.
     """
 
     def at_loads(self, loads: BoolArray | IntArray) -> Evaluation:
-        """Return the same at some of the loads."""
+        """Return the evaluation at some of the loads."""
         return Evaluation(**{name: values[..., loads] for name, values in vars(self).items()})
 
     @property
@@ -93,18 +93,18 @@ class Evaluator:
     """
 
     contact: PairContact
-    """Its compliance does not depend on the modification."""
+    """Contact of the pair. Its compliance does not depend on the modification."""
     choices: Mapping[str, str]
-    """Every effect "on" or "off"."""
+    """Choice of every effect, "on" or "off"."""
     position: FloatArray
-    """In one base pitch. Shape (P,)."""
+    """Positions in one base pitch. Shape (P,)."""
     load: FloatArray
     """Normal forces, N. Shape (L,)."""
     misalignment: FloatArray
-    """Of each load, about which it scatters, m. Shape (L,)."""
+    """Mean misalignment at each load, m. Shape (L,)."""
     nodes: ScatterNodes
     roots: RootInfluence | None = None
-    """By which the stress of the roots is followed."""
+    """Unit-load stress of the roots; None where root stress is not followed."""
 
     @property
     def misalignments(self) -> FloatArray:
@@ -164,7 +164,7 @@ class Evaluator:
         return np.stack([np.concatenate(parts, axis=-1)[..., order] for parts in nodes])
 
     def at(self, position: FloatArray) -> Evaluator:
-        """Return the same at other positions (P,), of which those in the first base pitch count."""
+        """Return the evaluator at other positions (P,), of which those in the first base pitch count."""
         return replace(self, position=position[position < 1.0])
 
     def expected(self, evaluation: Evaluation) -> FloatArray:
@@ -226,9 +226,9 @@ class LoadFigures:
     """The figures of L loads of one misalignment at one node of the scatter."""
 
     ste: FloatArray
-    """m; NaN where the contact was not solved. Shape (P, L)."""
+    """Transmission error, m; NaN where the contact was not solved. Shape (P, L)."""
     pressure: FloatArray
-    """Of every candidate, Pa. Shape (P, L, m)."""
+    """Pressure of every candidate, Pa. Shape (P, L, m)."""
     face_load: FloatArray
     """Mean over the positions at the points of the face, over its mean over the face. Shape (L, Z)."""
     edge_load_share: FloatArray
@@ -258,7 +258,7 @@ def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:
 
 
 def carried(problem: ContactProblem, force: FloatArray) -> FloatArray:
-    """Return what each of the forces (P, L, m) carries of the load, N."""
+    """Return the share of each of the forces (P, L, m) in the load, N."""
     return np.asarray(force * problem.candidates.torque_share[:, None, :])
 
 
@@ -269,5 +269,5 @@ def edges(problem: ContactProblem) -> BoolArray:
 
 
 def on_edges(problem: ContactProblem, force: FloatArray) -> FloatArray:
-    """Return what forces (P, L, m) on tip edges carry of the load (P, L), N."""
+    """Return the share of forces (P, L, m) on tip edges in the load (P, L), N."""
     return np.asarray((carried(problem, force) * edges(problem)[:, None, :]).sum(axis=2))

@@ -1,4 +1,4 @@
-"""The merit of designs about one of them to first order: its least value is a linear program."""
+"""The merit of designs near one design to first order: its least value is a linear program."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ class LinearMerit:
     curves: FloatArray
     """Transmission error at S nodes of the scatter, in parts of the scale of the merit. Shape (S, P, L)."""
     by: FloatArray
-    """Its derivatives. Shape (S, P, L, d)."""
+    """Derivatives of the curves by the variables. Shape (S, P, L, d)."""
     node_weight: FloatArray
-    """Shape (S,)."""
+    """Weights of the nodes. Shape (S,)."""
     load_weight: FloatArray
-    """Rows of the objective: the largest counts. Shape (R, L)."""
+    """Weights of the loads in each row of the objective; the largest row counts. Shape (R, L)."""
     limits: tuple[Rows, ...]
-    """Of each limit: by how much it is exceeded; the largest counts, if it is above 0."""
+    """Rows of each limit: its excess at all points; the largest counts if it is above 0."""
     penalty: float
-    """Of exceeding them."""
+    """Merit of an excess over a limit by its own size."""
 
     def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""

@@ -36,10 +36,10 @@ class _LinearizedDesign:
 
     evaluation: Evaluation
     curves: FloatArray
-    """dSTE/dvariable, m/m. Shape (S, P, L, d)."""
+    """Derivatives of the transmission error by the variables, m/m. Shape (S, P, L, d)."""
     limits: tuple[Rows, ...]
-    """Of each limit that is set: in parts of it less 1 (the load on edges: less its limit), at all places at
-    which it may come to count.
+    """Rows of each limit that is set: figure over limit less 1 (load on edges: figure less limit), at all
+    points that may become decisive.
     """
 
 
@@ -52,10 +52,10 @@ class _Solved:
     solution: ContactSolution
     figures: LoadFigures
     steps: tuple[Difference, ...]
-    """Of the variables."""
+    """Differences of the variables."""
     strips: CarryingStrips
     opened: FloatArray
-    """Normal approach that each variable takes away from them, m/m. Shape (d, k)."""
+    """Normal approach that each variable takes away from the strips, m/m. Shape (d, k)."""
     roots: RootInfluence | None
 
     @cached_property

@@ -21,7 +21,9 @@ from fe_contact.types import FloatArray, IntArray
 
 LOAD = "force"
 SPACING = 1e-9
-"""Between the misalignments by which moved tables are told apart, m: any number would do."""
+"""Distance of the misalignments of tables of perturbed designs, m. Any number serves: it only tells the
+tables apart.
+"""
 
 
 @dataclass(frozen=True)
@@ -31,11 +33,11 @@ class TabledLoads:
     figures: LoadFigures
     table: SteDatabase
     by: Mapping[str, FloatArray]
-    """Fields of the table to their derivatives by d variables (d, P, F), per m; empty where none are taken.
-    Those of the tangent compliance are differences between the loads.
+    """Derivatives of fields of the table by d variables (d, P, F), per m, by the name of the field; empty
+    where none are taken. Derivatives of the tangent compliance are differences between the loads.
     """
     limits: tuple[Rows, ...]
-    """As of `LinearizedNode`."""
+    """Rows of the limits, as in `LinearizedNode`."""
 
     def at_loads(self, loads: IntArray) -> TabledLoads:
         """Return the table of some of the loads, by their rising indices; figures and limits are of all."""

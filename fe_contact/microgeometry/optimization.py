@@ -29,7 +29,7 @@ from model_studies import in_unit
 MAP_PARTS = np.arange(1, 11) / 8.0
 """Torques of the Harris map in parts of the largest that counts."""
 CLOSE = 0.03
-"""Torques of the map this near to one that counts, in parts of the largest, are left out."""
+"""Least distance of a torque of the map from a design torque, over the largest; nearer ones are left out."""
 
 
 @dataclass(frozen=True)
@@ -37,26 +37,26 @@ class OptimizationRequest:
     """A pair, its design variables, and the assessment of its designs."""
 
     pair: ParallelAxes
-    """Its own modifications are the start; those that are not varied stay."""
+    """Gear pair. Its modifications are the start; those that are not varied stay."""
     torques: Levels
     """Design torques, N m on the driving gear, increasing; equal ones only at different misalignments."""
     variables: tuple[DesignVariable, ...]
     scatter: Scatter = NO_SCATTER
-    """Of misalignment and modifications, about the design."""
+    """Scatter of misalignment and modifications about the design."""
     misalignment: Misalignments = 0.0
-    """About which it scatters, m: one value, or one for each torque. Further torques of the maps have it
-    linear in between, and held beyond the lowest and the highest design torque.
+    """Mean misalignment, m: one value, or one for each torque. Further torques of the maps interpolate it
+    linearly, and take the nearest value beyond the lowest and the highest design torque.
     """
     objective: Objective = WeightedMean()  # noqa: RUF009 (frozen)
-    """`WeightedMean` or `Worst` of the expectations at the torques."""
+    """Objective: `WeightedMean` or `Worst` of the expectations at the torques."""
     limits: Limits = NO_LIMITS
-    """Pressure, face load factor, load on tip edges."""
+    """Limits of pressure, face load factor, load on tip edges and root stress."""
     search: Search = Search()  # noqa: RUF009 (frozen)
-    """Method, seed, starts, evaluations, positions."""
+    """Method, seed, starts, evaluations and positions of the search."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
-    """`positions`, `receipt` and `on_violation` are ignored. Effects are decided once, for the design with
-    every variable at the middle of its bounds and the scattered misalignment, and for the design with the
-    least removed: all designs are assessed by one model.
+    """Options of the analysis; `positions`, `receipt` and `on_violation` are ignored. Effects are decided
+    once, for the design with every variable at the middle of its bounds and the scattered misalignment, and
+    for the design with the least removed: all designs are assessed by one model.
     """
     map_torques: Levels | None = None
     """Further torques of the Harris maps, N m; default: up to 1.25 times the largest design torque."""
@@ -68,7 +68,7 @@ class OptimizationRequest:
 
     @property
     def space(self) -> DesignSpace:
-        """The designs, by one in which every variable acts."""
+        """Designs of the request. Effects are decided by a design in which every variable acts."""
         acting = {variable.name: variable.acting for variable in self.variables}
         scattered = self.scatter, self.misalignment
         minimum = {variable.name: variable.low for variable in self.variables}
@@ -141,7 +141,7 @@ def gain_of(start: _Confirmed, optimum: _Confirmed) -> Estimate:
 
 
 def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:
-    """Return what came of a search: ties within the errors are ties."""
+    """Return the outcome of a search: ties within the errors are ties."""
     gain = gain_of(start, optimum)
     if optimum.violation > SLACK:
         return Outcome.LIMITS_EXCEEDED
@@ -169,7 +169,7 @@ class Perturbation:
     """
     change_low: float = field(metadata=in_unit("m"))
     change_high: float = field(metadata=in_unit("m"))
-    """`change_low`, `change_high`: Of the objective there, m."""
+    """`change_low`, `change_high`: Changes of the objective at these values, m."""
 
 
 @brief
@@ -179,27 +179,27 @@ class Optimization:
 
     outcome: Outcome
     reason: str
-    """The outcome, and how the search ended, in words."""
+    """Reason of the outcome: how the search ended, in words."""
     variables: tuple[DesignVariable, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
-    """Torques that count, N m. Shape (L,)."""
+    """Design torques, N m. Shape (L,)."""
     misalignment: FloatArray = field(metadata=in_unit("m", "torque"))
-    """Of each, about which it scatters, m. Shape (L,)."""
+    """Mean misalignment at each torque, m. Shape (L,)."""
     nodes: ScatterNodes
     start: ConfirmedDesign
     optimum: ConfirmedDesign
     runs: tuple[SearchRun, ...]
-    """One for each start, and one more each time the best design had to be brought back within the limits;
-    `best_run` is the index of the decisive one.
+    """Runs of the search: one for each start, and one more for each time the best design had to be brought
+    back within the limits. `best_run` is the index of the decisive one.
     """
     best_run: int
     sensitivity: tuple[Perturbation, ...]
     not_tried: tuple[str, ...]
-    """What the search did not vary, in words."""
+    """Quantities that the search did not vary, in words."""
     cost: Json
-    """Evaluations and CPU seconds by stage; the search's are those of all its processes."""
+    """Evaluations and CPU seconds by stage; those of the search add all its processes."""
     asked: Json
-    """What was requested, in SI units."""
+    """Request in SI units."""
 
     def __post_init__(self) -> None:
         # files of version 0.2 hold one value for all torques

@@ -19,21 +19,22 @@ from model_studies import in_unit
 TIGHTENED = 1.0 / math.sqrt(2.0)
 """Tolerance of a class over that of the next coarser one (ISO 1328-1:2013, 5.2.2)."""
 BASE_PAIRS = 1024
-"""Of the indices: as many times the number of deviations and two more are taken from the model."""
+"""Base sample of the Sobol' indices. The model is evaluated for it d + 2 times, d the number of deviations.
+"""
 
 
 @dataclass(frozen=True)
 class OrderLimit:
-    """What the amplitude of an order is to stay below: of the mesh, or beside it by the turns of a gear."""
+    """Limit of the amplitude of an order: a mesh order, or a mesh order shifted by turns of a gear."""
 
     order: int
-    """Of the mesh; 1: the mesh frequency. 0 with a gear: the order is one of its shaft."""
+    """Mesh order; 1: the mesh frequency. 0 with a gear: the order is one of its shaft."""
     amplitude: float
-    """m."""
+    """Largest amplitude, m."""
     gear: str = ""
-    """Whose teeth make it; without one it is a mesh order."""
+    """Name of the gear whose teeth make the order; empty for a mesh order."""
     turns: int = 0
-    """Turns of the gear beside the mesh order, either way, at most half its teeth."""
+    """Turns of the gear between the order and the mesh order, of either sign, at most half its teeth."""
 
     def __post_init__(self) -> None:
         integer("limit.order", self.order, 0 if self.gear else 1, 10_000)
@@ -41,7 +42,7 @@ class OrderLimit:
 
     @property
     def name(self) -> str:
-        """As orders are named: "mesh 1", "mesh 1 - pinion 1", "wheel 1"."""
+        """Name of the order, as in spectra: "mesh 1", "mesh 1 - pinion 1", "wheel 1"."""
         if not self.gear:
             return f"mesh {self.order}"
         if not self.order:
@@ -80,36 +81,38 @@ class OrderLimit:
 
 @dataclass(frozen=True)
 class PairsAbove:
-    """Pairs above a limit at L torques, and what of d deviations decides at the one with most of them."""
+    """Pairs above a limit at L torques, and the causes of d deviations at the torque with most such pairs."""
 
     limit: OrderLimit
     names: tuple[str, ...]
-    """The deviations."""
+    """Names of the deviations."""
     amplitude: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
-    """Of the order, m. Shape (N, L)."""
+    """Amplitude of the order, m. Shape (N, L)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
-    """As designed, m. Shape (L,)."""
+    """Amplitude of the pair as designed, m. Shape (L,)."""
     share: FloatArray
     low: FloatArray
     high: FloatArray
-    """`share`, `low`, `high`: Part of all pairs above, and its bounds: by Wilson, and wider by what the model
-    misses of pairs that it is held against. Shape (L,) each.
+    """`share`, `low`, `high`: Share of all pairs above, and its bounds: Wilson's interval, widened by the
+    error of the model for solved pairs. Shape (L,) each.
     """
     load: int
-    """Index of the torque at which most are above, the last of equal ones."""
+    """Index of the torque at which most pairs are above, the last of equal ones."""
     first_order: FloatArray
     total: FloatArray
-    """`first_order`, `total`: Sobol' indices of the level in dB there: the part of its variance that a
-    deviation makes alone, and with others. Shape (d,) each.
+    """`first_order`, `total`: Sobol' indices of the level in dB at that torque: the part of its variance that
+    a deviation causes alone, and together with others. Shape (d,) each.
     """
     cured: FloatArray
-    """Share there if the tolerance of one deviation is tightened by a class. Shape (d,)."""
+    """Share of pairs above at that torque if the tolerance of one deviation is tightened by a class. Shape
+    (d,).
+    """
     missed: FloatArray = field(metadata=in_unit("m", "torque"))
-    """Root of the mean square by which the model misses the amplitude of pairs it is held against, m. Shape
+    """Root mean square error of the model for the amplitude of solved pairs that it does not know, m. Shape
     (L,).
     """
     beyond: FloatArray
-    """Part of those pairs that it puts on the other side of the limit. Shape (L,)."""
+    """Part of the solved pairs that the model puts on the other side of the limit. Shape (L,)."""
 
     @property
     def decides(self) -> int:
@@ -125,14 +128,14 @@ class PairsAbove:
 
 @dataclass(frozen=True)
 class DrawnPairs:
-    """N pairs that deviate by (N, d) in m, the first n of which were solved: ste (n, P, L) in m."""
+    """N drawn pairs with deviations (N, d), m; the first n were solved: ste (n, P, L), m."""
 
     names: tuple[str, ...]
-    """The deviations."""
+    """Names of the deviations."""
     deviation: FloatArray
     ste: FloatArray
     first_unknown: int
-    """From which of the solved pairs on the model does not know them."""
+    """Index of the first solved pair that the model does not know."""
     model: TangentModel
     of_pair: Sequence[Any]
     """Distribution of each deviation."""
@@ -141,15 +144,16 @@ class DrawnPairs:
 
 
 class Causes(NamedTuple):
-    """What d deviations do to an order at one load, by a model."""
+    """Effect of d deviations on an order at one load, by a model."""
 
     first_order: FloatArray
     total: FloatArray
     """`first_order`, `total`: Sobol' indices of the level in dB. Shape (d,) each."""
     share: float
-    """Of pairs above the limit."""
+    """Share of pairs above the limit."""
     tightened: FloatArray
-    """The same with the tolerance of one deviation tightened by a class. Shape (d,)."""
+    """Share of pairs above the limit if the tolerance of one deviation is tightened by a class. Shape (d,).
+    """
 
 
 @dataclass(frozen=True)
@@ -157,13 +161,13 @@ class ModeledPairs:
     """Amplitudes of one order of pairs that a model knows all of: modeled (N, L), and solved (n, L), m."""
 
     names: tuple[str, ...]
-    """The deviations."""
+    """Names of the deviations."""
     nominal: FloatArray
-    """As designed, m. Shape (L,)."""
+    """Amplitude of the pair as designed, m. Shape (L,)."""
     solved: FloatArray
     modeled: FloatArray
     first_unknown: int = 0
-    """From which of the solved pairs on the model does not know them."""
+    """Index of the first solved pair that the model does not know."""
 
     def above(self, limit: OrderLimit, confidence: float, causes: Callable[[int], Causes]) -> PairsAbove:
         """Count the pairs above a limit; `causes` says why at one of the loads."""

@@ -35,9 +35,9 @@ class RootInfluence:
     offset: float
     """Distance of the driven gear's mid-face from the driving gear's, m."""
     rough: RootInfluence | None = None
-    """On coarser meshes; of these themselves None."""
+    """Root influence on coarser meshes; None for the coarser meshes themselves."""
     remaining: float = math.nan
-    """Error left over the difference to these."""
+    """Error that is left over the difference to the coarser meshes."""
 
     @classmethod
     def of(cls, contact: PairContact, cache: Path | None = None) -> RootInfluence:
@@ -81,7 +81,7 @@ class RootInfluence:
 
 @dataclass(frozen=True)
 class _GearRoots:
-    """What forces on the slices of T pairs do to the tension roots of their teeth of one gear."""
+    """Stress of the tension roots of one gear by forces on the slices of T pairs."""
 
     on_nodes: FloatArray
     """Parts of the force on a slice at each of K nodes of the profile, at Q positions. Shape (Q, T, Z, K)."""
@@ -103,7 +103,7 @@ class _GearRoots:
         direction: int,
         offset: float,
     ) -> _GearRoots:
-        """Return those of a gear whose teeth count against (-1) or with (1) the pairs."""
+        """Return the roots of a gear whose teeth count against (-1) or with (1) the pairs."""
         slices = candidates.slices
         teeth = np.unique(slices.pair)
         shape = len(slices.present), teeth.size, -1

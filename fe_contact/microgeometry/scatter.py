@@ -1,4 +1,4 @@
-"""Scatter of assembly and manufacture: what is normally distributed, and at which nodes it is taken."""
+"""Scatter of assembly and manufacture: normal deviations, and the nodes at which designs are assessed."""
 
 from __future__ import annotations
 
@@ -74,9 +74,9 @@ class SobolSample:
     """Fixed sample of equal weights: a scrambled Sobol' sequence through the normal quantile."""
 
     log2_size: int = 4
-    """The sample has 2**log2_size points, 0 to 10."""
+    """Base-2 logarithm of the number of points, 0 to 10."""
     seed: int = 0
-    """Of the scrambling."""
+    """Seed of the scrambling."""
 
     def __post_init__(self) -> None:
         integer("scatter.rule.log2_size", self.log2_size, 0, 10)
@@ -148,13 +148,13 @@ class ScatterNodes:
     """Nodes at which a design is assessed."""
 
     names: tuple[str, ...]
-    """What deviates: "misalignment" and ``gear.quantity``."""
+    """Names of the deviating quantities: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m"))
-    """m. Shape (S, d)."""
+    """Deviations at the nodes, m. Shape (S, d)."""
     weight: FloatArray
-    """Of the expectation, sum 1. Shape (S,)."""
+    """Weights of the nodes in the expectation, sum 1. Shape (S,)."""
     finer: ScatterNodes | None = None
-    """By which the error of the expectation is estimated; None where nothing scatters."""
+    """Finer nodes, which estimate the error of the expectation; None where nothing scatters."""
 
     @property
     def misalignment(self) -> FloatArray:

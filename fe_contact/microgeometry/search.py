@@ -42,15 +42,16 @@ class Search:
 
     method: Method = SequentialLinearProgramming()  # noqa: RUF009 (frozen)
     seed: int = 0
-    """Of all random numbers: equal searches give equal results."""
+    """Seed of all random numbers: equal searches give equal results."""
     starts: int = 1
     """Independent searches; the first starts at the given pair, others at points of a Sobol' sequence."""
     evaluations: int = 1000
-    """Largest number of designs that each of them evaluates."""
+    """Largest number of designs that each search evaluates."""
     positions: int = 64
-    """Equally spaced in a base pitch; the analysis at the end places its own."""
+    """Number of equally spaced positions in a base pitch; the analysis at the end places its own positions.
+    """
     exploration: int = 16
-    """Positions by which designs are ranked before any is followed, at most `positions`."""
+    """Number of positions by which designs are ranked before any is followed, at most `positions`."""
 
     def __post_init__(self) -> None:
         integer("search.seed", self.seed, 0, 2**32 - 1)
@@ -70,7 +71,7 @@ class Search:
 
 
 def usual_designs(search: Search) -> float:
-    """Return what a usual search takes, in assessments of a design at all positions."""
+    """Return the cost of a usual search, in assessments of a design at all positions."""
     few, maximum, method = (
         min(search.exploration / search.positions, 1.0),
         float(search.evaluations),
@@ -97,12 +98,12 @@ class SearchRun:
     ended: Ended
     cpu_seconds: float
     explored: int = 0
-    """Of the evaluations, those at few positions."""
+    """Number of the evaluations that took few positions."""
     spread: float = 0.0
-    """Largest less least objective of all others."""
+    """Largest less least objective of all other runs."""
     ends: tuple[float, ...] = ()
-    """Objectives to which its walks came from each start, few positions and no scatter; of those that keep
-    the limits best.
+    """Objectives at which walks from each start ended, by few positions and without scatter; only walks that
+    keep the limits best.
     """
 
     @property

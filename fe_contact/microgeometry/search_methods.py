@@ -18,15 +18,17 @@ from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
-"""A simplex this small has converged: parts of the range of a variable, and of the merit of the start."""
+"""Size of a converged simplex, over the range of a variable, and its range of merits over the merit of the
+start.
+"""
 
 
 EDGE = 0.2
-"""Of the first simplex, in parts of the ranges, towards the inside."""
+"""Edge of the first simplex over the ranges, towards the inside."""
 
 
 SPREAD = 1e-3
-"""Standard deviation of the merit over a population that has converged, in parts of its mean."""
+"""Standard deviation of the merit over a converged population, over its mean."""
 
 
 FIRST_REGION = 0.2
@@ -34,19 +36,23 @@ FIRST_REGION = 0.2
 
 
 POOR, GOOD, POORER = 0.25, 0.75, 0.4
-"""Parts of the promised fall by which the region shrinks or grows; to what part of the step it shrinks."""
+"""Parts of the predicted fall below and above which the trust region shrinks or grows, and the part of the
+step that it shrinks to.
+"""
 
 
 TRIED = 7
-"""Steps of every start before the best of them is followed to its end."""
+"""Steps of every start; then the best of them is followed to its end."""
 
 
 ASIDE, MIN_GAIN, MISSES = 0.05, 0.005, 3
-"""Where a walk ends it is taken up again beside, so far away at most, until that gains less so often."""
+"""Restarts of a walk near its end: largest distance over the ranges, least relative gain that counts, and
+number of consecutive restarts without such a gain that ends the walk.
+"""
 
 
 FINISHED = 3
-"""Rough walks that are followed on by the merit: the best by it."""
+"""Number of rough walks that are continued by the merit: the best by it."""
 
 
 EXPLORED = 0.65
@@ -57,7 +63,9 @@ Cancel = Callable[[], bool]
 
 
 LINEARIZED, FOLLOWED = 1.4, 75
-"""Assessments that a design with its slopes costs; designs of the walk to the end and of those beside it."""
+"""Cost of a design with its slopes in assessments, and number of designs of the walk to the end and of its
+restarts.
+"""
 
 
 class Method(Protocol):
@@ -109,7 +117,7 @@ class NelderMead:
 
 @dataclass(frozen=True)
 class SequentialLinearProgramming:
-    """From design to design by linear programmes over the derivatives of the curves, in a trust region.
+    """Linear programs over the derivatives of the curves in a trust region, from design to design.
 
     Peak-to-peak is made of maxima, whose kinks a program of all positions, loads and nodes sees [1]_. It is
     local: a Sobol' sequence ranked by the rough merit gives further starts; each is followed for some
@@ -203,7 +211,7 @@ def _screened(
 
 
 def _try_neighbors(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequence) -> None:
-    """Take a walk up again beside its end, until that gains too little so often."""
+    """Restart a walk near its end until `MISSES` restarts in a row gain too little."""
     random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
     draws: list[FloatArray] = []
     while misses < MISSES and np.isfinite(best.value):
@@ -215,12 +223,12 @@ def _try_neighbors(merit: CountedMerit, best: _Walk, seed: np.random.SeedSequenc
             misses = 0 if other.value < (1.0 - MIN_GAIN) * best.value else misses + 1
             if other.value < best.value:
                 best = other
-                break  # the others began beside another design
+                break  # the other restarts began near the previous best design
 
 
 @dataclass(frozen=True)
 class _Walk:
-    """Where linear programmes have come to: `position` (d,) is the best so far, `value` its merit."""
+    """State of a walk by linear programs: `position` (d,) is the best design so far, `value` its merit."""
 
     position: FloatArray
     region: float = FIRST_REGION

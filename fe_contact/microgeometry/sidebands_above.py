@@ -1,9 +1,9 @@
-"""Orders beside the mesh that the teeth of one gear make: which pairs are above a limit, and why.
+"""Shaft orders and sidebands by the teeth of one gear: the pairs above a limit, and the causes.
 
 Pairs are solved over one revolution of the gear, whose teeth are drawn; those of its mate are alike. Further
-pairs, and what decides, are told to first order in the deviations of single teeth, about the flanks as
-designed: an order is the Fourier sum of a deviation over the teeth times what one tooth does as it passes
-through the mesh. Where slopes and forms move the point at which teeth touch is left out.
+pairs, and the causes, follow to first order in the deviations of single teeth, about the flanks as designed:
+an order is the Fourier sum of a deviation over the teeth times the contribution of one tooth as it passes
+through the mesh. Motions of the touching point by slopes and forms are left out.
 """
 
 from __future__ import annotations
@@ -45,31 +45,31 @@ from fe_contact.options import Run
 from fe_contact.types import ComplexArray, FloatArray
 
 IN_A_TASK = 4
-"""Pairs of a task."""
+"""Number of pairs in a task of a worker."""
 _MIN = 1e-15
 """Amplitude in m below which there is no level."""
 
 
 @dataclass(frozen=True)
 class ToothPassing:
-    """What the teeth of a gear add to one order at L loads, to first order."""
+    """First-order contribution of the teeth of a gear to one order at L loads."""
 
     line: int
-    """The order, per revolution of the gear."""
+    """Order in periods per revolution of the gear."""
     turns: int
-    """By how many turns of the gear it is beside the mesh."""
+    """Turns of the gear between the order and the mesh order."""
     by_tooth: Mapping[str, ComplexArray]
     """Complex amplitude by the Fourier sum of a deviation over the teeth, m/m. Mapping of str to ndarray,
     shape (L,).
     """
     by_wobble: ComplexArray
-    """By the amount of wobble at the angle 0, m/m: where the load is off mid-face as a pitch passes. Shape
-    (L,).
+    """Complex amplitude per amount of wobble at the angle 0, m/m. Wobble acts where the load is off mid-face
+    as a tooth passes. Shape (L,).
     """
 
     @classmethod
     def of(cls, evaluator: Evaluator, limit: OrderLimit, names: Sequence[str]) -> ToothPassing:
-        """Find it about the flanks as designed."""
+        """Return the contribution about the flanks as designed."""
         pair, problem, solution = next(iter(evaluator.solved({}, range(1))))
         c, teeth = problem.candidates, limit.teeth(pair)
         weight, _ = load_weights(problem, solution, np.empty((0, *c.gap.shape)))
@@ -87,7 +87,7 @@ class ToothPassing:
         return cls(line, limit.turns, by_tooth, -once * added(wobbling, WOBBLE))
 
     def lines(self, drawn: DrawnTeeth) -> ComplexArray:
-        """Return what each deviation adds to the order of N gears, (d, N, L) in m: of the axis first."""
+        """Return the contributions of each deviation to the order of N gears, (d, N, L), m: axis first."""
         loads = len(self.by_wobble)
         once = {RUN_OUT: np.full(loads, -1.0 * (self.line == 1)), WOBBLE: self.by_wobble}
         parts = []
@@ -106,7 +106,7 @@ class ToothPassing:
 
 
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
-    """Return what a unit of each deviation of a tooth is at the candidates, (P, m)."""
+    """Return the gap by a unit of each deviation of a tooth at the candidates, (P, m)."""
     toothing: Toothing = getattr(pair, gear)
     there = np.isfinite(c.gap)
     rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, toothing.sign))
@@ -129,7 +129,7 @@ class MadePairs:
     drawn: DrawnTeeth
 
     def evaluator_of(self, index: int) -> Evaluator:
-        """Return one of them."""
+        """Return the evaluator of the drawn gear `index`."""
         contact = self.evaluator.contact
         gear: Toothing = getattr(contact.pair, self.gear)
         made: dict[str, Any] = {self.gear: replace(gear, **self.drawn.fields(index))}

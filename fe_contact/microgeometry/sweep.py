@@ -1,4 +1,4 @@
-"""A sweep: ripple, pressure and K_Hbeta over one or two things that a pair declares, on one compliance."""
+"""A sweep: ripple, pressure and K_Hbeta over one or two quantities of a pair, on one compliance."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ class SweptQuantity:
 
     name: str
     unit: str
-    """`name`, `unit`: Of `SWEPT`."""
+    """`name`, `unit`: Name and unit of the quantity, as in `SWEPT`."""
     value: FloatArray = field(metadata=in_unit("1", "point"))
     error: FloatArray = field(metadata=in_unit("1", "point"))
-    """`value`, `error`: In the unit; NaN where the contact was not solved. The error of a ripple is that of
-    its table; that of pressure and face load factor is the sum of what half the slices, the coarse meshes and
-    half the positions change. Shape (N,) each.
+    """`value`, `error`: Value and error in the unit; NaN where the contact was not solved. The error of a
+    ripple is that of its table. The error of pressure and face load factor is the sum of their changes by
+    half the slices, the coarse meshes and half the positions. Shape (N,) each.
     """
 
     @property
@@ -62,14 +62,14 @@ class Sweep:
     axes: tuple[str, ...]
     """Names of one or two `SweepAxis`."""
     point: FloatArray = field(metadata=in_unit("1", "point", "axis"))
-    """N m of the torque, m of all others. Shape (N, axes)."""
+    """Values of the axes at each point: N m of the torque, m of all others. Shape (N, axes)."""
     quantities: tuple[SweptQuantity, ...]
     reason: tuple[str, ...]
-    """Why a point has no figures, empty if it has (N,)."""
+    """Reason why a point has no figures; empty if it has figures (N,)."""
     held: Json
-    """What was not swept of torque, misalignment and change of the center distance; SI units."""
+    """Values of torque, misalignment and change of the center distance that were not swept, in SI units."""
     cost: Json
-    """CPU seconds of all who worked and wall seconds, by stage."""
+    """CPU seconds of all processes and wall seconds, by stage."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -123,9 +123,9 @@ def sweep(request: SweepRequest, run: Run = Run()) -> Sweep:  # noqa: B008 (froz
 
 @dataclass(frozen=True)
 class _SweptPair:
-    """What the designs of a sweep share: a request, and the folder of compliances.
+    """Task data that all designs of a sweep share: the request, and the folder of compliances.
 
-    The condensed bodies are made when first needed; they are no field, and no part of what identifies a task.
+    The condensed bodies are computed when first needed. They are no field and no part of the task's key.
     """
 
     request: SweepRequest

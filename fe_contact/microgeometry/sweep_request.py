@@ -36,37 +36,38 @@ class SweepAxis:
     """An axis of a sweep."""
 
     name: str
-    """One of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone: of both gears alike.
+    """Name of the axis: one of `CONDITIONS`, a design variable ``gear.quantity``, or ``quantity`` alone for
+    both gears alike.
     """
     values: tuple[float, ...]
-    """Increasing, at least two; N m, or m."""
+    """Values on the axis, N m or m, increasing, at least two."""
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Figures of the flanks that it sets, ``gear.quantity``."""
+        """Figures of the flanks that the axis sets, ``gear.quantity``."""
         if self.name in CONDITIONS:
             return ()
         return (self.name,) if "." in self.name else tuple(f"{gear}.{self.name}" for gear in GEARS)
 
     @property
     def largest(self) -> float:
-        """The value that acts most."""
+        """Value of the largest size on the axis."""
         return max(self.values, key=abs)
 
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """A pair, and what of it is swept."""
+    """A gear pair, and the axes of its sweep."""
 
     pair: ParallelAxes
-    """Its own modifications hold where they are not swept."""
+    """Gear pair. Its modifications hold where they are not swept."""
     axes: tuple[SweepAxis, ...]
-    """One or two."""
+    """One or two axes of the sweep."""
     point: OperatingPoint
-    """Holds where it is not swept."""
+    """Operating point; it holds where it is not swept."""
     options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
-    """`positions`, `receipt` and `on_violation` do not count. Model and mesh are chosen once, for the values
-    that act most.
+    """Options of the analysis; `positions`, `receipt` and `on_violation` are ignored. Model and mesh are
+    chosen once, for the values that act most.
     """
 
     @property

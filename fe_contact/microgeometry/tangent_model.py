@@ -25,15 +25,15 @@ class TangentModel:
     """Tangents about T pairs at P positions and L loads, by d deviations."""
 
     minimum: FloatArray
-    """Deviations count from here: nothing is removed below zero, m. Shape (d,)."""
+    """Least deviations, m: no material is removed below zero. Deviations are clipped to them. Shape (d,)."""
     state: FloatArray
-    """The pairs, m. Shape (T, d)."""
+    """Deviations of the pairs, m. Shape (T, d)."""
     value: FloatArray
-    """Their transmission error, m. Shape (T, P, L)."""
+    """Transmission error of the pairs, m. Shape (T, P, L)."""
     by: FloatArray
-    """Its derivatives, m/m. Shape (T, P, L, d)."""
+    """Derivatives of the transmission error by the deviations, m/m. Shape (T, P, L, d)."""
     correction: FloatArray
-    """What the least tangent is above in the mean, m. Shape (P, L)."""
+    """Mean excess of the least tangent over the solution, m. Shape (P, L)."""
 
     @classmethod
     def of(cls, minimum: FloatArray, state: FloatArray, value: FloatArray, by: FloatArray) -> TangentModel:
@@ -53,7 +53,7 @@ class TangentModel:
         return replace(self, correction=self.correction + error.mean(axis=0))
 
     def at_load(self, load: int) -> TangentModel:
-        """Return the same at one of the loads."""
+        """Return the model at one of the loads."""
         one_load = slice(load, load + 1)
         arrays = self.value[..., one_load], self.by[:, :, one_load], self.correction[:, one_load]
         return TangentModel(self.minimum, self.state, *arrays)

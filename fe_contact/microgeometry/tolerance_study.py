@@ -1,4 +1,4 @@
-"""Tolerance Monte Carlo: how peak-to-peak STE is distributed over pairs as they are made and assembled."""
+"""Tolerance Monte Carlo: the distribution of peak-to-peak STE over pairs as they are made and assembled."""
 
 from __future__ import annotations
 
@@ -77,17 +77,19 @@ class Sampling:
     """A sample of pairs and its quantiles."""
 
     samples: int = 1000
-    """Pairs, 2 to 1 000 000."""
+    """Number of pairs, 2 to 1 000 000."""
     seed: int = 0
-    """Equal seeds give equal results to the last bit, with any workers."""
+    """Seed of the sample. Equal seeds give equal results to the last bit, with any workers."""
     confidence: float = 0.95
-    """Of the bounds of the quantiles."""
+    """Confidence of the bounds of the quantiles."""
     fractions: Sequence[float] = (0.05, 0.5, 0.95)
-    """Quantiles to estimate."""
+    """Quantiles to estimate, as fractions of all pairs."""
     positions: int = 64
-    """Equally spaced in a base pitch."""
+    """Number of equally spaced positions in a base pitch."""
     exact: int = 300
-    """So many pairs are solved; further ones are by tangents about some of these, held against the others."""
+    """Number of pairs that are solved. The model of further pairs has tangents about some of them and is
+    compared with the others.
+    """
 
     def __post_init__(self) -> None:
         integer("samples", self.samples, 2, 1_000_000)
@@ -104,7 +106,7 @@ class Sampling:
 
     @property
     def tangents(self) -> int:
-        """Number of them about which tangents are taken."""
+        """Number of solved pairs about which tangents are taken."""
         return min(TANGENTS, max(1, self.solved // 4))
 
 
@@ -114,33 +116,35 @@ class ToleranceStudy:
     """Peak-to-peak of N pairs at L torques."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))
-    """N m. Shape (L,)."""
+    """Torque, N m. Shape (L,)."""
     names: tuple[str, ...]
-    """The deviations: "misalignment" and ``gear.quantity``."""
+    """Names of the deviations: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m", "sample", "deviating"))
-    """m. Shape (N, d)."""
+    """Deviations of the pairs, m. Shape (N, d)."""
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
-    """m. Shape (N, L)."""
+    """Peak-to-peak STE of the pairs, m. Shape (N, L)."""
     nominal: FloatArray = field(metadata=in_unit("m", "torque"))
     error: FloatArray = field(metadata=in_unit("m", "torque"))
-    """`nominal`, `error`: Without deviations, and the error of the analysis there, m. Shape (L,) each."""
+    """`nominal`, `error`: Peak-to-peak STE without deviations, and the error of its analysis, m. Shape (L,)
+    each.
+    """
     quantiles: tuple[Quantile, ...]
     first_order: FloatArray = field(metadata=in_unit("m", "sample", "torque"))
     """Peak-to-peak of the same pairs from the nominal curves and their derivatives, m. Shape (N, L)."""
     confidence: float
-    """Of the bounds of the quantiles."""
+    """Confidence of the bounds of the quantiles."""
     cost: Json
     """CPU and wall seconds by stage, of this process."""
     asked: Json
     solved: int = 0
     held: int = 0
-    """`solved`, `held`: The first so many pairs are solved, the others by the model; so many of them it did
-    not know.
+    """`solved`, `held`: Number of the first pairs that are solved, while the model gives the others; number
+    of solved pairs that the model does not know.
     """
     missed: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
     missed_largest: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
-    """`missed`, `missed_largest`: By how much the model misses the peak-to-peak of the pairs that are held
-    against it: root of the mean square, and most, m. Shape (L,) each.
+    """`missed`, `missed_largest`: Error of the model in the peak-to-peak of solved pairs that it does not
+    know: root mean square and largest, m. Shape (L,) each.
     """
     above: PairsAbove | None = None
     """Pairs above a limit."""
@@ -193,7 +197,7 @@ def scatter(
     misalignment : float
         As designed, m.
     limit : OrderLimit, optional
-        Which pairs are above it is counted; of an order beside the mesh by `sampled`, which takes `teeth`.
+        Pairs above it are counted. An order other than a mesh order needs `sampled`, which takes `teeth`.
     """
     request = ToleranceRequest(pair, torques, tolerances, sampling, options, misalignment, limit)
     return sampled(request, run)
@@ -201,7 +205,7 @@ def scatter(
 
 @dataclass(frozen=True)
 class ToleranceRequest:
-    """What `scatter` takes, and how much `teeth` of the gear differ that makes an order beside the mesh."""
+    """Request of `scatter`, with the differences of `teeth` where the limit is on an order of one gear."""
 
     pair: ParallelAxes
     torques: Levels

@@ -69,7 +69,7 @@ class Tolerances:
     """Half widths of tolerance bands about the design, and the distribution within them."""
 
     misalignment: float = 0.0
-    """m, >= 0."""
+    """Half width of the misalignment, m, >= 0."""
     modification: Mapping[str, float] = field(default_factory=dict)
     """``gear.quantity`` to m, > 0."""
     distribution: Distribution = "normal"

@@ -17,7 +17,7 @@ GEARS = ("pinion", "wheel")
 QUANTITIES = fields_of(Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 """Fields of `FlankModification` that can be varied."""
 SLOPES, LENGTHS = fields_of(Kind.SLOPE), fields_of(Kind.LENGTH)
-"""Quantities with a sign, and those that are no material removed."""
+"""Quantities with a sign, and quantities that are lengths, not removed material."""
 ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELDS[name].along)
 
 

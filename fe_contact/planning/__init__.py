@@ -1,1 +1,1 @@
-"""From a pair, an accuracy and a contact model to a plan."""
+"""Plan of a run from a pair, an accuracy and a contact model."""

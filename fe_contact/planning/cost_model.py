@@ -4,7 +4,9 @@ Three dimensions: operations and numbers held follow from the elimination tree
 (`fe_contact.compliance.cyclic_compliance`). The plane: a fit of non-negative terms to 40 compliances,
 gears of 17 to 140 teeth, modules of 1 to 8 mm, solid and deep bodies, meshes of 0.3 to 2 times the standard
 refinement; all are met within 0.67 to 1.32. The contact: positions to assemble and points to solve.
-Everything is then multiplied by how slow the host is and by what earlier runs say.
+The sum is multiplied by the slowness of the host and by the corrections from earlier runs.
+
+A constant without another unit is CPU seconds on the reference host of `model_studies.host_speed`.
 """
 
 from __future__ import annotations
@@ -36,14 +38,20 @@ from model_studies.run_log import corrections
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 2e-6, 0.36e-6
 _FACE_POSITION, _FACE_SLICE = 0.4e-6, 2.2e-5
-"""Per slice of a tooth pair and square of the elements of a module along the profile, and per slice."""
+"""CPU seconds of a position over the face: per slice of a tooth pair and square of the elements of a module
+along the profile, and per slice.
+"""
 _FACE_CANDIDATE = 2e-6
 _TOOTH_POINT, _BEGUN = 0.4e-6, 10e-6
-"""In pitches that differ: gaps of a touching point; first load of a set per carrying slice, beside others."""
+"""CPU seconds in base pitches whose teeth differ: for the gaps of a touching point, and for the first load of
+a set per carrying slice in addition to that of other loads.
+"""
 _TOUCHED = 14e-6
-"""Where a candidate of other flanks touches. Pairs of class 6, in the plane and not: within 0.8 to 1.4."""
+"""CPU seconds to find the touching point of a candidate on flanks that differ. Met within 0.8 to 1.4 for
+pairs of class 6, in the plane and over the face.
+"""
 _FACE_TILT = 2.7
-"""Assembly with the change of the compliance along sloping flanks, over that without."""
+"""Cost of assembly with the change of the compliance along sloping flanks, over that without it."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)
 """Positions that the search ends with at one load of a spur pair, and the power of the loads with which they
 grow: handovers move with the load. Pairs at 1 to 12 loads met within 10 %."""
@@ -58,49 +66,58 @@ _RIPPLE_STIFFNESS, _RIPPLE_OVERLAP = 2.8e10, 0.5
 """Line load over ripple, N/m^2, of a spur pair: half of the deflection of a pair of teeth; the overlap
 ratio over which it falls by e."""
 _AT_ONCE = 1.3
-"""More of a point over the face where all slices of a tooth touch at once: 1.0 to 2.3 of two spur pairs."""
+"""Additional cost of a point over the face where all slices of a tooth touch at once, over the usual cost.
+Two spur pairs have 1.0 to 2.3.
+"""
 _UNLIKE = 1.4
-"""Of them where teeth differ, each with handovers of its own: 64 to 248 of pairs of class 6. Run-out and
-waves leave the handovers alike."""
+"""Positions of a table whose teeth differ over those where teeth are alike, since each pitch has handovers of
+its own: 64 to 248 positions for pairs of class 6. Run-out and waves leave the handovers alike.
+"""
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
-"""Positions looked at for each node that the search adds, and for each that it begins with."""
+"""Positions that the search solves for each node that it adds, and for each node that it begins with."""
 _JUDGED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
-"""CPU seconds that the estimate of errors takes beside its solutions; over the face the table, too."""
+"""CPU seconds of the estimate of errors without its solutions; over the face those of the table too."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
 _STORED_POSITIONS, _STORED_PART = 320, 2.5
 """Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
 _POINT_NUMBERS = 25
-"""Numbers that are kept of a touching point."""
+"""Numbers in memory for each touching point."""
 
 MAX_ROWS = 150_000
-"""Positions x alignments that a table may have."""
+"""Most rows of a table: positions times alignments."""
 POINTS_AT_ONCE = 2**18
 """Touching points of a part of the base pitches that is solved at once: enough that the rows of the
 compliance, which are prepared once in each part, cost little."""
 _PART_NUMBERS = 90
-"""Numbers that are held of one of them at a time, with its solutions."""
+"""Numbers in memory for each touching point of such a part, with its solutions."""
 _ROW_NUMBERS, _LOAD_NUMBERS = 150, 160
-"""Numbers of a row of a table, and of each load at it, its errors and force table included."""
+"""Numbers in memory for a row of a table, and for each load at it, its errors and force table included."""
 STAGES = ("compliance", "contact", "error estimate")
 PROCESS_BYTES = 210_000_000
-"""Of a process with the libraries loaded, and a small table."""
+"""Memory of a process with the libraries loaded and a small table, bytes."""
 # CPU seconds of a gear in the plane: process of the mesher, hub mesh, sector factors, ring, hub freedoms
 _MESHER, _HUB = 0.095, 0.025
 _SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
 _DEEP_RING = 9.4
 """Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
 _READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.06, False: 0.02}
-"""CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
+"""CPU seconds to read the cached compliance of a gear in the plane, and over the face of a helical or a spur
+gear.
+"""
 _WORKING = 1.2
-"""Memory of a solid over its largest working set: what was given back is not all used again."""
+"""Memory of a condensation over the face over its largest working set: freed memory is not all used again."""
 _READING = 1.25
-"""The same of one that is read, over what is kept: its mirror image, and what contacts gather of a block."""
+"""Memory of a cached compliance over the face over its size: its mirror image, and the copies that contacts
+make of a block.
+"""
 _SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
-"""For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
+"""Bytes for each freedom of a sector, and for each freedom of a hub with `_HUB_FREEDOMS` of them. The factors
+of larger hubs have more entries for each freedom.
+"""
 _HUB_FREEDOMS, _FILL = 20_000, 0.33
 # one gear over the face: mesher, factor, powers of layers and teeth, part of it for the coarse mesh
 _SOLID_MESHER = 0.15
@@ -110,7 +127,7 @@ _SOLID_EFFORT = {
     "fine": (7.3e-4, 2.35, 0.81, 0.19),
 }
 _FREE_ENDS = 0.35
-"""The solids that correct one gear for its finite width."""
+"""CPU seconds of the solids that correct one gear for its finite width."""
 
 
 def contact_seconds(
@@ -195,7 +212,7 @@ def _candidates(pair: ParallelAxes, slices: int) -> float:
 
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> ContactWork:
-    """Return what one position and one point of it cost in so many slices."""
+    """Return the work of one position and of one point at it, with this number of slices."""
     made = plan.discretization
     count, begun = _candidates(pair, slices), _BEGUN * pair.transverse_contact_ratio * slices
     if not isinstance(made, FaceDiscretization):
@@ -276,9 +293,9 @@ class Prediction:
     memory_bytes: int
     """Largest resident memory of the process."""
     positions: int
-    """Of the table, expected where they are placed adaptively."""
+    """Number of positions of the table, expected where they are placed adaptively."""
     kind: str
-    """"plane" or "face": what `run_log` keeps apart."""
+    """Kind of the model, "plane" or "face": `run_log` corrects the two separately."""
 
     @property
     def raw(self) -> dict[str, float]:

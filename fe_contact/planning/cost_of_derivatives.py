@@ -1,4 +1,4 @@
-"""Cost of contact by its pieces, and of a long cycle: by it pitches are solved or told by derivatives."""
+"""Cost of the contact by parts, and of a long cycle whose pitches are solved or follow from derivatives."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from typing import NamedTuple
 from fe_contact.geometry import ParallelAxes
 
 DRAWN = 16
-"""Pitches that are drawn and solved: they tell what the derivatives miss at all others."""
+"""Number of pitches that are drawn and solved. They measure the errors of derivatives in all others."""
 BATCH = 8
-"""Further pitches that are solved before the errors are looked at."""
+"""Number of further pitches that are solved between two assessments of the errors."""
 _FURTHER = 1
 """Batches that are expected beyond the first: 0 to 2 in tables of seven pairs of class 6, as counted."""
 LONG_CYCLE = 64
-"""Base pitches: the errors of shorter cycles by derivatives would be told by too many of them."""
+"""Least number of base pitches for derivatives. In shorter cycles the drawn pitches would be too large a
+part.
+"""
 TABLE_SAVES = 2.0
 """CPU seconds that derivatives save at least where a table takes them: a cheaper one is solved whole."""
 _TANGENT = 0.4
@@ -23,7 +25,7 @@ _TANGENT = 0.4
 FLANKS = 9e-3
 """CPU seconds of the model of other flanks on the same compliance."""
 _ADDED = 6e-9
-"""CPU seconds to add what one tooth of one pair does to one point."""
+"""CPU seconds to add the contribution of one tooth of one pair to one point."""
 
 
 def solved_pitches(period: int, *, in_table: bool) -> tuple[int, int]:

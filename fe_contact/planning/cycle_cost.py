@@ -1,4 +1,4 @@
-"""Size of a table over several base pitches, what it costs, and the longest one."""
+"""Size of a table over several base pitches, its cost, and the longest table that is allowed."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from fe_contact.types import Json
 
 @dataclass(frozen=True)
 class CycleCost:
-    """Size of a table and what it costs."""
+    """Size of a table and its cost."""
 
     pitches: int
-    """Base pitches of the period."""
+    """Number of base pitches of the period."""
     positions: int
-    """In each of them; the least number where they are placed adaptively."""
+    """Positions in each base pitch; the least number where they are placed adaptively."""
     alignments: int
     """Misalignments x center distances."""
     cpu_seconds: float
     memory_bytes: float
-    """`cpu_seconds`, `memory_bytes`: Predicted for the contact with its error estimate."""
+    """`cpu_seconds`, `memory_bytes`: Predicted cost of the contact with its error estimate."""
 
     @property
     def rows(self) -> int:
@@ -47,7 +47,7 @@ class CycleCost:
         return cls(model.period, positions, alignments[0] * alignments[1], seconds, memory)
 
     def refuse_too_long(self) -> None:
-        """Refuse a table of more than `MAX_ROWS` rows, saying what it would cost and what to ask for.
+        """Refuse a table of more than `MAX_ROWS` rows, stating its cost and a remedy.
 
         Raises `InputError` of the field "pitches".
         """

@@ -23,31 +23,36 @@ SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
 
 
 SLICES = 15
-"""Of the face; false orders of helical pairs are then about 1 nm."""
+"""Slices of the face. False orders of helical pairs are then about 1 nm."""
 
 
 FINER_SLICES = (23, 31)
-"""What a tolerance may ask for beside them."""
+"""Further numbers of slices that a tolerance may need."""
 
 
 SLICE_ORDER = 2.3
-"""Of STE in the number of slices: measured 2.2 to 2.9 on helical pairs between 7 and 15."""
+"""Order of convergence of STE in the number of slices. Measured: 2.2 to 2.9 on helical pairs between 7 and 15
+slices.
+"""
 
 
 SLICE_OVER_PATCH = 1.0
-"""Least width of a slice over the half-width of the load patches: of narrower ones the bodies less what is in
-the local law lose definiteness, and heavy loads have no unique solution."""
+"""Least width of a slice over the half-width of the load patches. With narrower slices the compliance of the
+bodies less that of the local law is not positive definite, and heavy loads have no unique solution.
+"""
 
 
 COARSER = 1.5
-"""Elements of the coarse mesh of a solid over those of its own."""
+"""Element size of the coarse mesh of a solid over that of its fine mesh."""
 
 PLANE_RESOLVED, FACE_RESOLVED = 3.0, 1.5
-"""Elements in the half-width of a load patch at least. A wider one spreads a load over more of the flank than
-its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With less the
-mesh errs by more: in the plane 0.1 % of the mean of drafts at one and a half (docs/lab/index.md)."""
+"""Least number of elements in the half-width of a load patch. A wider patch spreads a load over more of the
+flank than its strip does: over the face two elements cost 1.3 % of peak-to-peak, one and a half 0.3 %. With
+fewer elements the error of the mesh grows: in the plane to 0.1 % of the mean for drafts at one and a half
+(docs/lab/index.md).
+"""
 PLANE_EDGE, FACE_EDGE = 1.5, 2.0
-"""Elements in the length of a patch at a tip edge at least."""
+"""Least number of elements in the length of a patch at a tip edge."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +66,8 @@ class PlaneDiscretization:
     discretization error. Shape (MeshRecipe, MeshRecipe) each.
     """
     finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
-    """Solids of half the face that give what a finite width adds; None: the plane alone. Shape (SectorRecipe,
-    SectorRecipe).
+    """Recipes of solids of half the face, which give the correction for the finite width; None: the plane
+    alone. Shape (SectorRecipe, SectorRecipe).
     """
 
     slices = 1
@@ -95,10 +100,10 @@ class FaceDiscretization:
     Shape (SectorRecipe, SectorRecipe) each.
     """
     slices: int
-    """Of the common face width."""
+    """Number of slices of the common face width."""
     most_slices: int
-    """Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
-    of `SLICE_OVER_PATCH`.
+    """Largest useful number of slices, by two limits. Slices narrower than two thirds of a layer of either
+    gear move the same freedoms of the bodies; `SLICE_OVER_PATCH` is the other limit.
     """
 
     corrected = False
@@ -163,7 +168,7 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
-    """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
+    """Return the largest number of slices that a mesh resolves, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
     patches = pair.face_width / (FACE_RESOLVED * recipe.flank_size)
     return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)

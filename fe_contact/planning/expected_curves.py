@@ -37,7 +37,7 @@ HELICAL_SLICES, SPUR_SLICES, SLICES = 7e-4, 5e-5, 15
 
 
 CORRECTION = 0.03
-"""Error of the correction for a finite width over what it is expected to correct."""
+"""Error of the correction for a finite width over the expected correction."""
 
 
 WIDTH_RIPPLE = 0.45
@@ -45,7 +45,7 @@ WIDTH_RIPPLE = 0.45
 
 
 PLANE_POSITIONS, FACE_POSITIONS = 0.14, 0.55
-"""Error of peak-to-peak between positions over what their search allows."""
+"""Error of peak-to-peak between positions over the allowed error of their search."""
 
 
 @dataclass(frozen=True)
@@ -58,11 +58,11 @@ class ExpectedCurves:
     """Mean less that at no load, m. Shape (C,)."""
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: m. Shape (C,) each."""
+    """`mean`, `peak_to_peak`: Expected mean and peak-to-peak STE, m. Shape (C,) each."""
     allowed: AllowedError
     """Says below which size errors count absolutely."""
     absolute: bool = True
-    """Whether these are sizes of the case; False: parts of its mean, as usual pairs have them."""
+    """Whether mean and peak-to-peak are sizes of the case; False: parts of its mean, as for usual pairs."""
 
     @property
     def scale(self) -> FloatArray:
@@ -71,7 +71,7 @@ class ExpectedCurves:
 
 
 def usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
-    """Return those of usual pairs, whose mean is 1."""
+    """Return the curves of usual pairs, whose mean is 1."""
     unity = np.ones(plan.load.size)
     across_face = isinstance(plan.discretization, FaceDiscretization)
     spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE

@@ -41,15 +41,15 @@ class ExpectedError:
     """
 
     mesh: float
-    """Finite elements."""
+    """Error by finite elements."""
     slices: float
-    """Slices of the face; 0 in the plane."""
+    """Error by slices of the face; 0 in the plane."""
     positions: float
-    """Interpolation between positions."""
+    """Error by interpolation between positions."""
     plane: float
-    """The plane standing in for three dimensions."""
+    """Error of the plane as a model of three dimensions."""
     method: float
-    """What the method leaves out of full contact, whatever the mesh (`model_error`)."""
+    """Error of the method against full contact, for any mesh (`model_error`)."""
     mean: float | None = None
     peak_to_peak: float | None = None
     """`mean`, `peak_to_peak`: The largest errors over the loads without `bias`, m; None where no size is
@@ -58,7 +58,7 @@ class ExpectedError:
     chosen: bool = False
     """Whether the caller chose the model, so that no run of this request lowers `plane`."""
     bias: PlaneBias | None = None
-    """What a plane leaves out where it is not corrected; `plane` is its size then."""
+    """Bias of a plane that is not corrected for the finite width; `plane` is its size then."""
 
     @property
     def numerical(self) -> float:
@@ -72,13 +72,13 @@ class ExpectedError:
 
     @property
     def text(self) -> str:
-        """What a tolerance applies to."""
+        """Text of the errors that a tolerance applies to."""
         plane = f", with the plane {percent(self.bought)} %" if self.bought > self.numerical else ""
         return f"{percent(self.numerical)} %{plane}"
 
     @property
     def total(self) -> float:
-        """Of all, which are independent of each other."""
+        """Root of the sum of squares of all errors, which are independent."""
         return float(np.sqrt(self.numerical**2 + self.plane**2 + self.method**2))
 
     def to_json(self) -> Json:
@@ -115,7 +115,7 @@ def expected_error(
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
-    """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
+    """Return the median error by mesh of mean and of peak-to-peak, over the mean's rise under load."""
     if not isinstance(plan.discretization, FaceDiscretization):
         return PLANE[plan.level]
     helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]

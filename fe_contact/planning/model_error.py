@@ -19,35 +19,45 @@ from fe_contact.ste.curve_quantities import FIRST_HARMONIC, MEAN, OFF_MESH, QUAN
 from fe_contact.types import FloatArray
 
 _ALIKE, _UNLIKE = 0.1, 0.35
-"""Mean change of STE over p R/(E* m^2), of gears of one material and what unlike ones add to it.
+"""Mean change of STE over p R/(E* m^2) for gears of one material, and its growth for unlike materials.
 
-Of 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 GPa, R/m of 1.7 to 12, STE of
-2 to 70 um: 0.04 to 0.15, and 0.2 to 0.55.
+Measured on 12 pairs in plane strain, 17 to 90 teeth, external and internal, steel and 9 GPa, R/m of 1.7 to
+12, STE of 2 to 70 um: 0.04 to 0.15, and 0.2 to 0.55.
 """
 
 FLOOR = (4e-4, 4.6e-4, 2.2e-3)
-"""Of mean, peak-to-peak and harmonics of plain flanks: more than the 0.03 and 0.04 % that calibrating pairs
-ask for (docs/lab/index.md)."""
+"""Errors of mean, peak-to-peak and harmonics of plain flanks. The pairs of the calibration need only 0.03 and
+0.04 % of mean and peak-to-peak (docs/lab/index.md).
+"""
 MODIFIED_FLOOR = (4e-4, 4.6e-4, 2.2e-3)
-"""The same where flanks are modified: in the plane points on reliefs are as far off as on plain flanks, the
-mean of four pairs by 0.01 %."""
+"""Errors of mean, peak-to-peak and harmonics of modified flanks. In the plane points on reliefs are as far
+off as points on plain flanks, the mean of four pairs by 0.01 %.
+"""
 POINT_FLOOR = 1.2e-3
-"""The same of the mean for single points: tip edges carry where teeth take over."""
+"""Error of a single point over the mean. Where teeth take over, tip edges carry."""
 LARGE_DISPLACEMENT = {False: (0.05, 0.6, 0.6), True: (0.3, 0.6, 0.6)}
-"""Over the mean STE in modules: in the plane, and over the face, where patches stay in place."""
+"""Errors of mean, peak-to-peak and harmonics by large displacements, over the mean STE in modules: in the
+plane (False), and over the face (True), where patches stay in place.
+"""
 TILT = {False: (0.5, 3.0, 3.0), True: (2.0, 8.0, 8.0)}
-"""Over what the tilt of the flanks takes off the mean, alike. Full contact of a soft gear on steel with small
-displacements asks in the plane for none of the mean and 2.7 of peak-to-peak, on steel for none."""
+"""Errors of mean, peak-to-peak and harmonics by the tilt of the flanks, over the change of the mean by it
+(`flank_tilt`), in the plane (False) and over the face (True). In the plane, full contact of a soft gear on
+steel with small displacements needs 0 for the mean and 2.7 for peak-to-peak; steel on steel needs 0.
+"""
 AT_A_POINT = 2.0
 """Error of a point over that of the mean."""
 SPUR_RIPPLE, HELICAL_RIPPLE = 0.43, 0.1
-"""Peak-to-peak of pairs without modifications over their mean: of spur pairs 0.42 to 0.44 at contact ratios
-of 1.56 to 1.71, of helical ones the least that is usual."""
+"""Peak-to-peak of pairs without modifications over their mean. Spur pairs have 0.42 to 0.44 at contact ratios
+of 1.56 to 1.71; helical pairs have the least usual value.
+"""
 HELICAL_OVERLAP = 0.5
-"""Overlap ratio from which the constants of helical pairs hold alone: theirs was 0.5 and more."""
+"""Overlap ratio from which the constants of helical pairs hold alone. The pairs of the calibration had 0.5
+and more.
+"""
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
-"""Harmonics over that peak-to-peak: the first so many alike, since where teeth take over is a step; then
-harmonic k falls with 1/k."""
+"""Harmonics over the peak-to-peak of unmodified pairs, and number of the first harmonics that are equal,
+since the handover is a step. From there harmonic k falls with 1/k.
+"""
 
 
 def flank_tilt(pair: ParallelAxes, force: FloatArray) -> FloatArray:
@@ -105,7 +115,7 @@ def floor_of(pair: ParallelAxes) -> tuple[float, float, float]:
 
 
 def of_bending(pair: ParallelAxes, values: FloatArray) -> FloatArray:
-    """Return of what size the quantities (Q, ...) in m are as far as teeth bend: at least `values`."""
+    """Return the sizes of the quantities (Q, ...) by the bending of teeth, m: at least `values`."""
     ripple = bending_ripple(pair)
     number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
     harmonics = ripple * HARMONIC_OVER_PEAK * np.minimum(1.0, FLAT_HARMONICS / number)
@@ -119,7 +129,7 @@ def bending_ripple(pair: ParallelAxes) -> float:
 
 
 def helical_share(pair: ParallelAxes) -> float:
-    """Return the part that constants of helical pairs have beside those of spur pairs, 0 to 1.
+    """Return the weight of the constants of helical pairs against those of spur pairs, 0 to 1.
 
     A helix of next to no overlap leaves the errors of a spur pair.
     """

@@ -1,4 +1,4 @@
-"""From a pair, an accuracy and a contact model to the discretization of a run."""
+"""Discretization of a run from a pair, an accuracy and a contact model."""
 
 from __future__ import annotations
 
@@ -24,20 +24,23 @@ from fe_contact.planning.discretization import (
 from fe_contact.types import BoolArray, FloatArray, Json
 
 WIDER = 1.25
-"""Width over that of a patch at which the change is measured at least."""
+"""Least width of the wider patches, which measure the error by the width, over that of the patches."""
 PATCHES_SEEN = 0.7
-"""Of what second order leaves over that change, the part that counts: strips are not as narrow as points."""
+"""Part of the remaining second-order error that counts, over that change. Strips are not as narrow as points.
+"""
 
 EDGE_PATCH = 0.0125
 """Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
 STE in corner contact by less than 0.05 %)."""
 EDGE_SHARE = 0.5
-"""Share of the largest load whose strip the patch at a tip edge follows: another pair carries too there."""
+"""Share of the largest load whose strip the patch at a tip edge follows. Another pair carries the rest there.
+"""
 WIDEST_STRIP = 0.225
-"""Largest half-width of a strip in modules that patches and the local law follow; wider ones are counted in
-the receipt."""
+"""Largest half-width of a strip in modules that patches and the local law follow. The receipt counts wider
+ones.
+"""
 STRIP_OVER_LAW = 0.6
-"""Strip over the reference length of the local law, at most; the law is straight from 0.66 on."""
+"""Largest strip over the reference length of the local law. The law is straight from 0.66 on."""
 PATCH_SHARE = 0.5
 """Share of the largest load whose strips the load patches follow."""
 SMALLEST_SUPPORT = 1e-3
@@ -49,13 +52,15 @@ SUPPORT_RATIO = 5.0
 _REACH = 2.5
 """Spacings of the first nodes: interpolants take two nodes of the pitch before and three of the next one."""
 POSITION_SHARE = 0.5
-"""Part of a tolerance that the search of positions allows between them: 0.2 to 0.8 of it is left."""
+"""Part of a tolerance that the search of positions allows as interpolation error. It leaves 0.2 to 0.8 of
+this.
+"""
 CLOSEST = 1.0 / 16.0
-"""Least of what a search allows over the usual."""
+"""Least interpolation error that a search allows over the usual one."""
 FLOOR_SHARE = 0.5
-"""Part of the floor of a tolerance that positions go by: meshes and slices take most of what is allowed."""
+"""Part of the floor of a tolerance that positions use. Meshes and slices take most of the tolerance."""
 _ROUNDING = 1e-6
-"""Least ripple beside the deflection: less is not looked into."""
+"""Least ripple over the deflection that the search resolves."""
 
 
 @dataclass(frozen=True)
@@ -63,18 +68,18 @@ class NodeRule:
     """The density of positions where none are requested."""
 
     start: int
-    """Equally spaced nodes to begin with."""
+    """Number of equally spaced nodes that the search begins with."""
     tolerance: float
     """Interpolation error to keep, as a fraction of each load's peak-to-peak STE."""
     maximum: int
     """Largest number of nodes."""
     assessed_pitches: int = 3
-    """Base pitches of a longer period that are looked at."""
+    """Number of base pitches of a longer period that the search assesses."""
     least_ripple: float = 0.0
-    """Peak-to-peak STE in m that smaller ones count as."""
+    """Least peak-to-peak STE, m; smaller ones count as this."""
 
     def reached_by_neighbor(self, position: FloatArray) -> BoolArray:
-        """Whether positions (P,) of a base pitch are nodes of interpolants in the pitches beside it."""
+        """Whether positions (P,) of a base pitch are nodes of interpolants in the neighboring pitches."""
         return np.minimum(position, 1.0 - position) * self.start < _REACH
 
     def searched(self, period: int) -> float:
@@ -98,7 +103,9 @@ class NodeRule:
 
 PLANE_NODES = NodeRule(64, 0.0015, 768, 64)
 FACE_NODES = NodeRule(64, 0.005, 192, 3)
-"""Positions cost a hundred times as much over the face, and its curves are smoother."""
+"""Rules of the placement in the plane and over the face. Positions cost a hundred times as much over the
+face, and its curves are smoother.
+"""
 
 
 @dataclass(frozen=True)
@@ -110,13 +117,13 @@ class Plan:
     coarse_patch: PatchRule
     """`patch`, `coarse_patch`: Load patches, and wider ones, which the coarse meshes resolve."""
     remaining_patches: float
-    """Error left over the change to the wider ones: of second order in the width, against patches as narrow
-    as the strips of the largest load ask for; 0 where the run has those.
+    """Error left over the change to the wider patches. It is of second order in the width, against patches as
+    narrow as the strips of the largest load; 0 where the run has such narrow patches.
     """
     positions: int | None
-    """Fixed number, or None for adaptive nodes."""
+    """Number of fixed positions, or None for adaptive nodes."""
     nodes: NodeRule
-    """How those are placed."""
+    """Rule by which adaptive nodes are placed."""
     load: FloatArray
     """Requested normal forces F_bn in N."""
     support: FloatArray
@@ -192,7 +199,7 @@ def make_plan(
 
 
 def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
-    """Return the load patches, wider ones that tell what they cost, and the part of that change that is left.
+    """Return the load patches, wider ones that measure their error, and the part of that change that is left.
 
     Patches are as wide as strips under half the largest load, and as the mesh asks; the wider ones as the
     coarse mesh asks, but no wider than a slice if that tells enough. `force` is the largest requested load in

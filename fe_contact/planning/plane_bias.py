@@ -1,4 +1,4 @@
-"""Estimate of what a plane model leaves out of gears of finite width, before a run."""
+"""Estimate of the bias of a plane model of gears of finite width, before a run."""
 
 from __future__ import annotations
 

@@ -28,16 +28,16 @@ class MeshOption:
     level: str
     """"draft", "standard" or "fine"."""
     slices: int
-    """Of the face; 1 in the plane."""
+    """Number of slices of the face; 1 in the plane."""
     error: ExpectedError
     effort: float
-    """Work of a run, in CPU seconds of the host on which the models were measured and with nothing in the
-    cache: equal on every host, so that the choice is.
+    """CPU seconds of a run on the host on which the models were measured, with an empty cache. They are equal
+    on every host, and so is the choice.
     """
 
     @property
     def name(self) -> str:
-        """In words."""
+        """Name of the mesh in words."""
         return self.level if self.slices == 1 else f"{self.level}, {self.slices} slices"
 
 
@@ -47,9 +47,9 @@ class MeshChoice:
 
     option: MeshOption
     met: bool
-    """Whether the models promise what was requested."""
+    """Whether the models predict that the request is met."""
     reason: str
-    """In words."""
+    """Reason of the choice, in words."""
 
     @property
     def level(self) -> str:

@@ -200,11 +200,11 @@ assessed = Checklist(CHECKS).assessed
 
 
 SOLVED = ("hertz_pressure", "transmission_error")
-"""Checks that a table answers by its own figures."""
+"""Names of the checks that a solved table assesses by its results."""
 
 
 def merged(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings of a request and of its results: what is solved replaces what was estimated."""
+    """Return the findings of a request and of its results: solved values replace estimated ones."""
     return (*(finding for finding in requested if finding.check not in SOLVED), *solved)
 
 

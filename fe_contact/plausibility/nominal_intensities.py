@@ -20,7 +20,7 @@ _SAMPLES = 33
 
 
 _NOTCH = (1.0, 8.0)
-"""Where the stress correction factor holds: chord over twice the root radius [2]_."""
+"""Range in which the stress correction factor is valid: chord over twice the root radius [2]_."""
 
 
 def _sharing_pairs(pair: ParallelAxes) -> float:
@@ -63,7 +63,7 @@ def nominal_root_stresses(pair: ParallelAxes, normal_force: float) -> tuple[floa
 
 
 def _root_stress(gear: Toothing, load: float, roll_length: float) -> float:
-    """Bending by the load (N/m) at a roll length, over the section at the root, with its notch factor."""
+    """Return the stress at the root section by the load (N/m) at a roll length, with its notch factor, Pa."""
     profile = tooth_profile(gear)
     at = critical_section(profile, _SAMPLES)
     section = profile.flank(np.array([at]))[0]

@@ -1,4 +1,4 @@
-"""What is assessed of a pair and of its mesh, by nominal figures."""
+"""Plausibility checks of a pair and of its mesh, by nominal figures."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
 
 
 def mesh_findings(pair: ParallelAxes) -> tuple[Finding, ...]:
-    """Return what is implausible about the mesh of a pair that can be made and computed all the same."""
+    """Return implausible values of the mesh of a pair that can be computed all the same."""
     return tuple(_findings(pair))
 
 

@@ -1,4 +1,4 @@
-"""Checks of what was computed: contact pressure, root stress, transmission error."""
+"""Plausibility checks of results: contact pressure, root stress, transmission error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray
 def table_findings(
     static_transmission_error: FloatArray, max_pressure: FloatArray, normal_module: float
 ) -> tuple[Finding, ...]:
-    """Return what is implausible about a table.
+    """Return the implausible results of a table.
 
     Parameters
     ----------
@@ -27,12 +27,12 @@ def table_findings(
 
 
 def flank_findings(max_pressure: float) -> tuple[Finding, ...]:
-    """Return what is implausible about the pressure (Pa) on the flanks at one load."""
+    """Return the finding of an implausible pressure (Pa) on the flanks at one load."""
     return tuple(_pressure(np.array([max_pressure])))
 
 
 def root_findings(gear: str, stress: float) -> tuple[Finding, ...]:
-    """Return what is implausible about the peak stress (Pa) of the roots of a gear ("pinion", "wheel")."""
+    """Return the finding of an implausible peak stress (Pa) of a gear's roots ("pinion", "wheel")."""
     reason = f"a tooth-root stress of {stress / 1e9:.3g} GPa is beyond the strength of any steel"
     return tuple(assessed("root_stress", f"{gear}.root_stress", stress, "Pa", reason=reason))
 

@@ -4,7 +4,7 @@ from fe_contact.ste.curve import Curve
 from fe_contact.ste.database import SteDatabase
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.mesh_force import MeshForce, Validity
-from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairFacts
+from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairGeometry
 from fe_contact.ste.tooth_loads import ToothLoads
 
 __all__ = [
@@ -13,7 +13,7 @@ __all__ = [
     "ForceTable",
     "MeshForce",
     "Metadata",
-    "PairFacts",
+    "PairGeometry",
     "SteDatabase",
     "ToothLoads",
     "Validity",

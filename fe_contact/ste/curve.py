@@ -72,7 +72,7 @@ def at_operating_point(database: SteFields, values: FloatArray, point: Operating
 
 
 def _over_phase(database: SteFields, shares: FloatArray, teeth: int) -> tuple[FloatArray, FloatArray]:
-    """Join what the pairs (P, N) say of one pair of teeth into a curve over phase, zero at each end.
+    """Join the values of the pairs (P, N) of one pair of teeth into a curve over phase, zero at each end.
 
     `teeth` counts the pairs of teeth that meet in a period: it is pair j in whole pitch (j - teeth) modulo
     the period.
@@ -112,15 +112,15 @@ class Curve:
     point: OperatingPoint
     """Normal force in N, misalignment and center-distance change in m."""
     torque: float
-    """The load as torque on gear 1, N m."""
+    """Torque on gear 1 of the load, N m."""
     position: FloatArray
-    """Base pitches, as requested (not wrapped). Shape (Q,)."""
+    """Position of the driving gear, base pitches, as requested (not wrapped). Shape (Q,)."""
     ste: FloatArray
     """Static transmission error, m. Shape (Q,)."""
     error: FloatArray
-    """Half-width of its error band, m. Shape (Q,)."""
+    """Half-width of the error band of the transmission error, m. Shape (Q,)."""
     interval_error: float
-    """Part of every band that interpolation between the nodes of load, misalignment and center distance has,
+    """Part of every error band by interpolation between the nodes of load, misalignment and center distance,
     m: 0 on nodes, NaN where not estimated.
     """
     pair: NDArray[np.int64]
@@ -131,21 +131,22 @@ class Curve:
     """Part of the load on each pair. Shape (Q, N)."""
     mean: Estimate
     peak_to_peak: Estimate
-    """`mean`, `peak_to_peak`: Over one period, whatever `position` holds. An error of NaN was not estimated.
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak over one period, independent of `position`. An error of
+    NaN was not estimated.
     """
     harmonics: tuple[Estimate, ...]
     """Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20."""
     harmonic_phases: FloatArray
-    """phi_n in rad. Shape (20,)."""
+    """Phases phi_n of the mesh harmonics, rad. Shape (20,)."""
     spectrum: Spectrum
-    """All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the mesh
+    """All orders up to the 20th mesh harmonic; with a period of many pitches also the orders between the mesh
     harmonics.
     """
     period: int
-    """Of the table, base pitches."""
+    """Period of the table, base pitches."""
     over_face: OverFace | None = None
-    """Mean and peak-to-peak of the gears of finite width, where the table is of a plane that is not
-    corrected: the errors above are towards the plane model.
+    """Mean and peak-to-peak of the gears of finite width, where the table is that of a plane without
+    correction. The errors of the other fields are then those towards the plane model.
     """
 
 
@@ -162,7 +163,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
     ste, band, below = _evaluate(database, force, point, everywhere)
     mean_error, ripple_error, *of_orders = _errors(database, point, band, below, ste, even.size)
-    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, np.array(of_orders))
+    orders = spectrum(ste[: even.size], database.period, database.geometry.teeth, np.array(of_orders))
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     stored = [part[even.size :] for part in (ste, band, below)]
@@ -172,7 +173,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     bias = stored_bias(database.metadata.receipt)
     return Curve(
         point=point,
-        torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
+        torque=point.force * database.geometry.base_radius[0] * math.cos(database.geometry.base_helix_angle),
         position=position,
         ste=values,
         error=sum(error_parts, np.zeros(position.size)),
@@ -195,9 +196,9 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
 def _evaluate(
     database: SteFields, force: MeshForce, point: OperatingPoint, position: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Transmission error, its band, and what loads below the smallest one add to it, at the positions."""
+    """Return transmission error, its band, and the error below the smallest load, at the positions."""
     alignment = (point.misalignment, point.center_distance_change)
-    transverse = math.cos(database.facts.base_helix_angle)
+    transverse = math.cos(database.geometry.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     error = error_band(database, position, source_places(database, point))
     smallest_load = min([database.force[0], *database.support_force[:1]])

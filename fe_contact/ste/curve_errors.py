@@ -10,7 +10,8 @@ from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray
 
 PLANE, METHOD = "finite_width", "method"
-"""A plane in place of three dimensions; what the method leaves out of full contact, whatever the mesh."""
+"""Sources of error: the plane as a model of three dimensions; the method against full contact, for any mesh.
+"""
 
 
 AT_NODES = ("discretisation", "slices", "contact_solver", PLANE, "position", METHOD)

@@ -11,12 +11,15 @@ from fe_contact.types import ComplexArray, FloatArray
 
 HARMONICS = 20
 MEAN, PEAK_TO_PEAK, OFF_MESH, FIRST_HARMONIC = range(4)
-"""Mean, peak-to-peak, the largest order beside the mesh orders, and the harmonics, in this order.
+"""Indices of the quantities of a curve: mean, peak-to-peak, the largest order that is no mesh order, and the
+first harmonic, which the others follow.
 
-What repeats at every pitch is in mesh orders alone: other orders have the error of what pitches differ by."""
+Deviations that repeat at every pitch are in mesh orders alone. Other orders have the error of the differences
+between pitches.
+"""
 QUANTITIES = FIRST_HARMONIC + HARMONICS
 BY_SOURCE = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
-"""Those whose errors a receipt has by source, m."""
+"""Index of each quantity whose errors a receipt has by source, by its key; m."""
 # samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
 _PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
 _FEWEST_ROWS = 8
@@ -129,7 +132,7 @@ def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
-    """Return what errors within bands (P, C) around curves (P, C) can do to the quantities, (23, C) in m.
+    """Return the largest errors of quantities by errors within bands (P, C) of curves (P, C), (23, C); m.
 
     To the mean their mean, to peak-to-peak their sum at both extremes, to any order twice their mean.
     """

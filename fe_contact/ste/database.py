@@ -1,4 +1,4 @@
-"""The STE database: stored arrays with the questions they answer."""
+"""The STE database: stored arrays, with curves, spectra and forces by interpolation."""
 
 from __future__ import annotations
 
@@ -158,7 +158,7 @@ class SteDatabase(SteFields):
         return tooth_loads(table, at)
 
     def headlines(self) -> tuple[str, list[Row]]:
-        """Return what a Python prompt shows: title, and rows of loads, figures, effects and cost."""
+        """Return the lines of a Python prompt: title, and rows of loads, figures, effects and cost."""
         return headlines(self, self.curve)
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
@@ -177,7 +177,7 @@ class SteDatabase(SteFields):
 
     @classmethod
     def from_netcdf(cls, path: str | Path) -> SteDatabase:
-        """Read what `to_netcdf` wrote; `DatabaseError` says why a file is not one."""
+        """Read a file that `to_netcdf` wrote; `DatabaseError` says why a file is no database."""
         return cls(**netcdf.read(Path(path)))
 
     def to_xarray(self) -> xarray.Dataset:
@@ -194,7 +194,7 @@ class SteDatabase(SteFields):
 
     @property
     def _to_transverse(self) -> float:
-        return math.cos(self.facts.base_helix_angle)
+        return math.cos(self.geometry.base_helix_angle)
 
     def _alignment(
         self, misalignment: ArrayLike | None, center_distance_change: ArrayLike | None

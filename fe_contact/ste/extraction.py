@@ -23,7 +23,7 @@ def sliding_sums(database: SteFields) -> tuple[FloatArray, FloatArray]:
     The sign is y/sqrt(y^2 + h^2), h `SMOOTHING` base pitches. On helical teeth the load of a pair lies
     uniformly on its line of contact over the whole face, which spans b tan(beta_b) of the path.
     """
-    gears = database.facts
+    gears = database.geometry
     phase = database.position - np.floor(database.position)
     y = (phase[:, None] + database.pair) * gears.base_pitch
     half = 0.5 * gears.face_width * math.tan(gears.base_helix_angle)
@@ -57,7 +57,7 @@ def force_table(database: SteFields) -> ForceTable:
     _, order = _all_loads(database)
     loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     pairs = np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
-    levels = refined_levels(_stored_levels(database), pairs, gradual_contact(database.facts))
+    levels = refined_levels(_stored_levels(database), pairs, gradual_contact(database.geometry))
     axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
@@ -86,7 +86,7 @@ def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> Fl
 
     At lift-off it keeps its value at the lowest load, where the contact begins.
     """
-    at = level / math.cos(database.facts.base_helix_angle)
+    at = level / math.cos(database.geometry.base_helix_angle)
     above = np.clip(np.searchsorted(database.force, at), 1, max(database.force.size - 1, 1))
     if database.force.size == 1:
         return np.repeat(np.moveaxis(stored, 1, -1), level.size, axis=-1)
@@ -98,7 +98,7 @@ def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> Fl
 
 def _stored_levels(database: SteFields) -> LoadLevels:
     """Lift-off, the stored and the support loads, with stiffness limited at the knots."""
-    to_transverse = math.cos(database.facts.base_helix_angle)
+    to_transverse = math.cos(database.geometry.base_helix_angle)
     force, order = _all_loads(database)
     tangent = _merged(database.tangent_compliance, database.support_tangent_compliance, order)
     loaded = _merged(database.static_transmission_error, database.support_transmission_error, order)

@@ -1,4 +1,4 @@
-"""The stored arrays of an STE database, and what they must satisfy."""
+"""The stored arrays of an STE database, and the checks of their shapes and values."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError, SolveError
-from fe_contact.ste.metadata import Metadata, PairFacts
+from fe_contact.ste.metadata import Metadata, PairGeometry
 from fe_contact.types import BoolArray, FloatArray, Status
 
 GRID = ("position", "force", "misalignment", "center_distance_change")
@@ -55,7 +55,9 @@ OPTIONAL: dict[str, tuple[str, ...]] = {
 """Dimensions of the arrays that some tables do not have: they are empty there."""
 MISALIGNMENT, CENTER_DISTANCE = GRID[2:]
 INSERTED = {MISALIGNMENT: "misalignment_inserted", CENTER_DISTANCE: "center_distance_inserted"}
-"""Marks of inserted nodes by axis; those of loads are support loads between two of the axis."""
+"""Names of the marks of inserted nodes by axis; inserted loads are support loads between two loads of the
+axis.
+"""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -78,7 +80,7 @@ class SteFields:
     force: FloatArray
     """Total normal tooth force F_bn in N, increasing, > 0. Shape (F,)."""
     torque: FloatArray
-    """The same loads as torque on gear 1 in N m. Shape (F,)."""
+    """Torque on gear 1 of the loads, N m. Shape (F,)."""
     misalignment: FloatArray
     """Tilt of the axes in the plane of action as growth of the gap over the common face width, m; zero at the
     pitch point in mid-face. In tables without `load_arm` a helix slope, zero at mid-face. Shape (M,).
@@ -90,8 +92,8 @@ class SteFields:
     `position` - floor(`position`) + j. Shape (N,).
     """
     static_transmission_error: FloatArray
-    """m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
-    Shape (P, F, M, D).
+    """Transmission error along the transverse line of action, m, positive = the driven gear lags; NaN where
+    the solve failed. Shape (P, F, M, D).
     """
     tangent_compliance: FloatArray
     """d STE / d F_bn in m/N, > 0. Shape (P, F, M, D)."""
@@ -118,7 +120,7 @@ class SteFields:
     """Equilibrium, penetration, tension, complementarity of the contact solution; NaN in base pitches that
     were not solved but follow from derivatives. Shape (P, F, M, D, 4).
     """
-    facts: PairFacts
+    geometry: PairGeometry
     metadata: Metadata
     support_force: FloatArray = field(default_factory=lambda: np.empty(0))
     """Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
@@ -127,8 +129,8 @@ class SteFields:
     support_transmission_error: FloatArray = field(default_factory=lambda: np.empty(0))
     support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
-    """`support_transmission_error`, `support_tangent_compliance`, `support_pairs_in_contact`: As the arrays
-    of the same names without `support`. Shape (P, S, M, D) each.
+    """`support_transmission_error`, `support_tangent_compliance`, `support_pairs_in_contact`: Arrays at the
+    support loads, as the arrays of these names without `support`. Shape (P, S, M, D) each.
     """
     period: int = 1
     """Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike."""
@@ -210,7 +212,7 @@ class SteFields:
 
     @property
     def inserted_center_distance_change(self) -> FloatArray:
-        """Changes of the center distance that nobody requested, m, likewise."""
+        """Changes of the center distance that were inserted, not requested, m."""
         return self.center_distance_change[~self.requested_rows(CENTER_DISTANCE)]
 
     def requested_nodes(self, axis: str) -> FloatArray:
@@ -219,7 +221,7 @@ class SteFields:
         return nodes
 
     def requested_rows(self, axis: str) -> BoolArray:
-        """Which nodes of an axis of alignments were requested; `axis` is its name."""
+        """Return whether each node of an axis of alignments was requested; `axis` is its name."""
         inserted = getattr(self, INSERTED[axis])
         return np.asarray(inserted == 0) if inserted.size else np.ones(getattr(self, axis).size, bool)
 
@@ -267,7 +269,7 @@ class SteFields:
     def identical(self, other: SteFields) -> bool:
         """Whether every stored bit (NaN payloads included), fact and metadata entry agrees."""
         return (
-            self.facts == other.facts
+            self.geometry == other.geometry
             and self.metadata == other.metadata
             and self.period == other.period
             and all(
@@ -322,7 +324,7 @@ def _check_axes(table: SteFields) -> None:
     _refuse(beyond, "position", f"lie in [0, {table.period})")
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
     _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
-    carried = table.force * (table.facts.base_radius[0] * math.cos(table.facts.base_helix_angle))
+    carried = table.force * (table.geometry.base_radius[0] * math.cos(table.geometry.base_helix_angle))
     _refuse(
         not np.allclose(table.torque, carried, rtol=1e-9, atol=0.0),
         "torque",
@@ -339,7 +341,7 @@ def _check_values(table: SteFields) -> None:
     )
     for name in ("static_transmission_error", "no_load_transmission_error"):
         # micrometers passed as meters are larger than the gear
-        too_large = np.abs(getattr(table, name)) > table.facts.base_radius[0]
+        too_large = np.abs(getattr(table, name)) > table.geometry.base_radius[0]
         _refuse(bool(np.any(too_large)), name, "be in m (it exceeds the base radius)")
     _refuse(
         not np.all(np.isfinite(table.no_load_transmission_error)), "no_load_transmission_error", "be finite"

@@ -14,19 +14,19 @@ LIFTED_OFF, ABOVE_TABLE, OUTSIDE_MISALIGNMENT, OUTSIDE_CENTER_DISTANCE = 1, 2, 4
 
 
 class KernelTable(NamedTuple):
-    """The arrays that the kernel reads."""
+    """Arrays of a force table that the compiled kernel reads."""
 
     knots: FloatArray
     spacing: FloatArray
-    """`knots`, `spacing`: Of position, misalignment and center-distance change, one axis after the other;
-    widths of the intervals that begin at the knots (unused at the last knot of an open axis). Shape (K,)
-    each.
+    """`knots`, `spacing`: Knots of position, misalignment and center-distance change, one axis after the
+    other, and widths of the intervals that begin at them (unused at the last knot of an open axis). Shape
+    (K,) each.
     """
     first: IntArray
     size: IntArray
-    """`first`, `size`: Where each axis begins, and how many knots it has. Shape (3,) each."""
+    """`first`, `size`: Index of the first knot of each axis, and its number of knots. Shape (3,) each."""
     period: float
-    """Of the position."""
+    """Period of the position, base pitches."""
     level: FloatArray
     """Forces of the levels. Shape (L,)."""
     deflection: FloatArray
@@ -35,7 +35,7 @@ class KernelTable(NamedTuple):
     of a cell's corners, 2^A over A axes of several knots. Shape (P M D L O,) each.
     """
     order: IntArray
-    """Which axes each derivative is taken in. Shape (O, A)."""
+    """Orders of each derivative in the axes, 1 or 0. Shape (O, A)."""
 
 
 @inner(nogil=True, error_model="numpy")
@@ -100,7 +100,7 @@ def _factors(factor: FloatArray, weight: FloatArray, order: IntArray) -> None:
 
 @inner(nogil=True, error_model="numpy")
 def _value(numbers: FloatArray, offset: IntArray, factor: FloatArray, level: int) -> float:
-    """Return one level at the query that was placed: `LevelGrid._sum`."""
+    """Return the value of one level at the query that was placed: `LevelGrid._sum`."""
     total, corners = 0.0, offset.size
     for corner in range(corners):
         start = offset[corner] + level * corners

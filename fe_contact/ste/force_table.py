@@ -97,30 +97,31 @@ class ForceTable:
     level: FloatArray
     """Transverse mesh force F_bt in N at the levels, increasing, level[0] = 0 (lift-off). Shape (L,)."""
     misalignment: FloatArray
-    """m; length 1 = no such axis. Shape (M,)."""
+    """Misalignment, m; length 1 = no such axis. Shape (M,)."""
     center_distance_change: FloatArray
-    """m; length 1 = no such axis. Shape (D,)."""
+    """Change of the center distance, m; length 1 = no such axis. Shape (D,)."""
     deflection: FloatArray
     """Transmission error at level k in m, increasing in k. Shape (M, D, P, L)."""
     deflection_slope: FloatArray
-    """Its derivative in position, m per base pitch. Shape (M, D, P, L)."""
+    """Derivative of the deflection in position, m per base pitch. Shape (M, D, P, L)."""
     stiffness: FloatArray
-    """dF_bt / d(deflection) in N/m, limited so that the force is monotone; 0 at lift-off. Shape (M, D, P, L).
+    """Mesh stiffness dF_bt / d(deflection), N/m, limited so that the force is monotone; 0 at lift-off. Shape
+    (M, D, P, L).
     """
     stiffness_slope: FloatArray
-    """Its derivative in position, N/m per base pitch. Shape (M, D, P, L)."""
+    """Derivative of the stiffness in position, N/m per base pitch. Shape (M, D, P, L)."""
     period: int = 1
     """Whole base pitches after which the table repeats."""
     deflection_derivative: FloatArray | None = None
     stiffness_derivative: FloatArray | None = None
-    """`deflection_derivative`, `stiffness_derivative`: Differentiated once (1) or not (0) in misalignment,
-    center-distance change and position: what the C1 interpolant over all axes uses. None without a second
-    knot of misalignment or center distance. Shape (2, 2, 2, M, D, P, L) each.
+    """`deflection_derivative`, `stiffness_derivative`: Derivatives of deflection and stiffness of order 1 or
+    0 in misalignment, center-distance change and position, for the C1 interpolant over all axes. None without
+    a second knot of misalignment or center distance. Shape (2, 2, 2, M, D, P, L) each.
     """
     load_arm: FloatArray | None = None
     """Arm of the load about the axis of a misalignment at each level, m: from mid-face of the driving gear
-    towards its positive z, less tan(beta_b) times the way along the line of action from the pitch point; at
-    lift-off that of the lowest load. Shape (M, D, P, L).
+    towards its positive z, less tan(beta_b) times the way along the line of action from the pitch point. At
+    lift-off it is that of the lowest load. Shape (M, D, P, L).
     """
     sliding_share: FloatArray | None = None
     sliding_lever: FloatArray | None = None
@@ -148,5 +149,5 @@ class ForceTable:
 
     @property
     def arms(self) -> tuple[FloatArray | None, FloatArray | None, FloatArray | None]:
-        """Where the load acts: arm about the axis of a misalignment, share and lever of sliding."""
+        """Points of application: arm about the axis of a misalignment, share and lever of sliding."""
         return self.load_arm, self.sliding_share, self.sliding_lever

@@ -16,14 +16,16 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
 
 MAX_LOADS = 4
-"""Loads whose figures are listed: spread over those of the table."""
+"""Largest number of loads whose figures are listed; they are spread over the loads of the table."""
 LONGEST_PERIOD = 32
-"""Base pitches up to which the figures of all listed loads are computed; of longer tables one load's are."""
+"""Largest period for which the figures of all listed loads are computed, base pitches. Longer tables have
+those of one load.
+"""
 
 
 def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, list[Row]]:
     """Return the title of a database and its rows; `curve_at` gives its curves, as `SteDatabase.curve`."""
-    gears = table.facts
+    gears = table.geometry
     ring = " (ring)" if gears.internal else ""
     helix = (
         f", base helix angle {math.degrees(gears.base_helix_angle):.3g}°" if gears.base_helix_angle else ""

@@ -16,7 +16,7 @@ from fe_contact.types import FloatArray
 def joined_over_misalignment(tables: Sequence[SteDatabase]) -> SteDatabase:
     """Return the table over the misalignments of `tables`, in their order.
 
-    Facts and metadata are those of the first. `tables`: alike but for their misalignments, which increase
+    Geometry and metadata are those of the first. `tables`: alike but for their misalignments, which increase
     from one to the next. Raises `DatabaseError`: their other axes have different sizes or the misalignments
     do not increase.
     """

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.ste.metadata import PairFacts
+from fe_contact.ste.metadata import PairGeometry
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 # shared by the steps that hold a kink; with more, the position knots are what limits the table
@@ -63,7 +63,7 @@ class LoadLevels:
     stiffness: FloatArray
 
 
-def gradual_contact(gears: PairFacts) -> float:
+def gradual_contact(gears: PairGeometry) -> float:
     """Return how gradually a further pair comes into contact: 0 along a whole line at once, 1 from a corner.
 
     Along a line the stiffness jumps; from a corner the line of contact grows from nothing, and so does the

@@ -181,7 +181,7 @@ def _outside(at: tuple[Stencil, ...]) -> NDArray[np.int64]:
 
 
 def _queries(**arguments: ArrayLike) -> tuple[tuple[int, ...], list[FloatArray]]:
-    """Broadcast the arguments and flatten them; refuse what is not finite."""
+    """Broadcast the arguments and flatten them; refuse values that are not finite."""
     arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in arguments.values()))
     for name, array in zip(arguments, arrays, strict=True):
         bad = array[~np.isfinite(array)]

@@ -1,4 +1,4 @@
-"""Facts of an STE database: its gear pair and its computation."""
+"""Metadata of an STE database: the geometry of its gear pair and its computation."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def content_hash(case: Json, solver_version: str, schema_version: int) -> str:
 
 
 @dataclass(frozen=True)
-class PairFacts:
-    """The closed-form facts of a gear pair that a user of its table needs; SI units."""
+class PairGeometry:
+    """The closed-form geometry of a gear pair that a user of its table needs; SI units."""
 
     teeth: tuple[int, int]
     """Numbers of teeth, driving gear first; > 0 for a ring gear too."""
@@ -67,8 +67,8 @@ class PairFacts:
     """s_bt1, s_bt2 in m, arcs of the base circles; a ring gear's may be < 0. None: not known."""
 
     @classmethod
-    def of(cls, pair: ParallelAxes) -> PairFacts:
-        """Return the facts of a gear pair."""
+    def of(cls, pair: ParallelAxes) -> PairGeometry:
+        """Return the geometry of a gear pair."""
         hand = (pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0)
         return cls(
             teeth=(pair.pinion.teeth, pair.wheel.teeth),
@@ -116,8 +116,8 @@ class PairFacts:
         return content
 
     @classmethod
-    def from_json(cls, content: Json) -> PairFacts:
-        """Read back what `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
+    def from_json(cls, content: Json) -> PairGeometry:
+        """Read a record that `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
         try:
             return cls(**content)
         except (TypeError, ValueError, IndexError) as error:
@@ -133,7 +133,7 @@ class Metadata:
     case: Json = field(default_factory=dict)
     """The case with all defaults echoed."""
     effect_ledger: Json | list[Any] = field(default_factory=dict)
-    """For each registered effect: on or off, why, influence and cost."""
+    """State of each registered effect: on or off, why, influence and cost."""
     receipt: Json = field(default_factory=dict)
     """Time and memory by stage, error estimate by source."""
     content_hash: str = ""
@@ -143,7 +143,7 @@ class Metadata:
     schema_version: int = SCHEMA_VERSION
     """Version of the file layout."""
     warnings: list[Any] = field(default_factory=list)
-    """What is implausible about the case or its results; empty where nothing is."""
+    """Implausible values of the case or its results, with reasons; empty where there are none."""
 
     def __post_init__(self) -> None:
         for entry in fields(self):

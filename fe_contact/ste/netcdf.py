@@ -15,7 +15,7 @@ from fe_contact.errors import DatabaseError
 from fe_contact.ste.curve_errors import AT_NODES, METHOD, OF_LOAD_ARM, PLANE, SOURCES
 from fe_contact.ste.curve_quantities import OFF_MESH
 from fe_contact.ste.fields import DIMENSIONS, OPTIONAL, RESIDUALS, SteFields
-from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairFacts
+from fe_contact.ste.metadata import SCHEMA_VERSION, Metadata, PairGeometry
 from fe_contact.types import Json, Status
 from model_studies.netcdf import UnreadableFile, opened
 from model_studies.netcdf_content import NetcdfContent, Variable
@@ -99,19 +99,19 @@ def _read_variables(path: Path) -> tuple[dict[str, Any], Json]:
 
 @dataclass(frozen=True)
 class FileFormat:
-    """A kind of result files, as what it must hold."""
+    """Kind of result files, declared by the arrays and attributes that it must hold."""
 
     name: str
-    """The attribute ``format``."""
+    """Value of the attribute ``format``."""
     content: str
-    """What it holds, in words."""
+    """Content of the file, in words."""
     schema_version: int
-    """The newest that is read."""
+    """Newest schema version that is read."""
     arrays: tuple[str, ...]
     attributes: tuple[str, ...] = ()
-    """`arrays`, `attributes`: Those that every file has; the checksum is over the arrays in their order."""
+    """`arrays`, `attributes`: Names that every file has; the checksum is over the arrays in their order."""
     optional: tuple[str, ...] = ()
-    """Arrays that some have."""
+    """Names of arrays that some files have."""
 
     def read(self, path: Path, before: Callable[[Json], str] = lambda _: "") -> tuple[dict[str, Any], Json]:
         """Return the arrays and the attributes of a file; the checksum is over `before` of these, too.
@@ -168,7 +168,7 @@ def content(database: SteFields) -> NetcdfContent:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Read the arrays, facts and metadata of a file, by the names of `SteFields`.
+    """Read the arrays, geometry and metadata of a file, by the names of `SteFields`.
 
     Raises `DatabaseError`: the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
@@ -182,7 +182,7 @@ def read(path: Path) -> dict[str, Any]:
     if part := (documents["receipt"].get("bias") or {}).get("stated"):
         content |= _without_bias(content, part)
     return content | {
-        "facts": _gear_pair(path, attributes),
+        "geometry": _gear_pair(path, attributes),
         "metadata": Metadata(
             content_hash=str(attributes.get("content_hash", "")),
             schema_version=int(attributes["schema_version"]),
@@ -220,7 +220,7 @@ def _global_attributes(database: SteFields) -> Json:
         "schema_version": np.int64(database.metadata.schema_version),
         "content_hash": database.metadata.content_hash,
         "period": np.int64(database.period),
-        "facts": json.dumps(database.facts.to_json()),
+        "facts": json.dumps(database.geometry.to_json()),
         **{name: json.dumps(metadata[name]) for name in (*_JSON_ATTRIBUTES, WARNINGS)},
         "data_sha256": digest(_stored(database), _before(database.period)),
     }
@@ -239,12 +239,12 @@ def _period(path: Path, attributes: Json) -> int:
 
 
 def _before(period: int) -> str:
-    """Return what the checksum of the arrays begins with: the period if it is not 1."""
+    """Return the beginning of the bytes of the checksum: the period if it is not 1."""
     return f"period {period};" if period != 1 else ""
 
 
-def _gear_pair(path: Path, attributes: Json) -> PairFacts:
+def _gear_pair(path: Path, attributes: Json) -> PairGeometry:
     content = json_attribute(path, attributes, "facts")
     if not isinstance(content, dict):
         raise DatabaseError(f"{path.name}: damaged, its facts are no JSON object")
-    return PairFacts.from_json(content)
+    return PairGeometry.from_json(content)

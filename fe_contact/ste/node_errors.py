@@ -1,7 +1,7 @@
 """Errors of a table at points between its nodes of load, misalignment and center distance.
 
-An error at nodes is linear between them, that of interpolation belongs to an interval: nothing on its nodes,
-the same anywhere else in it.
+An error at nodes is linear between them. An error of interpolation belongs to an interval: it is zero on its
+nodes, and constant elsewhere in it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fe_contact.ste.interpolation import Axis, Stencil
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 Values = FloatArray
-"""Of the nodes, (F, M, D, ...); those of an interval stand at its lower node."""
+"""Values at the nodes, (F, M, D, ...); values of an interval stand at its lower node."""
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class NodePlaces:
 
     @property
     def stencils(self) -> tuple[Stencil, Stencil, Stencil]:
-        """Those of the three axes."""
+        """Stencils of the three axes."""
         return self.force, self.misalignment, self.center_distance_change
 
     @property
     def outside(self) -> BoolArray:
-        """Which points lie beyond an axis of alignments."""
+        """Whether a point lies beyond an axis of alignments."""
         return np.asarray(self.misalignment.outside | self.center_distance_change.outside)
 
     def at_nodes(self, values: Values) -> FloatArray:
@@ -110,7 +110,7 @@ def force_error(table: SteFields, points: FloatArray, force: FloatArray, stiffne
         Transverse force in N and its derivative in the deflection, N/m.
     """
     position, misalignment, change, _ = points
-    normal = force / math.cos(table.facts.base_helix_angle)
+    normal = force / math.cos(table.geometry.base_helix_angle)
     places = NodePlaces.of(table, normal, misalignment, change)
     smallest = min([table.force[0], *table.support_force[:1]])
     outside = (normal < smallest) | (normal > table.force[-1]) | places.outside

@@ -22,7 +22,7 @@ class OperatingPoint:
     """Total normal tooth force F_bn, N."""
     misalignment: float
     center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
 
 
 def operating_point(
@@ -65,7 +65,7 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
     if value > stored[-1]:
         bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
         raise InputError(name, value, bound, "Add it to the case.")
-    return value if torque is None else database.facts.normal_force(value)
+    return value if torque is None else database.geometry.normal_force(value)
 
 
 def _inside(name: str, value: float | None, axis: FloatArray) -> float:

@@ -10,22 +10,22 @@ from bounds import engineering
 from fe_contact.types import Estimate, FloatArray, Json
 
 BIAS_ERROR = 0.2
-"""Error of the bias in parts of it (`finite_width_excess`)."""
+"""Relative error of the bias (`finite_width_excess`)."""
 _VISIBLE = 0.8
-"""Part of the peak-to-peak of unmodified flanks from which reliefs do not hide what teeth bend."""
+"""Share of the peak-to-peak of unmodified flanks above which reliefs do not hide the bending of teeth."""
 _UM = 1e-6
 
 
 @dataclass(frozen=True)
 class PlaneBias:
-    """Excess of the STE of the gears over that of a plane model, which is exact as far as its errors say."""
+    """Bias of a plane model: excess of the STE of the gears over that of the plane, within stated errors."""
 
     subject: str
     """Plane model and face width, in words."""
     mean: float
     peak_to_peak: float
-    """`mean`, `peak_to_peak`: In parts of those in the plane; negative: the plane deflects more.
-    `peak_to_peak` is that of flanks whose ripple no relief hides.
+    """`mean`, `peak_to_peak`: Excess over the values in the plane, relative to them; negative: the plane
+    deflects more. `peak_to_peak` is that of flanks whose ripple no relief hides.
     """
     bending_ripple: float
     """Peak-to-peak over the mean of unmodified flanks."""
@@ -35,10 +35,10 @@ class PlaneBias:
     """
 
     def correction(self, mean: FloatArray, peak_to_peak: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what to add to mean and peak-to-peak (...) in the plane, and its error, each (2, ...) in m.
+        """Return the correction of mean and peak-to-peak (...) in the plane, and its error, (2, ...) in m.
 
-        Teeth that bend more change a ripple that reliefs hide by as much as one that they do not, but to
-        either side: nothing is added to it then, and its error is the whole change.
+        Teeth that bend more change a ripple that reliefs hide by as much as another ripple, but with either
+        sign. Nothing is added to a hidden ripple, and its error is the whole change.
         """
         bending = self.bending_ripple * mean
         shows = peak_to_peak >= _VISIBLE * bending
@@ -53,14 +53,14 @@ class PlaneBias:
         return np.asarray(np.abs(added) + error)
 
     def of_curves(self, mean: FloatArray, peak_to_peak: FloatArray) -> PlaneBias:
-        """Return it with what is hidden in curves (...), m; those with a failed point (NaN) say nothing."""
+        """Return the bias with its hidden part in curves (...), m; curves with NaN are left out."""
         added, error = self.correction(mean, peak_to_peak)
         hidden = (added[1] == 0.0) & np.isfinite(error[1])
         return replace(self, hidden=float(np.max(error[1], where=hidden, initial=0.0)))
 
     @property
     def text(self) -> str:
-        """In one sentence."""
+        """Bias in one sentence."""
         ripple = _percent(self.peak_to_peak)
         if self.hidden:
             ripple = f"by up to {engineering(self.hidden / _UM, 2)} µm, either way"
@@ -84,7 +84,7 @@ class PlaneBias:
 
     @classmethod
     def from_json(cls, content: Json) -> PlaneBias:
-        """Return that of a receipt."""
+        """Return the bias that a receipt states."""
         return cls(
             content["subject"],
             content["mean"],
@@ -112,7 +112,7 @@ class OverFace:
 
 
 def over_face(bias: PlaneBias, mean: Estimate, peak_to_peak: Estimate) -> OverFace:
-    """Return what a plane solution says of the gears; the two errors are independent."""
+    """Return mean and peak-to-peak of the gears from a plane solution; the two errors are independent."""
     added, errors = bias.correction(np.array(mean.value), np.array(peak_to_peak.value))
     return OverFace(
         *(

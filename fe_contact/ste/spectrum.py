@@ -1,4 +1,4 @@
-"""Orders of a transmission-error curve: mesh harmonics, and what lies between them over a longer period."""
+"""Orders of a transmission-error curve: mesh harmonics, and the orders between them over a longer period."""
 
 from __future__ import annotations
 
@@ -23,34 +23,35 @@ class Spectrum:
     """Amplitudes of ste(x) = mean + sum A_k cos(2 pi o_k x + phi_k), x in base pitches."""
 
     order: FloatArray
-    """o_k in cycles per base pitch: whole numbers are the mesh harmonics, others sidebands and the orders of
-    single teeth. 1/period, 2/period .. 20. Shape (K,).
+    """Orders o_k in cycles per base pitch: 1/period, 2/period .. 20. Whole numbers are the mesh harmonics,
+    others are sidebands and the orders of single teeth. Shape (K,).
     """
     amplitude: FloatArray
-    """A_k in m. Shape (K,)."""
+    """Amplitudes A_k, m. Shape (K,)."""
     phase: FloatArray
-    """phi_k in rad. Shape (K,)."""
+    """Phases phi_k, rad. Shape (K,)."""
     error: FloatArray
     """Half-widths of the error bands of the amplitudes, m; NaN: not estimated. Shape (K,)."""
     teeth: tuple[int, int]
-    """Of the driving and the driven gear."""
+    """Numbers of teeth of the driving and the driven gear."""
 
     @property
     def pinion_order(self) -> FloatArray:
-        """Cycles per revolution of the driving gear, (K,)."""
+        """Orders in cycles per revolution of the driving gear, (K,)."""
         return self.order * self.teeth[0]
 
     @property
     def wheel_order(self) -> FloatArray:
-        """Cycles per revolution of the driven gear, (K,)."""
+        """Orders in cycles per revolution of the driven gear, (K,)."""
         return self.order * self.teeth[1]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What each order is: of the mesh, of a shaft, or a sideband of the mesh by a shaft.
+        """Names of the orders: of the mesh, of a shaft, or a sideband of the mesh by a shaft.
 
-        "mesh 2", "pinion 11" (waves of that number: a ghost order), "mesh 1 - pinion 1"; "mesh 1.234" of what
-        comes from both gears; of teeth with a common divisor the pinion's.
+        "mesh 2", "pinion 11" (11 waves of the pinion: a ghost order), "mesh 1 - pinion 1"; "mesh 1.234" where
+        both gears cause the order. Where the numbers of teeth have a common divisor, the pinion's name
+        counts.
         """
         shafts = {name: 1.0 / teeth for name, teeth in zip(("pinion", "wheel"), self.teeth, strict=True)}
         return tuple(

@@ -17,7 +17,7 @@ class SupportLoads:
     """Solutions at further loads of a table."""
 
     force: FloatArray
-    """N, increasing. Shape (S,)."""
+    """Normal forces, N, increasing. Shape (S,)."""
     deflection: FloatArray
     tangent: FloatArray
     """`deflection`, `tangent`: STE in m, and its derivative in m/N. Shape (P, S, M, D) each."""

@@ -38,7 +38,8 @@ class Repair:
     force: float
     misalignment: float
     center_distance_change: float
-    """`position`, `force`, `misalignment`, `center_distance_change`: Where that is (base pitches, N, m, m).
+    """`position`, `force`, `misalignment`, `center_distance_change`: Grid point of the value (base pitches,
+    N, m, m).
     """
 
 

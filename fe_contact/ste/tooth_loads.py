@@ -1,7 +1,7 @@
-"""Loads of each tooth, from a table over the pitches in which the teeth of a gear meet in turn.
+"""Loads of each tooth of a gear, from a table over the pitches in which its teeth mesh in turn.
 
 Pair j in whole pitch p is meeting p - j: the pair of teeth that touches at the pitch point at position p - j.
-The teeth of a gear of z teeth are told apart where the period is a multiple of z.
+The teeth of a gear of z teeth have loads of their own where the period is a multiple of z.
 """
 
 from __future__ import annotations
@@ -16,9 +16,10 @@ from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import FloatArray, IntArray
 
 _ALIKE = 5e-4
-"""Of the largest load: teeth that differ by less are alike, three decimals tell none apart."""
+"""Difference of loads over the largest load below which teeth count as alike. Three decimals do not show it.
+"""
 _SAME = 1e-9
-"""Base pitches between two phases that are one."""
+"""Distance of two phases below which they are equal, base pitches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,13 +27,13 @@ class ToothLoads:
     """Largest loads on each tooth of a gear at one load and alignment, over all its mates."""
 
     gear: int
-    """0: the driving gear, 1: the driven one."""
+    """Number of the gear: 0 is the driving gear, 1 the driven one."""
     phase: FloatArray
-    """Where the pair is on its way through mesh, base pitches; 0: at the pitch point in mid-face. Shape (W,).
+    """Phase of the pair on its way through mesh, base pitches; 0: at the pitch point in mid-face. Shape (W,).
     """
     force_over_phase: FloatArray
-    """Normal force on each tooth there, N; teeth in the order of meshing, tooth 1 first. NaN: not stored.
-    Shape (z, W).
+    """Normal force on each tooth at each phase, N; teeth in the order of meshing, tooth 1 first. NaN: not
+    stored. Shape (z, W).
     """
     pressure_over_phase: FloatArray
     """Largest contact pressure away from edges, Pa; (z, 0) of tables without `pair_pressure`. Shape (z, W).
@@ -66,7 +67,7 @@ class ToothLoads:
 
 def tooth_loads(table: SteFields, point: OperatingPoint) -> tuple[ToothLoads, ...]:
     """Return the loads of the teeth of each gear whose teeth the table tells apart, and which differ."""
-    gears = [gear for gear in (0, 1) if table.period % table.facts.teeth[gear] == 0]
+    gears = [gear for gear in (0, 1) if table.period % table.geometry.teeth[gear] == 0]
     if not gears:
         return ()
     share = np.maximum(at_operating_point(table, table.load_share, point), 0.0)
@@ -85,7 +86,7 @@ def _worst(largest: FloatArray) -> tuple[int, ...]:
 
 def _of_gear(table: SteFields, values: list[FloatArray], gear: int) -> ToothLoads:
     """Take the largest of forces, and of pressures if there are any (P, N), by tooth and phase."""
-    pitch, teeth = np.floor(table.position).astype(np.int64), table.facts.teeth[gear]
+    pitch, teeth = np.floor(table.position).astype(np.int64), table.geometry.teeth[gear]
     node, nodes = _nodes(table.position - pitch)
     tooth = (pitch[:, None] - table.pair) % teeth
     way = np.arange(table.pair.size) * nodes.size + node[:, None]

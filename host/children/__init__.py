@@ -1,4 +1,4 @@
-"""Child processes: where they come from, what they exchange with their starter, how they end.
+"""Child processes: their start, the messages between them and their starter, and their end.
 
 `launcher` starts leaders of sessions, anew or forked from a warm process (`fork_server`); `child` sends them
 orders and receives their answers, as `frames`. `json_child` runs a program on one request, on every system,

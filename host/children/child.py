@@ -16,7 +16,7 @@ from host.memory_kills import memory_kills
 from host.sessions import Ended, ending_signal, kill_group, never_wait_at
 
 _PIECE = 1 << 16
-"""Bytes of one read: what a pipe of Linux holds."""
+"""Bytes of one read: the capacity of a pipe of Linux."""
 _MAX_PIECES = 16
 """Reads of one look, so that a child that never rests does not keep its starter from others."""
 _POLL_S = 0.001
@@ -134,7 +134,7 @@ class Child:
 
     @property
     def ended(self) -> Ended | None:
-        """How it ended, if it was reaped."""
+        """Exit code and cost of the child, if it was reaped; else None."""
         return self._ended
 
     @property

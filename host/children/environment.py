@@ -1,4 +1,4 @@
-"""What a child process inherits of this one's environment: what it needs to compute, and no secrets."""
+"""Environment of a child process: the variables that it needs to compute, and no secrets."""
 
 from __future__ import annotations
 

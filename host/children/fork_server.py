@@ -1,4 +1,4 @@
-"""The warm process: it has imported and compiled what workers need, and forks one when told.
+"""The warm process: it has imported and compiled the code of workers, and forks a worker on request.
 
 Started as ``python -m host.children.fork_server DESCRIPTOR WORK MODULE ...`` in a session of its own. It
 imports the modules and does what their `warm_up` does, if they have one; then it says so, and obeys one
@@ -21,12 +21,12 @@ from typing import Any, NoReturn, TypeAlias
 from host.sessions import lead_session, reap
 
 Work: TypeAlias = Callable[[int], None]
-"""What a child does: it answers on a descriptor."""
+"""Function that a child runs; it answers on a descriptor."""
 
 READY = b"ready"
 MESSAGE_BYTES = 1 << 16
 DESCRIPTORS = 3
-"""Of orders, channel and log."""
+"""Number of the descriptors of a child: orders, channel and log."""
 
 
 def main() -> None:

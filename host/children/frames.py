@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, BinaryIO, Self
 
 LONGEST_HEAD = 200
-"""Bytes of a head, without the end of its line."""
+"""Largest number of bytes of a head, without the end of its line."""
 Head = tuple[str, int]
 """Kind and length of the body."""
 
@@ -29,7 +29,7 @@ class Frame:
         return cls(kind, json.dumps(content).encode())
 
     def as_json(self) -> Any:
-        """Return what the body says as JSON."""
+        """Return the body, read as JSON."""
         return json.loads(self.body)
 
     @property
@@ -55,19 +55,19 @@ def read_frame(stream: BinaryIO) -> Frame | None:
 
 
 class FrameBuffer:
-    """Puts the pieces that come through a pipe together to frames; their sender may be led astray."""
+    """Joins the pieces that come through a pipe to frames; their sender is not trusted."""
 
     def __init__(self) -> None:
         self._head: Head | None = None
-        """That of the frame whose body is awaited."""
+        """Head of the frame whose body is awaited."""
         self._pieces: list[bytes] = []
-        """What came behind it, or behind the last frame."""
+        """Bytes behind that head, or behind the last frame."""
         self._waiting = 0
-        """Bytes in the pieces."""
+        """Number of these bytes."""
         self.received = 0
-        """Bytes so far."""
+        """Number of all received bytes."""
         self.broken = False
-        """Whether what came is no frame; nothing behind it is one."""
+        """Whether received bytes are no frame; no later byte is read as one."""
 
     @property
     def partial(self) -> bool:
@@ -116,12 +116,12 @@ class FrameBuffer:
         return True
 
     def _leave(self, content: bytes) -> None:
-        """Let this be what waits."""
+        """Keep bytes that belong to the next frame."""
         self._pieces, self._waiting = [content] if content else [], len(content)
 
 
 def _head(line: bytes) -> Head:
-    """Return what a head says; ValueError, TypeError, KeyError: the line is none."""
+    """Return kind and length of a head; ValueError, TypeError, KeyError: the line is no head."""
     head = json.loads(line)
     kind, length = head["kind"], head["length"]
     if not isinstance(kind, str) or type(length) is not int or length < 0:

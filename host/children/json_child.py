@@ -16,7 +16,7 @@ from host.reading_limits import Limits
 from host.sessions import ending_signal
 
 _NO_MEMORY = ("MemoryError", "bad_alloc")
-"""How Python and C++ say that an allocation failed."""
+"""Texts by which Python and C++ report that an allocation failed."""
 
 
 class ChildFailed(Exception):
@@ -98,7 +98,7 @@ def _ask(request: str, watch: Watch, command: Sequence[str]) -> dict[str, Any]:
 
 
 def _communicated(child: subprocess.Popen[str], request: str, watch: Watch) -> tuple[str, str]:
-    """Return what a child prints on both its outputs, once it has ended."""
+    """Return both outputs of a child, once it has ended."""
     unsent: str | None = request
     while True:
         try:

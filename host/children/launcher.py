@@ -1,4 +1,4 @@
-"""Child processes that work on one order each: started anew, or forked from a warm process.
+"""Child processes that work on one order each: new processes, or forks of a warm process.
 
 A child forked from it needs no imports and no compilation. It is started for the first child, which waits for
 it: both take what that child alone would. Where it cannot be had, or not in time, children are started anew.
@@ -24,17 +24,19 @@ from host.children.fork_server import MESSAGE_BYTES, READY
 from host.sessions import Ended, ending_signal, has_exited, reap
 
 _FORK_SERVER = (sys.executable, "-P", "-m", "host.children.fork_server")
-"""Without the folder in which its starter was started: its modules may be another program's."""
+"""Command of a warm process. It is started without its starter's folder in the path, whose modules may be
+another program's.
+"""
 MAX_FORKS = 500
-"""Children of one warm process; then a new one takes its place."""
+"""Number of children of one warm process; then a new one takes its place."""
 WARM_WITHIN_S = 10.0
-"""How long a child waits for a warm process, which takes two on an idle machine."""
+"""Longest wait of a child for a warm process, s. An idle machine starts one in two seconds."""
 _PATIENCE_S = 10.0
-"""For an answer, which takes a hundredth of a second."""
+"""Longest wait for an answer of the warm process, s. It takes a hundredth of a second."""
 UNSEEN = Ended(-9, 0.0, 0)
-"""A child whose end nobody saw, because the warm process had ended before it."""
+"""End of a child that could not be observed, because the warm process had ended before it."""
 Warn: TypeAlias = Callable[..., object]
-"""Called as ``warn(event, **facts)``."""
+"""Function that is called as ``warn(event, **facts)``."""
 
 
 class Launcher:
@@ -45,9 +47,9 @@ class Launcher:
     Parameters
     ----------
     work : str
-        The module.
+        Name of the module.
     modules : iterable of str
-        What the warm process has imported.
+        Modules that the warm process imports.
     log : Path
         File that gets the standard output and error of the warm process.
     warn : callable
@@ -102,7 +104,7 @@ class Launcher:
 
 @dataclass(frozen=True)
 class Ends:
-    """What a child is given: descriptors to read its order, to answer and for its log, and where it works."""
+    """Resources of a child: descriptors for its orders, its answers and its log, and its folder."""
 
     orders: int
     channel: int
@@ -240,5 +242,5 @@ class _ForkedChild:
 
 
 ChildProcess: TypeAlias = _StartedChild | _ForkedChild
-"""The leader of a session of its own: an id of its own until it is reaped."""
+"""Child that leads a session. Its id stays reserved until it is reaped."""
 Launch: TypeAlias = Callable[[Ends], ChildProcess]

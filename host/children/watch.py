@@ -1,4 +1,4 @@
-"""Limits that a system does not keep by itself: whoever started a child looks whether it is within them."""
+"""Limits that a system does not enforce: the starter of a child checks them."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from host.reading_limits import LOOK_S, Limits
 
 @dataclass(frozen=True)
 class Watch:
-    """How long a child may take, and what it may write into its folder."""
+    """Time limit of a child, and limits of what it writes into its folder."""
 
     seconds: float
     """Time limit, s, from the start of the watch."""
     end: float
-    """Instant of `time.monotonic` at which it is over."""
+    """Instant of `time.monotonic` at which the time is over."""
     folder: Path | None = None
-    """Where the child writes, if it confines itself to that."""
+    """Folder that the child writes into, if it confines itself to one."""
     limits: Limits | None = None
 
     @classmethod
@@ -33,7 +33,7 @@ class Watch:
         return time.monotonic() >= self.end
 
     def excess(self, child: int) -> str:
-        """Return what a child writes beyond its limits, "" if nothing."""
+        """Return the text of the limits that a child's writing exceeds, "" if none."""
         if self.folder is None or self.limits is None:
             return ""
         return excess(child, self.folder, self.limits)

@@ -130,7 +130,7 @@ def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
 
 
 def _of_cycle(cycle: dict[str, Any]) -> str:
-    """Return how many base pitches were solved, or why all were."""
+    """Return the number of solved base pitches, or the reason why all were solved, as text."""
     if reason := cycle.get("reason"):
         return f"all {cycle['pitches']} base pitches solved: {reason}"
     solved, pitches = max(cycle["solved"]), cycle["pitches"]

@@ -1,4 +1,4 @@
-"""``loa cache``: what is kept to be quicker the next time."""
+"""``loa cache``: size and removal of the caches that make later work quicker."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ KINDS = {
     "studies": "tasks of studies",
     "tables": "STE tables of the meshes of scenes",
 }
-"""Folders of the cache, and what they hold."""
+"""Folders of the cache, with words for their contents."""
 _DAY = 86_400.0
 _GB = 1e9
 
@@ -75,7 +75,7 @@ def keep_small() -> None:
 
 
 def _limit_bytes() -> int:
-    """Return what the cache may hold: 2 GB, or what the environment says.
+    """Return the largest size of the cache in bytes: 2 GB, or the value of the environment.
 
     Raises `BadInput`: it says something else than a number of bytes.
     """

@@ -1,4 +1,4 @@
-"""The tables of a scene: cached under the hash of all that decides them, computed here or by a service."""
+"""The tables of a scene: cached under the hash of their inputs, computed here or by a service."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from service.version import program_tag
 
 @dataclass(frozen=True)
 class CachedTables:
-    """The tables of cases: those of runs before, and those that are computed now."""
+    """Tables of cases, from the cache of earlier runs or computed now."""
 
     compute: Callable[[Case], SteDatabase]
 
     @staticmethod
     def file(case: Case) -> Path:
-        """Return where the table of a case is kept, if it is."""
+        """Return the path of the table of a case in the cache, present or not."""
         content = {"case": case_json(case), "program": program_tag(), "packages": software_versions()}
         return cache_home() / "tables" / f"{content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)}.nc"
 

@@ -1,4 +1,4 @@
-"""``loa compare``: pages of two results, designs or flanks beside each other."""
+"""``loa compare``: pages that compare two results, designs or flanks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from lineofaction.report.run.view import RunView
 
 @dataclass(frozen=True)
 class FlankQuestion:
-    """What ``loa compare BEFORE AFTER --scene SCENE`` was called with, as typed."""
+    """Arguments of ``loa compare BEFORE AFTER --scene SCENE`` as the caller typed them."""
 
     scene: Path
     mesh: str | None

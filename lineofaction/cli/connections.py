@@ -22,8 +22,8 @@ MAX_HEAD_BYTES = 65_536
 HEAD_WITHIN_S = 20.0
 _STOPPING_S = 2
 _KEEP_ALIVE_S = 75
-"""How long an idle connection is kept: longer than by clients (5 s) and proxies (60 s). If the server closed
-first, a request that is on its way just then would be answered with a reset."""
+"""Seconds for which an idle connection stays open, longer than clients (5 s) and proxies (60 s) keep one. A
+server that closed first would answer a request that is on its way at that moment with a reset."""
 
 logger = structlog.get_logger(__name__)
 
@@ -138,7 +138,7 @@ def http_server(app: FastAPI) -> Server:
 
 
 class Server(uvicorn.Server):
-    """Tells those who wait for a live answer at once that the service stops; the rest have time to end.
+    """HTTP server that, as it stops, ends waits for live answers at once and other requests in time.
 
     Attributes
     ----------

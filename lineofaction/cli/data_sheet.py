@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.cli.output import EMPHASIS, check_writable, console, print_json, table
 from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.verb_warnings import messages, warn
@@ -52,7 +52,7 @@ def _write_sheet(
         raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(_ENDINGS)}")
     check_writable(output)
     if output.suffix == ".html":
-        geometry = PairFacts.of(pair)
+        geometry = PairGeometry.of(pair)
         page = Page(
             pair_title(geometry), pair_lead(geometry), (), (data_sheet_section(pair, tolerance_class),)
         )
@@ -74,7 +74,7 @@ def _show_sheet(pair: ParallelAxes, output: Path | None) -> None:
 
 
 def _summary(pair: ParallelAxes) -> tuple[str, str]:
-    geometry = PairFacts.of(pair)
+    geometry = PairGeometry.of(pair)
     transverse, overlap = pair.active_contact_ratio, pair.overlap_ratio
     ratios = f"contact ratio {transverse:.3f} + {overlap:.3f} = {transverse + overlap:.3f}"
     backlash = f"circumferential backlash {number(pair.circumferential_backlash / UM, 3)} µm"

@@ -65,14 +65,14 @@ def _nominal_force(database: SteDatabase, point: Point) -> float:
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise BadInput.of(name, value, "above 0")
     if torque is not None:
-        return torque / database.facts.base_radius[0]
+        return torque / database.geometry.base_radius[0]
     normal = float(database.force[-1]) if force is None else force
-    return normal * math.cos(database.facts.base_helix_angle)
+    return normal * math.cos(database.geometry.base_helix_angle)
 
 
 def _element(database: SteDatabase, damping: float, nominal: float, backlash_um: float | None) -> MeshElement:
     """Return the mesh of the database, gear 1 driving; both gears' teeth are equally thick."""
-    geometry = database.facts
+    geometry = database.geometry
     backlash = None if backlash_um is None else backlash_um * UM
     return MeshElement(
         database.force_table(),

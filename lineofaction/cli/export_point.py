@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 Point = dict[str, float | None]
-"""The fields of a `FlankPoint`, None where nothing is said."""
+"""Fields of a `FlankPoint` from options, None if the option is left out."""

@@ -73,7 +73,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
 
 
 def _logged(error: Exception) -> Unexpected:
-    """Return what is said of a defect, which is written to a log under its reference."""
+    """Return the error to print for a defect, and write the defect to a log under its reference."""
     directory = load("host.directories:cache_home")() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)

@@ -86,7 +86,7 @@ def _check_known(name: str, value: str, known: Collection[str]) -> None:
 
 
 def _placement(placed: dict[str, str | None]) -> Placement | None:
-    """Return where the file is said to stand; None: nothing is said."""
+    """Return the placement of the file by the options; None: no option states it."""
     vectors = {field: _vector(NAMES[field], text) for field, text in placed.items() if text is not None}
     if not vectors:
         return None

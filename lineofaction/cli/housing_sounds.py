@@ -30,7 +30,7 @@ from lineofaction.report.run.view import RunView
 
 
 def receiver_of(scene: Path | None, point: str, microphone: str) -> Receiver | None:
-    """Return where runs are heard by the options of the verb; None: as what the runs hold.
+    """Return the receiver that the options name; None: runs sound by their forces and motions.
 
     Without both it is the microphone of the scene's complaint. Raises `BadInput`: both, one of these without
     a scene, or no position.
@@ -100,7 +100,7 @@ def _require_no_view(view: RunView, receiver: Receiver) -> None:
 
 
 def _cells(figures: SoundFigures) -> dict[str, str]:
-    """Return what the ear makes of a sound pressure, as printed."""
+    """Return the hearing figures of a sound pressure as printed cells."""
     loudness = "without extra" if figures.loudness is None else engineering(figures.loudness, 3)
     sharpness = "" if figures.sharpness is None else engineering(figures.sharpness, 3)
     tones = ", ".join(number(hertz, 4) for hertz, _ in figures.tones)

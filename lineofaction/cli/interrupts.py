@@ -13,7 +13,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 @contextmanager
 def until_interrupted() -> Iterator[Callable[[], bool]]:
-    """Yield what tells whether SIGINT or SIGTERM came; the second raises KeyboardInterrupt.
+    """Yield a function that returns whether SIGINT or SIGTERM came; the second raises KeyboardInterrupt.
 
     Outside the main thread, where signals cannot be handled, it never does.
     """

@@ -15,7 +15,7 @@ Json = dict[str, Any]
 
 
 class Keys:
-    """The access keys in the file named on the command line, or in that of the settings."""
+    """The access keys in the file of the command line, or else in the file of the settings."""
 
     def __init__(self, path: Path | None, *, as_json: bool = False) -> None:
         self._file, self._as_json = KeyFile(path or load_settings().key_file), as_json

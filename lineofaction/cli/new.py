@@ -33,7 +33,7 @@ KINDS: Mapping[str, Callable[[PairWishes], str]] = {
     "planetary": lambda wanted: planetary_text(planetary_stage(wanted), _STAGE),
     "scene": lambda wanted: pair_scene_text(_helical(wanted), _SCENE),
 }
-"""What is made, by the option that names it."""
+"""Writers of first files by the kind of file, which is also the name of the option."""
 
 
 def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) -> None:

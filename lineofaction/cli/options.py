@@ -40,7 +40,10 @@ def to_file(text: str) -> Any:
 
 @dataclass(frozen=True)
 class PairWishes:
-    """What the caller says, each field an option; None is by rule. Lengths in mm, angles in deg."""
+    """Data of a pair that the caller names by options.
+
+    A field that is None follows by rule. Lengths are in mm, angles in deg.
+    """
 
     module: Annotated[float | None, typer.Option(min=0.05, max=100.0, help="Normal module in mm.")] = None
     teeth: Annotated[int | None, typer.Option(min=6, max=500, help="Teeth of the pinion, or of the sun.")] = (

@@ -39,25 +39,26 @@ Report = Callable[[str, float], None]
 
 _MAX_HEADLINES = 2
 EMPHASIS = "bold"
-"""Style of the line that says what was found."""
+"""Style of the line that states the result."""
 _THEME = Theme({"loa.error": "cyan", "loa.beside": "bright_black"})
 _WIDEST, _GAP, _INDENT, _MAX_LINES = 24, 2, "  ", 2
-"""Columns that a text takes before it wraps; between two columns of a table; before what stands below a row.
+"""Most columns of a text before it wraps, columns between two columns of a table, indent of lines below a
+row, and most lines of a text in the last column beside its row.
 
 The last: lines that a text in the last column takes beside its row.
 """
 _FIGURE = re.compile(r"([+-]?\d+)((?:\.\d+)?(?: ?[^\d.e±].*?)?)( ?±.*)?")
-"""A number: what is before its decimal point, its decimals with its unit, and its error."""
+"""Pattern of a number: the part before the decimal point, the decimals with the unit, and the error."""
 
 
 def print_json(answer: dict[str, Any]) -> None:
-    """Print one JSON object, with what the verb warns of; a number that is none is an error, never null."""
+    """Print one JSON object with the warnings of the verb; ValueError: a number is NaN or infinite."""
     sys.stdout.write(json.dumps({**answer, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 
 class _Marks(RegexHighlighter):
-    """What is found in bold, errors in color, what is below its error or said beside the answer in grey."""
+    """Highlighter of printed lines: errors after ± in cyan, notes at the end of an answer in grey."""
 
     base_style = "loa."
     highlights: ClassVar[list[str]] = [

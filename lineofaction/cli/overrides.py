@@ -25,7 +25,7 @@ _SHORTHANDS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "tolerance": ("accuracy.tolerance", ("accuracy.level",)),
     "torque": ("load.torque_n_m", ("load.normal_force_n",)),
 }
-"""Option to the path it sets, and those that it leaves out."""
+"""Path that each option sets, and paths that it then leaves out."""
 _OF_ONE = ("output", "json", "csv")
 """Options that hold one file, or one object, for one case."""
 
@@ -96,7 +96,7 @@ def overridable(argument: str, subject: str = "case") -> Callable[[Callable[...,
 
 
 def _spellings(option: inspect.Parameter) -> list[str]:
-    """Return how an option is typed; the first of its names stands where a default would."""
+    """Return the spellings of an option; the first of its names stands where a default would."""
     declared = [
         info for info in getattr(option.annotation, "__metadata__", ()) if isinstance(info, OptionInfo)
     ]
@@ -106,7 +106,7 @@ def _spellings(option: inspect.Parameter) -> list[str]:
 
 
 def _overrides(typed: Mapping[str, Any]) -> tuple[Override, ...]:
-    """Return what was typed as overrides, shorthands first."""
+    """Return the typed options as overrides, shorthands first."""
     made = []
     for name, (path, others) in _SHORTHANDS.items():
         value = typed.get(name)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ReportOptions:
-    """How ``loa report`` writes: the folder of the pictures, what it is about, pictures in place of plots."""
+    """Options of ``loa report``: the folder of pictures, the file that names the subject, still pictures."""
 
     images: Path | None
     about: Path | None

@@ -14,10 +14,10 @@ from lineofaction.gearbox.units import DEGREE, MM
 OVERLAP = 1.5
 """Overlap ratio that a helical face width makes."""
 LOAD = 60.0
-"""Tangential force over face width and module, N/mm^2: about what hardened gears carry for long."""
+"""Tangential force over face width and module, N/mm^2: roughly the endurable load of hardened gears."""
 _FRACTIONS = (0.1, 0.25, 0.5, 0.75, 1.0)
 _BORE = 0.45
-"""Of the root diameter."""
+"""Bore diameter over root diameter."""
 _RIM = 3.0
 """Modules between the ring's root circle and the outside of its rim."""
 

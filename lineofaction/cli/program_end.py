@@ -13,7 +13,7 @@ from service.management.vitals import Vitals
 from service.settings import Settings
 
 Work = Callable[[], None]
-"""What a process does; pickled on the way to it."""
+"""Function that a process runs; it is pickled on the way to the process."""
 
 
 @contextmanager

@@ -18,19 +18,19 @@ from lineofaction.report.run.sound import run_signals
 from lineofaction.report.run.view import RunView
 
 FAINT = 1e-3
-"""Of the overall level: weaker orders are not printed."""
+"""Share of the overall level below which an order is not printed."""
 
 
 @dataclass(frozen=True)
 class RunSound:
-    """A run as it is heard."""
+    """A run with its recording, its figures, and its row of the printed table."""
 
     name: str
     recording: Recording
     figures: Json = field(default_factory=dict)
-    """Plain JSON beside the recording's own."""
+    """Figures as plain JSON, in addition to the figures of the recording."""
     cells: dict[str, str] = field(default_factory=dict)
-    """What is printed in the columns of these names."""
+    """Cells of the printed table by the names of their columns."""
 
 
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
@@ -47,7 +47,7 @@ def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[R
 
 
 def _moment_cells(moment: Loudest | None, unit: str) -> dict[str, str]:
-    """Say where a run is loudest, and the levels of its orders there."""
+    """Return the time at which a run is loudest, and the levels of its orders then, as cells."""
     where, text = "", "too short for orders"
     if moment is not None:
         levels = [

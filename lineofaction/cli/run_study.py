@@ -223,7 +223,7 @@ def _output_files(output: Path, study: Study) -> list[Path]:
 
 
 def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str, Writer]:
-    """Return what writes a result, by the ending of the file; `subject` is what was studied."""
+    """Return the writers of a result by the ending of the file; `subject` is the case or scene studied."""
     run, page = study.run, presentation_of(study)
 
     def write_result_page(result: Any, file: Path) -> None:

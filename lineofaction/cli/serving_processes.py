@@ -1,4 +1,4 @@
-"""Several serving processes on one socket, and beside them the scheduler of their jobs."""
+"""Serving processes on one socket, and the scheduler of their jobs in the process that starts them."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ from service.worker.process import default_registry
 
 logger = structlog.get_logger(__name__)
 MIN_LIFE_S = 5.0
-"""Processes that end earlier are replaced only after so long: what they lack may be there by then."""
+"""Seconds in which a process that ends early is not replaced: what it lacks may be there by then."""
 STOPPING_S = 3.5
-"""After which serving processes that do not stop are killed."""
+"""Seconds after which serving processes that do not stop are killed."""
 _LOOK_S = 0.2
 _APPLICATION = "service.app"
 _METRICS = "PROMETHEUS_MULTIPROC_DIR"
-"""Where prometheus-client keeps the figures of all processes, by its own name."""
+"""Environment variable of prometheus-client that names the folder of the figures of all processes."""
 
 
 def _managed_work(
@@ -58,7 +58,7 @@ def _managed_work(
 
 
 def _until_stopped() -> threading.Event:
-    """Return what is set at SIGTERM and SIGINT."""
+    """Return an event that SIGTERM and SIGINT set."""
     stopped = threading.Event()
     at_stop(lambda _number, _frame: stopped.set())
     return stopped
@@ -110,9 +110,9 @@ class ServingProcesses:
     """Processes that answer requests."""
 
     number: int
-    """How many there are to be."""
+    """Number of processes that are to run."""
     serve: Work
-    """What each does until it is stopped."""
+    """Work of each process until it is stopped."""
     _alive: list[BaseProcess] = field(default_factory=list)
     _starts: deque[float] = field(default_factory=deque)
 

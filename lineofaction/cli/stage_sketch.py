@@ -20,7 +20,7 @@ from lineofaction.gearbox.units import DEGREE
 PLANETS = 3
 
 _MIN_TEETH = 18
-"""Of a planet: with fewer, teeth without profile shift are undercut."""
+"""Least number of teeth of a planet: with fewer, teeth without profile shift are undercut."""
 
 
 def planetary_stage(wanted: PairWishes) -> StageSketch:

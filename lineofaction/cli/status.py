@@ -1,4 +1,4 @@
-"""``loa status``: the results of a folder, and what the verbs that make them are predicted to cost."""
+"""``loa status``: the results of a folder, and the predicted cost of the verbs that renew them."""
 
 from __future__ import annotations
 

@@ -134,8 +134,8 @@ def _columns(curve: dict[str, Any]) -> list[str]:
 
 
 def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Iterator[str]:
-    """Yield what a curve says: figures with their errors, harmonics, load sharing, the verb that follows."""
-    one, other = database.facts.teeth
+    """Yield the lines of a curve: figures with errors, harmonics, load sharing, the next verb."""
+    one, other = database.geometry.teeth
     yield f"gear pair {one}/{other} at {curve['torque_n_m']:.6g} N m ({curve['normal_force_n']:.0f} N)"
     yield ""
     figures = [
@@ -175,7 +175,7 @@ def _answer(database: SteDatabase, following: str, curve: dict[str, Any]) -> Ite
 
 
 def _bands(curve: dict[str, Any]) -> Iterator[str]:
-    """Say what a single point of the curve may be wrong by, and what interpolation has of it."""
+    """Yield lines on the error of a single point of the curve, and on its share by interpolation."""
     if "error_um" not in curve:
         yield "  error of a point: not estimated"
         return

@@ -1,4 +1,4 @@
-"""The cache of a study: an interrupted one goes on from what its tasks had computed."""
+"""The cache of a study, from which an interrupted study continues with the finished tasks."""
 
 from __future__ import annotations
 

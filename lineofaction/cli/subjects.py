@@ -1,4 +1,4 @@
-"""Cases and scenes of files, assessed, and what work on them is predicted to cost."""
+"""Cases and scenes of files with their warnings, and the predicted cost of work on them."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ from lineofaction.gearbox.subjects import scene_of, with_inline_cases
 from model_studies.progress import ANNOUNCED
 
 _READING, _PLAYED, _BY_EAR = 0.5, 0.06, 2.9
-"""CPU seconds: of a run as it is read, of a second of it, and of a second at a microphone, where hearing
-counts."""
+"""CPU seconds of reading a run, of a second of sound, and of a second of sound at a microphone, with the
+figures of hearing."""
 
 
 def assessed_case(file: InputFile, point: FlankPoint | None = None) -> CheckedCase:
@@ -83,7 +83,7 @@ def inputs_of_study(
 
 
 def _speeds_to_choose(inputs: type[BoundaryModel], fields: Json) -> int:
-    """Return how many speeds inputs need, of which neither those nor a run are named; 0: none."""
+    """Return the number of speeds that inputs need if neither speeds nor a run are named; 0: none."""
     if not issubclass(inputs, OverSpeeds) or inputs.at_rest or fields.keys() & {"speed_rpm", "run"}:
         return 0
     return inputs.usual_speeds

@@ -1,4 +1,4 @@
-"""Lines about a tolerance: drafts while an analysis refines, its passes, and whether it is met."""
+"""Lines about a tolerance: drafts during refinement, passes, and the final verdict."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NODES = {
 
 
 def tolerance_lines(receipt: Json, newton_metre: float = 1.0) -> Iterator[str]:
-    """Yield whether the tolerance is met as measured, why not, and passes; `newton_metre`: its force, N."""
+    """Yield lines on the tolerance: met or why not, and the passes; `newton_metre`: force of 1 N m, N."""
     goal = receipt.get("tolerance")
     if not goal:
         return

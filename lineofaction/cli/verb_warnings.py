@@ -16,7 +16,7 @@ Json = dict[str, Any]
 _current: ContextVar[_Warned] = ContextVar("warned")
 
 _UNIT = re.compile(r"(?: |\b)(?:N|kg|CPU) [ms](?![a-z])")
-"""A unit of two words, and what is before it: lines break neither."""
+"""Pattern of a unit of two words with the word before it; lines break neither."""
 
 
 @dataclass
@@ -58,11 +58,11 @@ def warn(warnings: Iterable[Json]) -> None:
 
 
 def messages() -> list[str]:
-    """Return what the verb has gathered, in words."""
+    """Return the messages of the warnings that the verb has gathered."""
     return [warning["message"] for warning in warnings_so_far()]
 
 
 def warnings_so_far() -> list[Json]:
-    """Return what the verb has gathered."""
+    """Return the warnings that the verb has gathered."""
     warned = _current.get(None)
     return [] if warned is None else list(warned.messages.values())

@@ -20,7 +20,7 @@ from lineofaction.gearbox.registry import SUFFIX
 FIGURES = ".json"
 """Ending of the figures of results."""
 SET_ASIDE = ".damaged"
-"""Ending of what was found damaged: never read again, may be deleted."""
+"""Ending of damaged files: never read again, may be deleted."""
 
 
 class ResultCache:

@@ -48,7 +48,7 @@ class _Course(Generic[T]):
 
 
 class BlockingDriver:
-    """Performs steps with its own HTTP connections, blocking; threads may share it.
+    """Performs steps over HTTP connections of this driver, blocking; threads may share it.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ class _Started(Generic[T]):
 
 
 class AwaitingDriver:
-    """Performs steps with its own HTTP connections, awaiting.
+    """Performs steps over HTTP connections of this driver, awaiting.
 
     Parameters are those of `BlockingDriver`; the transport is an `httpx2.AsyncBaseTransport`.
     """

@@ -15,7 +15,7 @@ class EventReader:
         self._rest, self._data = b"", list[bytes]()
 
     def documents(self, piece: bytes) -> list[dict[str, Any]]:
-        """Return what a further piece completes; comments and names of events are passed over."""
+        """Return the documents that a further piece completes, without comments and names of events."""
         *lines, self._rest = (self._rest + piece).split(b"\n")
         complete = []
         for line in (line.rstrip(b"\r") for line in lines):

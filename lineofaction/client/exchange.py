@@ -73,7 +73,7 @@ class Exchange:
         return (yield from self._patiently(once))
 
     def read(self, reader: Callable[[Any], T], method: str, path: str, **options: Any) -> Steps[T]:
-        """Return what `reader` makes of the JSON that answers a request; raises as `request`."""
+        """Return the value of `reader` for the JSON that answers a request; raises as `request`."""
         response = yield from self.request(method, path, **options)
         try:
             return reader(response.json())
@@ -117,7 +117,7 @@ class Exchange:
         return (yield from self._patiently(once))
 
     def _patiently(self, once: Callable[[], Steps[T]]) -> Steps[T]:
-        """Return what `once` returns, which is run again when the network or the service asks for it."""
+        """Return the value of `once`, which runs again when the network or the service asks for it."""
         for attempt in range(1, self.attempts):
             try:
                 return (yield from once())
@@ -132,7 +132,7 @@ class Exchange:
             raise self.away(error) from None
 
     def away(self, error: httpx2.TransportError) -> Unreachable:
-        """Return what to tell of a network that failed."""
+        """Return the error to raise for a failure of the network."""
         reason = type(error).__name__
         return Unreachable(f"No service answers at {self.base_url} ({reason}). Start one with: loa serve")
 

@@ -1,4 +1,4 @@
-"""A job of a service, and what it leaves."""
+"""A job of a service, and its results."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ Fetched = TypeVar("Fetched")
 
 
 class Followed(Surface):
-    """What can be done with a job whatever it computes, and with a batch.
+    """Operations that a job of any process and a batch share.
 
-    `state`: as last seen.
+    `state` is the state as of the last answer of the service.
     """
 
     state: JobState

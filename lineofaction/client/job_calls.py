@@ -1,4 +1,4 @@
-"""The jobs of a service: submit, look, wait, list, dismiss; whatever the processes compute."""
+"""Calls on the jobs of a service, for any process: submit, look, wait, list, dismiss."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _PAGE = 100
 
 _LONGEST_PAUSE_S = 2.0
 _REFERENCES = {"response": "document", "transmissionMode": "reference"}
-"""Whatever form a job was submitted with: say where its result is."""
+"""Members of an execution by which the service answers with the address of the result."""
 
 
 def pages(
@@ -286,13 +286,13 @@ class JobCalls(Surface):
 
     @operation
     def result(self, job: str) -> Steps[Result]:
-        """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
+        """Return the reference to the result of a job; raises as `wait`, or `ResultNotReady`."""
         path = f"/v1/jobs/{job}/results"
         return self.session.exchange.read(Result.from_json, "GET", path, params=_REFERENCES)
 
     @operation
     def obtain(self, process: str, inputs: dict[str, Any], progress: Watch | None = None) -> Steps[Result]:
-        """Return where the result of inputs is, computed if need be: submit, wait.
+        """Return the reference to the result of inputs, computed if need be: submit, wait.
 
         When the service cannot be reached, the result that it gave for the same inputs before is taken, if
         its file is in the cache; an `OfflineWarning` says so. Raises as `submit` and `wait`.

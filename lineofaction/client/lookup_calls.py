@@ -1,4 +1,4 @@
-"""Calls for what a service says before anything is computed: plans, drawings, examples, effects, files."""
+"""Calls before anything is computed: plans, drawings, examples, effects, files."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class LookupCalls(Surface):
 
     @operation
     def plan(self, case: CaseLike, *, time_budget_s: float | None = None) -> Steps[schemas.PlanBody]:
-        """Return what the analysis of a case will be, cost and be wrong by.
+        """Return the plan of the analysis of a case: discretization, predicted cost and errors.
 
         `time_budget_s`: CPU seconds that may be spent.
         """

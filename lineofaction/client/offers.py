@@ -1,4 +1,4 @@
-"""The processes of a service as the client offers them: what they take, and how their results are read."""
+"""The processes of a service as the client offers them: arguments, and readers of their results."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ _REMEDY = (
 
 @dataclass(frozen=True)
 class Offer:
-    """A process."""
+    """A process of the service, as the client offers it."""
 
     name: str
-    """On the service."""
+    """Name of the process on the service."""
     description: str
     signature: Signature
-    """Of the client's calls."""
+    """Signature of the client's calls."""
     subject: str
-    """What is computed: a case, a scene, or either."""
+    """Kind of input that the process computes from: a case, a scene, or either."""
     read: Callable[[Path], Any]
-    """The path of the result's file to the result; imports what it needs."""
+    """Function from the path of a result's file to the result; it imports what it needs."""
 
     @property
     def attribute(self) -> str:
@@ -64,7 +64,7 @@ def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Say what to install where the body imports what is not here.
+    """Name the package to install if an import in the body fails.
 
     Raises `ModuleNotFoundError`: with the package to install; `host.extras.MissingExtra`, which names its
     extra, as it is.
@@ -119,5 +119,5 @@ def offers() -> Mapping[str, Offer]:
 
 
 def reader_of(process: str) -> Callable[[Path], Any]:
-    """Return how results of a process are read; those of an unknown one stay files."""
+    """Return the reader of results of a process; results of an unknown process stay files."""
     return offers()[process].read if process in offers() else lambda file: file

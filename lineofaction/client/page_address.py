@@ -32,7 +32,8 @@ _VIEWS = {
     **{"case": _PACKED, "live": _PACKED, **dict.fromkeys(("unit", "toml", "a", "b", "c"), _VARIANT)},
     **{"tab": "[a-z]+", "name": _ANY, "at": r"\d(\.\d+)?", "motion": r"\d+", "see": _ANY, "on": "[abc]"},
 }
-"""What a view may be; variants that are not shown are views of the one that is."""
+"""Pattern of each word of an address that says how the page looks at a result. Variants in the background are
+views of the variant in front."""
 _JOBS = ("analyze", "simulate", "modes", "scene", "job", *studies_of("case"), *studies_of("case or scene"))
 _NAMES = {"database": _HASH} | dict.fromkeys(_JOBS, _JOB)
 _PATTERNS = _VIEWS | _NAMES
@@ -46,16 +47,16 @@ _COPY = "Copy the whole address from the page's address bar."
 
 @dataclass(frozen=True)
 class PageAddress:
-    """What an address says."""
+    """The parts of an address of the page: service, results, typed design, views."""
 
     origin: Origin
-    """Of its service."""
+    """Origin of the page's service."""
     names: Mapping[str, str]
     """The database by its hash and jobs by their identifiers, the newest last."""
     case: schemas.Case | None
-    """The design as typed, where it is not that of the result or of a job."""
+    """The design as typed; None: the design of the result or of a job."""
     views: Mapping[str, str]
-    """How they are looked at."""
+    """Words that say how the page looks at the results."""
 
     @classmethod
     def of(cls, text: str) -> Self:
@@ -72,12 +73,12 @@ class PageAddress:
 
     @property
     def result(self) -> str | None:
-        """What its result is known by: a content hash, or else the identifier of its newest job."""
+        """The content hash of the shown result, or else the identifier of its newest job."""
         return self.names.get("database") or next(reversed([*self.names.values()]), None)
 
     @property
     def differing(self) -> str:
-        """In words, what it has that its result has not; empty: nothing."""
+        """The difference of the page from its result, as "its design was edited"; empty: none."""
         parts = {"its design was edited": "case" in self.views, "its sliders moved": "live" in self.views}
         return " and ".join(part for part, holds in parts.items() if holds) if self.names else ""
 
@@ -136,7 +137,7 @@ def _no_number(name: str) -> NoReturn:
 
 
 class PageCalls(Surface):
-    """What the page of this service shows at an address of it."""
+    """Operations on an address of this service's page: the case and the result that the page shows there."""
 
     @operation
     def case_at(self, address: str) -> Steps[schemas.Case]:
@@ -166,7 +167,7 @@ class PageCalls(Surface):
 
     @operation
     def result_at(self, address: str) -> Steps[str]:
-        """Return what names the result of an address: a content hash, for `fetch`, or a job's identifier.
+        """Return the name of an address's result: a content hash, for `fetch`, or a job's identifier.
 
         Raises `BadInput`: it is no address of this service's page, or names nothing computed; `Unreachable`,
         `ServiceError`.

@@ -18,7 +18,7 @@ from lineofaction.gearbox.problems import (
 )
 
 _WITH_MORE = (BadInput, JobFailed, Unexpected)
-"""Errors that are not made of their text alone."""
+"""Errors that need more than their text to be made again."""
 
 _BY_TYPE = {
     kind.type: kind

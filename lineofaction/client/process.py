@@ -40,7 +40,7 @@ def obtained(client: Surface, offer: Offer, inputs: dict[str, Any]) -> Steps[Any
 
 
 class _Mapping:
-    """The jobs of one `map`: what the cache holds of the service's version is not computed again.
+    """The jobs of one `map`; results of the service's version in the cache are not computed again.
 
     From the first answer on, the service may be away or busy for the client's patience.
     """
@@ -93,7 +93,7 @@ class _Mapping:
 
 
 class _Calls(Generic[P, T, F]):
-    """What both kinds of processes share."""
+    """Construction and signature that blocking and awaiting processes share."""
 
     def __init__(self, client: Any, offer: Offer) -> None:
         self._client, self._offer = client, offer

@@ -1,4 +1,4 @@
-"""Stored results: their files, their figures, and what the service answers from them."""
+"""Calls on stored results: files, figures, and answers that the service computes from them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Column = float | Collection[float]
 
 
 class LiveOptions(TypedDict, total=False):
-    """Options of `ste`, in the words of a case file; what is left out is as in the case."""
+    """Options of `ste` by the names of a case file; the case supplies the options that are left out."""
 
     misalignment_um: float
     center_distance_change_mm: float
@@ -38,19 +38,20 @@ class LiveOptions(TypedDict, total=False):
     wheel: Mapping[str, Any]
     """`pinion`, `wheel`: Flank modifications of a gear (``tip_relief_um`` ...)."""
     derivatives: bool
-    """Also return the derivatives of each curve by its flanks, the misalignment and the torque."""
+    """Whether the answer also has the derivatives of each curve by its flanks, the misalignment and the
+    torque."""
     flanks: bool
-    """Also return pressure over the driving gear's flank, load over the face, K_Hbeta."""
+    """Whether the answer also has pressure over the driving gear's flank, load over the face, K_Hbeta."""
     passage: bool
-    """Also return what a pair of teeth meets on its way through the mesh."""
+    """Whether the answer also has the loads and pressures of a pair of teeth on its way through the mesh."""
     tolerance_class: int
-    """Also draw pairs within this class of ISO 1328-1:2013, at one torque: `band`. Every answer solves some;
-    repeat the request until `solved` is `of`.
+    """Class of ISO 1328-1:2013 within which pairs are drawn at one torque, for the member `band` of the
+    answer. Every answer solves some of the pairs; repeat the request until `solved` is `of`.
     """
     preview: bool
-    """Answer at every other position and without errors, at a half to a third of the cost."""
+    """Whether the answer has every other position only and no errors, at a half to a third of the cost."""
     condense: bool
-    """Compute the compliance first if the service has none in its cache."""
+    """Whether the compliance is computed first if the service has none in its cache."""
     caller: str | None
     """Name of the caller: a later request replaces its waiting one (`Superseded`)."""
 

@@ -20,13 +20,14 @@ from lineofaction.gearbox.problems import (
 
 T = TypeVar("T")
 AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, TryLater)
-"""Raised while a service is away or busy, which jobs outlast."""
+"""Errors while a service is away or busy, which jobs outlast."""
 STOPS = (KeyboardInterrupt, CancelledError)
-"""Raised where the caller stops an operation."""
+"""Exceptions by which the caller stops an operation."""
 AWAY_PAUSE_S = 0.5
-"""Before a service that was away is asked again."""
+"""Seconds before a service that was away is asked again."""
 _GROWTH = 1.1
-"""Of each pause over the last: what is seen late is then about a tenth of the time waited."""
+"""Ratio of a pause to the pause before: the end of a job is then seen late by about a tenth of the time
+waited."""
 
 
 @dataclass(frozen=True)
@@ -38,11 +39,12 @@ class JobState:
     status: str
     message: str
     stage: str
-    """`id`, `process`, `status`, `message`, `stage`: As in the service's status document."""
+    """`id`, `process`, `status`, `message`, `stage`: Members of the service's status document of these names.
+    """
     progress: int
-    """Per cent of the whole job."""
+    """Progress of the whole job in per cent."""
     stage_progress: int
-    """Per cent of the stage."""
+    """Progress of the stage in per cent."""
     warnings: tuple[dict[str, Any], ...] = ()
     """Implausible inputs: check, field, value, unit, message; empty in lists of jobs."""
     created: str = ""
@@ -51,12 +53,12 @@ class JobState:
     """`created`, `started`, `finished`: RFC 3339, UTC; empty before."""
     title: str = ""
     tags: tuple[str, ...] = ()
-    """As given to the job."""
+    """Tags that the submission gave the job."""
     subject: str = ""
-    """What the job is about, in words."""
+    """Subject of the job in words."""
     differences: tuple[dict[str, Any], ...] = ()
-    """The first inputs that differ from those of the caller's job before it of the same process, or from the
-    defaults: field, before, value.
+    """The first inputs that differ from the inputs of the caller's job before it of the same process, or from
+    the defaults: field, before, value.
     """
     priority: int = 0
     remaining_s: float | None = None
@@ -74,7 +76,7 @@ class JobState:
 
     @property
     def activity(self) -> str:
-        """What the job does now: its stage while it runs, else waits, done, failed or dismissed."""
+        """The job's present activity: its stage while it runs, else waits, done, failed or dismissed."""
         if self.status == "running":
             return self.stage or "starts"
         return {"accepted": "waits", "successful": "done"}.get(self.status, self.status)
@@ -200,7 +202,7 @@ def note_continuing(error: BaseException, job: str) -> None:
 
 
 def outlasting(once: Callable[[], Steps[T]], patience: float) -> Steps[T]:
-    """Return what `once` returns, which is run again while the service is away, for `patience` seconds."""
+    """Return the value of `once`, which runs again while the service is away, for `patience` seconds."""
     begin = time.monotonic()
     while True:
         try:

@@ -1,4 +1,4 @@
-"""What the client wants of network and clock, as data: drivers perform it, blocking or awaiting.
+"""Actions that the client asks of network and clock, as data that a driver performs, blocking or awaiting.
 
 An operation of the client is a generator. It yields actions, receives their answers, or the exceptions they
 raised, and returns its result. It knows no socket and no event loop, so both clients run the same code.
@@ -46,7 +46,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Pause:
-    """Do nothing for so many seconds."""
+    """Action: do nothing for this number of seconds."""
 
     seconds: float
 
@@ -61,4 +61,4 @@ class Item(Generic[T]):
 Steps = Generator[Send | Piece | Pause, Any, T]
 """An operation with one result."""
 Items = Generator[Send | Piece | Pause | Item[T], Any, None]
-"""An operation that hands out items. A driver closes what it opened when the iteration ends early."""
+"""An operation that yields items. A driver closes its connection when the iteration ends early."""

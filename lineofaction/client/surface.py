@@ -1,4 +1,4 @@
-"""What a client offers, written once: operations that block in one client and are awaited in the other."""
+"""The base of the client's operations, each written once: one client blocks in it, the other awaits it."""
 
 from __future__ import annotations
 
@@ -25,16 +25,17 @@ P = ParamSpec("P")
 
 @dataclass(frozen=True)
 class Session:
-    """What all operations on one service share."""
+    """State that all operations on one service share."""
 
     exchange: Exchange
     cache: ResultCache
     patience: float
     """Seconds for which the service may be away while a job is waited for."""
     progress: Watch | None
-    """Called with every state seen of any job that is waited for."""
+    """Function that is called with every new state of any job that the client waits for; None: none."""
     terms: Mapping[str, Any] = field(default_factory=dict)
-    """What every submission asks beside its inputs: title, tags, as in its body."""
+    """Terms of every submission beside its inputs, such as title and tags, as the body of the request has
+    them."""
 
 
 class Surface:
@@ -119,4 +120,6 @@ class Listing(_Method, Generic[P, T]):
 
 
 operation, listing = Operation, Listing
-"""As decorators of generators of steps, and of steps and items."""
+"""The two classes as decorators of generators: `operation` of a generator of steps, `listing` of a generator
+of steps and items.
+"""

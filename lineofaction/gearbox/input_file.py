@@ -1,4 +1,4 @@
-"""What callers set in a text: values over those of a case or scene file."""
+"""Values that a caller sets over the values of a case or scene file."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class InputFile:
 
     @property
     def folder(self) -> Path:
-        """What the files it names are relative to."""
+        """The folder to which the names of files in this file are relative."""
         return self.path.parent
 
     def __str__(self) -> str:
@@ -86,11 +86,11 @@ class Override:
     of a part (``loads.brake.torque_n_m``) or ``*`` for all.
     """
     value: Any
-    """As TOML has it; None leaves the field out."""
+    """Value in TOML's types; None leaves the field out."""
 
     @classmethod
     def of(cls, text: str) -> Override:
-        """Return what ``PATH=VALUE`` says: a value as TOML has it, or else a text; none leaves the field out.
+        """Return the override of ``PATH=VALUE``: a TOML value, or else a text; no value leaves the field out.
 
         Raises `BadInput`: it has another form.
         """
@@ -102,7 +102,7 @@ class Override:
 
 
 def _value(text: str) -> Any:
-    """Return what was typed, as TOML has it."""
+    """Return the value of a typed text in TOML's types."""
     if not text:
         return None
     try:

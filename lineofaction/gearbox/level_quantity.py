@@ -1,4 +1,4 @@
-"""What a scene is computed for: the bearing of a complaint, sound of a housing, the velocity of one."""
+"""The quantity whose level a scene is computed for: force on a bearing, sound or velocity of a housing."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ LOADING = threading.RLock()
 
 
 def load(entry: str) -> Any:
-    """Return what ``"module:name"`` names, its module imported now.
+    """Return the object of the address ``"module:name"``, and import its module now.
 
     Used where a start was measured: `loa --help` and `import lineofaction` load neither studies nor the
     libraries that compute.

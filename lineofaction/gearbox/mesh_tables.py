@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 Steps: TypeAlias = "Generator[Any, Any, T]"
-"""What is wanted of others on the way to a result: a source of tables that needs nobody yields nothing."""
+"""Generator that yields requests to others and returns a result. A source of tables that holds all it needs
+yields no request."""
 
 
 class _TableSource(Protocol):
-    """Who holds and computes STE databases."""
+    """A source of STE databases, which stores and computes them."""
 
     def by_hash(self, key: str) -> Steps[SteDatabase]:
         """Return the database of a content hash."""

@@ -31,13 +31,14 @@ class Fault:
     field: str
     """Dotted name as the user wrote it, e.g. ``"pair.pinion.teeth"``."""
     value: object
-    """What was given; None if nothing was."""
+    """Value of the input; None if the input has none."""
     bound: str
-    """What would be accepted, to be read after "must be"."""
+    """Description of the accepted values, to be read after "must be"."""
     suggestion: str = ""
-    """What to try."""
+    """Sentence on a remedy."""
     location: str = dataclasses.field(default="", compare=False)
-    """File and line, for those who wrote one; empty where none is known. It makes no other fault of it."""
+    """File and line of the input, where they are known, else empty. Faults that differ in it alone are equal.
+    """
 
     def __str__(self) -> str:
         text = f"{self.field} = {_value_text(self.value)}: must be {self.bound}"
@@ -66,7 +67,7 @@ def _value_text(value: object) -> str:
 
 
 def _pieces(value: object) -> Iterator[str]:
-    """Yield what `repr` would write, piece by piece, so that no more of a long list is written than shown."""
+    """Yield the text of `repr` piece by piece, so that of a long list only the shown part is written."""
     if type(value) is list:
         yield "["
         for index, item in enumerate(value):
@@ -196,7 +197,7 @@ class QueueFull(TryLater):
 
 
 class NotAnalyzed(_Failed):
-    """There is nothing to answer a live question from."""
+    """The service lacks what a live question is answered from."""
 
     status = 409
     type = f"{_OURS}not-analysed"
@@ -236,7 +237,7 @@ class MissingScope(_Refused):
 
 
 class NotFound(_Refused):
-    """No such process, job or result."""
+    """The named process, job or result does not exist."""
 
     status = 404
     type = f"{_OURS}not-found"
@@ -293,7 +294,7 @@ class _Outage(DatabaseUnavailable):
 
 
 class Unreachable(_Away):
-    """No service answers at the address."""
+    """The address answers with no service."""
 
     status = 503
     type = f"{_OURS}unreachable"

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SIGNS = {"scene": "shafts", "case": "pair"}
 _ENDINGS = (".toml", ".json")
 RUN, SOUND = f"run{SUFFIX}", "run.wav"
-"""Of a scene, in its project."""
+"""Names of the files of a scene's run and of its sound in a project."""
 
 Named = TypeVar("Named", InputFile, Path)
 
@@ -38,7 +38,7 @@ def file_of(named: InputFile, subject: str) -> InputFile:
 
 
 def files_of(named: InputFile, subject: str) -> list[InputFile]:
-    """Return what `file_of` does, of a folder with several cases each of them.
+    """Return the file of `file_of`, or all cases of a folder that has several.
 
     Raises `BadInput`: the folder holds no such file, or several scenes of other names.
     """
@@ -152,7 +152,7 @@ class ResultState:
 
     name: str
     verb: str
-    """`name`, `verb`: Of the file, relative to the folder, and of the verb that makes it."""
+    """`name`, `verb`: Name of the file relative to the folder, and the verb that writes the file."""
     state: str
     """Stale: a file of the folder that says what is computed is newer."""
     source: Path | None = None
@@ -219,7 +219,7 @@ def _chosen(tables: Mapping[Path, Mapping[str, Any]], kind: str) -> list[Path]:
 
 
 def _parts(tables: Mapping[Path, Mapping[str, Any]]) -> list[str]:
-    """Return what names of results begin with: of one case nothing."""
+    """Return the beginnings of names of results, one a case; empty for a single case."""
     cases = [path.stem for path in _chosen(tables, "case")]
     return cases if len(cases) > 1 else []
 

@@ -23,7 +23,7 @@ JSON = "application/json"
 SUFFIX = ".nc"
 """Ending of the files of results, which are netCDF."""
 RESULTS = "/v1/results"
-"""Where results are on the service, before their hash."""
+"""Path of the results on the service, before the hash of a result."""
 
 __all__ = [
     "ablate",
@@ -53,7 +53,7 @@ F_co = TypeVar("F_co", bound="Figures", covariant=True)
 
 
 class _Work(Protocol[Q, T_co, F_co]):
-    """A `Computation`, by what the types of its study follow from."""
+    """A `Computation` by the members that determine the types of its study."""
 
     @property
     def inputs(self) -> Callable[Q, object]: ...
@@ -358,9 +358,9 @@ study = Studies.study.function
 STUDIES: dict[str, StudyOf[..., ..., Any, Any]] = {
     row.name: row for row in vars(Studies).values() if isinstance(row, StudyOf)
 }
-"""By name."""
+"""Studies by their names."""
 FUNCTIONS = {row.package: row.function for row in STUDIES.values()}
-"""By name; those that an editor knows are listed above."""
+"""Functions of the studies by the names of their packages; the list above tells editors the same names."""
 
 RESULT_KINDS = ("database", "run", *(study.kind for study in STUDIES.values()))
 """Kinds of results, by their names in the store and in the results of a job."""

@@ -16,14 +16,14 @@ from model_studies.netcdf import opened_netcdf
 
 
 def figures_of(kind: str, file: Path) -> dict[str, Any]:
-    """Return what a stored file of a run or a study says, its warnings included."""
+    """Return the figures of a stored file of a run or a study, with its warnings."""
     study = study_of(kind)
     figures = run_json(file) if study is None else study.run.figures(study.run.file.read(file))
     return figures | {WARNINGS: stamped(file)}
 
 
 def making_of(file: Path) -> Json:
-    """Return what a result's netCDF file says of its making: case or scene, receipt, effects, versions."""
+    """Return the origin of a result by its netCDF file: case or scene, receipt, effects, versions."""
     with opened_netcdf(file) as content:
         return {name: _plain(value) for name, value in content.attrs.items()}
 

@@ -1,4 +1,4 @@
-"""What the files of results say of themselves: warnings, and the case that they were made of."""
+"""Facts that the files of results carry with them: warnings, and the case behind the result."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
 
 
 def stamp_scene(file: Path, metadata: Json) -> None:
-    """Write what the facts of a scene say of its complaint and its unit into the file of a result."""
+    """Write what the metadata of a scene say of its complaint and its unit into the file of a result."""
     with h5netcdf.File(file, "r+") as content:
         for name in (COMPLAINT, UNIT):
             if name in metadata:

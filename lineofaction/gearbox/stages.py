@@ -8,9 +8,9 @@ from typing import NamedTuple
 from model_studies.progress import Progress, by_cost, silent, stage_name
 
 _PACE_KNOWN = 0.1
-"""Fraction of a stage from which on its pace alone says what it takes."""
+"""Fraction of a stage from which on its pace alone predicts its time."""
 _FIRST = 0.8
-"""Share of what is left that a pass takes if another may follow: most passes are the last."""
+"""Share of the remaining work that a pass takes if another may follow: most passes are the last."""
 
 
 class Stage(NamedTuple):

@@ -36,22 +36,23 @@ STUDIES = "lineofaction.gearbox.studies"
 
 
 class _Caller(Protocol[S_contra, C_co]):
-    """Whose attributes the studies are, each as what this makes of it."""
+    """Owner of the attributes that are studies: it makes a process of each study."""
 
     def process(self, study: S_contra, /) -> C_co: ...
 
 
 @dataclass(frozen=True)
 class Takes(Generic[P, Q, T, F]):
-    """What a call of a study takes, and with its types what comes of it.
+    """Arguments of a call of a study, and by its type parameters the result.
 
-    The types are the parameters of a client's call, those of the study's inputs, its result, its figures.
+    The types are the parameters of a client's call, the parameters of the study's inputs, its result and its
+    figures.
     """
 
     subject: str
-    """What is studied."""
+    """Kind of input that is studied: a case, a scene, or either."""
     work: Callable[[], object]
-    """Loads the `Computation`."""
+    """Function that loads the `Computation`."""
     from_file: bool = False
     """Whether the inputs are a file of the verb and a mapping of the client, rather than options."""
     bare: bool = False
@@ -83,17 +84,17 @@ class Study:
     """A row of the registry."""
 
     takes: Takes[..., ..., Any, Any]
-    """What a call takes."""
+    """Arguments of a call."""
     title: str
     action: str
     description: str
-    """`title`, `action`, `description`: A noun, what the button of the page says, and an imperative sentence
-    of what is done.
+    """`title`, `action`, `description`: A noun, the words on the button of the page, and an imperative
+    sentence on the work.
     """
     example: str
     """Arguments of the verb."""
     group: str
-    """Under which the help lists the verb."""
+    """Group under which the help lists the verb."""
     kind: str
     """Kind of the result, which is the process' output too."""
     stages: tuple[tuple[str, float], ...]
@@ -104,24 +105,25 @@ class Study:
     """Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
     """
     further: tuple[str, ...] = ()
-    """Endings of files that the verb writes beside those of all studies. CSV can be printed too."""
+    """Endings of files that the verb writes in addition to the files of all studies. CSV can be printed too.
+    """
     several: bool = False
     """Whether the verb takes several files."""
     housed: bool = False
-    """Whether it is about a housing, which a scene then has by its solid."""
+    """Whether the study is of a housing, which the scene must then have as a solid."""
     aliases: tuple[str, ...] = ()
     """Other names of the verb's option ``--output``."""
     name: str = field(default="", init=False)
-    """Of package, process, verb and the client's method: its name among the `Studies`."""
+    """Name among the `Studies`; package, process, verb and the client's method have the same name."""
 
     @property
     def argument(self) -> str:
-        """Name of what is studied, as the client's method and the verb have it."""
+        """The name of the argument for case or scene in the client's method and the verb."""
         return "subject" if self.takes.subject == "case or scene" else self.takes.subject
 
     @property
     def package(self) -> str:
-        """Name of its package, and of what belongs to it in Python."""
+        """The name of the package, and of the study's members in Python."""
         return self.name.replace("-", "_")
 
     @property
@@ -136,20 +138,20 @@ class Study:
 
     @property
     def inputs(self) -> type[BoundaryModel]:
-        """Model of what is varied."""
+        """The model of the inputs."""
         inputs: type[BoundaryModel] = load(f"{STUDIES}.{self.package}:Inputs")
         return inputs
 
     @property
     def run(self) -> Work:
-        """Its work."""
+        """The work of the study."""
         work: Any = self.takes.work()
         loaded: Work = work
         return loaded
 
     @property
     def answer(self) -> type[Figures]:
-        """Model of its figures."""
+        """The model of the figures."""
         name = f"{self.name.title().replace('-', '')}Figures"
         figures: type[Figures] = load(f"{STUDIES}.{self.package}:{name}")
         return figures
@@ -163,7 +165,7 @@ class StudyFunction(Generic[Q, T]):
 
     @property
     def __doc__(self) -> str:  # type: ignore[override]
-        """What the study does, and its inputs."""
+        """The description of the study and of its inputs."""
         fields = self.study.inputs.model_fields.items()
         inputs = "".join(f"\n{name}: {field.description or ''}" for name, field in fields)
         return f"{self.study.description}\n{inputs}"

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fe_contact.options import Run
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from host import cpu_seconds
 from lineofaction.gearbox.convert.case import allowed_misalignment, boundary_errors, case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
@@ -140,13 +140,13 @@ class ComputedTables:
 
 def _pair_geometry(
     index: int, mesh: MeshInput, table_of: TableOf, cases: CheckedCases, warn: Warn, cached_table: CachedTable
-) -> PairFacts:
+) -> PairGeometry:
     """Return the facts of a mesh's pair; of a case without computing anything."""
     if mesh.case is None or cached_table(mesh.case) is not None:
-        return table_of(index, mesh).facts
+        return table_of(index, mesh).geometry
     field, checked = f"meshes[{index}]", cases.of(mesh.case)
     try:
         warn(within(warning, field) for warning in case_warnings(checked))
-        return PairFacts.of(checked.feasible.request.pair)
+        return PairGeometry.of(checked.feasible.request.pair)
     except BadInput as error:
         raise error.within(f"{field}.case") from None

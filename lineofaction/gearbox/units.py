@@ -1,4 +1,4 @@
-"""Units at the boundary: what one of each is in SI, by the ending of the fields' names."""
+"""Units at the boundary: the SI value of one unit, by the ending of the fields' names."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ UNITS: dict[str, Unit] = {
     "_mib": Unit("MiB"),
     "_mb": Unit("MB"),
 }
-"""The unit that the ending of a name states. An ending stands before those that it ends with."""
+"""Unit by the ending of a name. A longer ending stands before its own shorter endings."""
 
 BY_SUFFIX = {ending: unit for ending, unit in UNITS.items() if unit.factor != 1.0}
 """The endings of units that are not SI's."""
@@ -83,14 +83,14 @@ _OF_SI = {
 """The ending of a declared field by its unit; depths are in um."""
 
 ENDINGS = (*BY_SUFFIX, *_OF_SI.values(), "_n_per_m_n", "_m_per_s2", "_matrix")
-"""What may follow the name of a field at the boundary."""
+"""Endings of names of fields at the boundary."""
 
 _RENAMED = {"worth": "influence_m", "worth_relative": "relative_influence", "worths": "influences"}
 """Keys of effect ledgers in the files of runs and studies of former versions, and today's."""
 
 
 def suffix_of(declaration: Declared) -> str:
-    """Return how the boundary's name of a declared field ends."""
+    """Return the ending of a declared field's name at the boundary."""
     if declaration.written:
         return next(suffix for suffix, unit in BY_SUFFIX.items() if unit.name == declaration.written)
     return "_um" if declaration.kind in DEPTHS else _OF_SI.get(declaration.unit, "")
@@ -107,7 +107,7 @@ def unit_of(name: str) -> Unit | None:
 
 
 def unit_name(name: str) -> str | None:
-    """Return how the unit of the boundary field `name` is written; None where it is SI's or none."""
+    """Return the symbol of the unit of the boundary field `name`; None: the unit is SI's, or none."""
     unit = unit_of(name)
     return unit.name if unit else None
 

@@ -1,4 +1,4 @@
-"""What a Python user does with a gearbox, without a server: open, read, analyze, simulate, study."""
+"""Functions of a Python user without a server: open, read, analyze, simulate, study."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ from model_studies.workers.content_digest import content_digest
 
 
 class InputWarning(UserWarning):
-    """What is implausible about an input, or was left out of it."""
+    """Warning of an implausible input, or of a part that an import leaves out."""
 
 
 def open_unit(
@@ -206,7 +206,7 @@ def studied(
 
 
 def _as_written(study: Study, subject: Subject) -> tuple[CheckedCase | SceneInput, Path]:
-    """Return what is studied as written, and the folder of its files."""
+    """Return the case or scene of a study as written, and the folder of its files."""
     kind = study.takes.subject
     if kind == "scene" or (kind != "case" and _has_shafts(subject)):
         return _scene(subject)

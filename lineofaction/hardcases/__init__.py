@@ -61,4 +61,4 @@ HARD_SCENES: tuple[HardScene, ...] = tuple(
     )
     for scene in module.SCENES.listed
 )
-"""In the order in which `loa hardcases` and tests/stability run them."""
+"""Hard scenes in the sequence in which `loa hardcases` and tests/stability run them."""

@@ -1,4 +1,4 @@
-"""Noise that breaks what a table must be: an STE that falls with load."""
+"""Noise that makes a table invalid: an STE that falls with load."""
 
 from __future__ import annotations
 

@@ -200,7 +200,7 @@ def _nearly_parallel() -> Sequence[Measured]:
 
 
 def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
-    """Return how well force and STE are inverse to each other between zero and the highest load."""
+    """Return figures on force and STE as inverse functions between zero and the highest load."""
     rng = np.random.default_rng(_SEED)
     force = rng.uniform(0.0, float(table.force[-1]), x.size)
     deflection = table.ste(x, force)
@@ -213,7 +213,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
 
 
 def _slope_error(table: SteDatabase) -> Measured:
-    """Return how far the stated stiffness is from the difference of forces."""
+    """Return the difference of the stated stiffness from the difference quotient of forces."""
     rng = np.random.default_rng(_SEED)
     x, force = rng.uniform(0.0, 1.0, 500), rng.uniform(100.0, 4900.0, 500)
     deflection = table.ste(x, force)

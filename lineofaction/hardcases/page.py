@@ -1,4 +1,4 @@
-"""The hard scenes on a page: what each must obey, how close it came to its bounds, how long it took."""
+"""The hard scenes on a page: the law of each, the margin to its bounds, and the time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hard scenes: why they are hard, what they must obey, what was measured."""
+"""Hard scenes: the reason why each is hard, its law, and its measured figures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from host import cpu_seconds
 
 TIME_LIMIT = 60.0
-"""Seconds after which a scene is ended from outside, unless it says otherwise."""
+"""Seconds after which a scene is ended from outside, unless the scene states another limit."""
 
 _M = TypeVar("_M", bound="Callable[[], Sequence[Measured]]")
 
@@ -21,11 +21,11 @@ class Measured:
     """One figure of a scene, and the bounds that physics gives it; without bounds it only informs."""
 
     name: str
-    """What it is, with its unit unless it is a pure number."""
+    """Name of the figure, with its unit unless it is a pure number."""
     value: float
     maximum: float | None = None
     minimum: float | None = None
-    """`maximum`, `minimum`: The figure passes within them, both included."""
+    """`maximum`, `minimum`: Bounds within which the figure passes, both included."""
 
     @property
     def passed(self) -> bool:
@@ -64,10 +64,11 @@ class HardScene:
 
     name: str
     family: str
-    """`name`, `family`: Its name, and "contact", "table", "dynamics" or "service"."""
+    """`name`, `family`: Name of the scene, and "contact", "table", "dynamics" or "service"."""
     hard_because: str
     criterion: str
-    """`hard_because`, `criterion`: What makes it hard; what must hold, from physics, in words."""
+    """`hard_because`, `criterion`: Reason why the scene is hard, and the physical law that must hold, in
+    words."""
     measure: Callable[[], Sequence[Measured]]
     """Computes the scene and returns its figures; a function of a module, so that it can be sent to another
     process.
@@ -105,13 +106,13 @@ class Outcome:
 
     scene: HardScene
     figures: tuple[Measured, ...]
-    """Empty where it did not end."""
+    """Figures of the scene; empty if the scene was ended early."""
     seconds: float
-    """Elapsed."""
+    """Elapsed time in seconds."""
     ended_by: str = ""
-    """What ended it before its time: an exception, a crash, the time limit; empty if nothing did."""
+    """Cause of an early end: an exception, a crash, the time limit; empty: the scene ran to its end."""
     cpu_seconds: float = 0.0
-    """CPU time, of the processes it started too; 0 where it did not end."""
+    """CPU time including the processes that the scene started; 0 after an early end."""
 
     @property
     def passed(self) -> bool:

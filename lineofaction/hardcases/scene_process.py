@@ -1,4 +1,4 @@
-"""Scenes one after the other in a process of their own: a crash or a hang ends one scene, not the suite."""
+"""Scenes one after the other in a child process: a crash or a hang ends one scene, not the suite."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def run_scenes(scenes: Sequence[HardScene]) -> Iterator[Outcome]:
 
 
 class _Worker:
-    """The process, and the pipe to it."""
+    """The child process, and its pipe."""
 
     def __init__(self) -> None:
         context = multiprocessing.get_context("spawn")

@@ -6,13 +6,13 @@ import math
 
 import numpy as np
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.types import FloatArray
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
 COMPLIANCE = 2.5e-9
-"""m/N of a pair of teeth."""
-_GEOMETRY = PairFacts(
+"""Compliance of a pair of teeth, m/N."""
+_GEOMETRY = PairGeometry(
     teeth=(20, 20),
     base_radius=(BASE_RADIUS, BASE_RADIUS),
     base_pitch=2.0 * math.pi * BASE_RADIUS / 20,
@@ -58,7 +58,7 @@ def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off:
         status=np.zeros(grid),
         error_estimate=np.full(grid, 1e-9),
         residuals=np.zeros((*grid, 4)),
-        facts=_GEOMETRY,
+        geometry=_GEOMETRY,
         metadata=Metadata(),
     )
 

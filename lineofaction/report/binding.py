@@ -1,4 +1,4 @@
-"""Reports of the parts of one unit bound as one: what several say of the same stands side by side, once."""
+"""Binding of the reports of a unit's parts: figures of several parts stand side by side, once."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ def _trimmed(title: list[str]) -> list[str]:
 
 
 def _said(texts: Mapping[str, str]) -> str:
-    """Return what texts say: sentences of all of them once, then the others by part."""
+    """Return the texts of all parts as one: sentences of all parts once, then the others by part."""
     sentences = {name: _SENTENCE.split(text) for name, text in texts.items() if text}
     if not sentences:
         return ""

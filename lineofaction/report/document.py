@@ -1,4 +1,4 @@
-"""From result files to the report: what is read, the page, its JSON, and the files written."""
+"""The report from result files: reading, the page, its JSON, and the written files."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _READERS: dict[str, tuple[tuple[str, str], Callable[[Path], Any]]] = {
     "database": (("format", "lineofaction STE database"), SteDatabase.from_netcdf),
     "run": (("schema", "lineofaction dynamics run"), RunResult.from_netcdf),
 }
-"""Attribute of the file, and what reads it."""
+"""Attribute that identifies a file, and the reader of the file, by kind."""
 
 
 def stored_study(attributes: Mapping[str, object]) -> Study | None:
@@ -87,7 +87,7 @@ def page_with_database(study: Study, result: object, database: SteDatabase | Non
 
 @dataclass(frozen=True)
 class Inputs:
-    """The results that were read; at least one of them.
+    """The results of a report, at least one.
 
     `pages` are those of studies, by the kind of their results; `warnings` are those of all files, in words;
     `view` is what of the run is shown, `marks` what its scene complains of, `unit` the bodies that this is
@@ -227,7 +227,7 @@ def _page_of(read: Inputs) -> Page:
         alarms += dynamic_alarms(run)
     parts = []
     if read.database is not None:
-        parts.append(pair_lead(read.database.facts))
+        parts.append(pair_lead(read.database.geometry))
     elif len(read.pages) == 1:
         parts += [page.lead for page in read.pages.values() if page.lead]
     if read.run is not None:
@@ -267,12 +267,12 @@ def nominal_force(read: Inputs) -> float | None:
     """Return the normal force in N that the run's load asks of the database's pair; None where it idles."""
     if read.run is None or read.database is None or read.run.nominal_force[0] <= 0.0:
         return None
-    return float(read.run.nominal_force[0]) / math.cos(read.database.facts.base_helix_angle)
+    return float(read.run.nominal_force[0]) / math.cos(read.database.geometry.base_helix_angle)
 
 
 def _title(read: Inputs) -> str:
     if read.database is not None:
-        return pair_title(read.database.facts)
+        return pair_title(read.database.geometry)
     if not read.pages:
         return "Dynamics of geared shafts"
     of = " or ".join(study.takes.subject for study in STUDIES.values() if study.kind in read.pages)

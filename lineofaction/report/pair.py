@@ -1,4 +1,4 @@
-"""A pair: its name, what speaks against it, its drawing and its data sheet."""
+"""A pair in a report: its name, its warnings, its drawing and its data sheet."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from fe_contact.geometry.flank_tolerances import helix_tolerance, profile_tolera
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.plausibility import mesh_findings
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from fe_contact.types import IntArray, Json
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.outline import pair_outline
@@ -72,7 +72,7 @@ _SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
 _HEIGHT = 3.4
 """Modules drawn above and below the pitch point."""
 _WIDTH = 3.4
-"""Width of the drawing over its height, nearly that of a panel."""
+"""Width of the drawing over its height, nearly the ratio of a panel."""
 _UNITS: Mapping[str, float] = {"": 1.0, "mm": MM, "um": UM, "deg": DEGREE}
 _DECIMALS = {"": 4, "mm": 4, "um": 1, "deg": 4}
 _SYMBOLS = {"um": "µm", "deg": "°"}
@@ -133,13 +133,13 @@ def _parts(kind: Callable[..., object], content: Json | list[Json]) -> object:
     return kind(**_fields(content))
 
 
-def pair_title(geometry: PairFacts) -> str:
+def pair_title(geometry: PairGeometry) -> str:
     """Name a pair by its teeth."""
     one, other = geometry.teeth
     return f"Gear pair {one}/{other}, internal" if geometry.internal else f"Gear pair {one}/{other}"
 
 
-def pair_lead(geometry: PairFacts) -> str:
+def pair_lead(geometry: PairGeometry) -> str:
     """Say the dimensions of a pair."""
     return (
         f"center distance {1e3 * geometry.center_distance:.6g} mm, "
@@ -337,7 +337,7 @@ class Entry:
 
     @property
     def name(self) -> str:
-        """Its name in JSON, with the unit."""
+        """The name of the quantity in JSON, with the unit."""
         label = self.term.replace(" ", "_").replace("-", "_")
         return f"{label}_{self.unit}" if self.unit else label
 

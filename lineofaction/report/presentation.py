@@ -1,4 +1,4 @@
-"""How a study shows its result: its figure, its page, its text, each in the file of its name."""
+"""Presentation of a study's result: its figure, its page, its text, each in the file of its name."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.convert.scene_effects import assumed_lines, beyond_lines, scene_table
 from lineofaction.gearbox.loading import LOADING, load
 from lineofaction.gearbox.studies.bodies import UNIT
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.gearbox.study import Study
 from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table
@@ -42,7 +43,7 @@ class Presentation:
 
 
 def presentation_of(study: Study) -> Presentation:
-    """Return how a study shows its result; its file, in the folder of its subject, is loaded on demand."""
+    """Return the presentation of a study; its file, in the folder of its subject, is loaded on demand."""
     files = (f"{__package__}.{subject}.{study.package}" for subject in _SUBJECTS)
     with LOADING:
         presentation: Presentation = load(f"{next(filter(find_spec, files))}:PAGE")
@@ -62,7 +63,7 @@ def _of_its_unit(presentation: Presentation) -> Presentation:
     def page(result: Any) -> Page:
         marks, plain = marks_of(result), presentation.page(result)
         complete = plain if marks is None else marked_page(plain, marks)
-        return with_picture(complete, getattr(result, "facts", {}).get(UNIT))
+        return with_picture(complete, metadata_of(result).get(UNIT))
 
     return replace(presentation, figure=figure, page=page)
 
@@ -73,15 +74,15 @@ def dynamics_presentation(
     headlines: Callable[[Any], tuple[Headline, ...]],
     text: Callable[[Any], Iterable[Table | str]],
 ) -> Presentation:
-    """Return how a study of a scene shows its result, whose `facts` say what its model neglects."""
+    """Return the presentation of a study of a scene, whose metadata say what its model neglects."""
 
     def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)
-        yield from model_text(result.facts)
+        yield from model_text(result.metadata)
 
     return Presentation(
         lambda result: figures(result)[0],
-        lambda result: dynamics_page(title, figures(result), headlines(result), result.facts),
+        lambda result: dynamics_page(title, figures(result), headlines(result), result.metadata),
         complete_text,
     )
 

@@ -26,7 +26,7 @@ def teeth_as_made(pair: ParallelAxes) -> tuple[Figure, ...]:
 def excess_of_teeth(
     pair: ParallelAxes, model: ContactModel, gear: int, roll: FloatArray, face: FloatArray
 ) -> FloatArray:
-    """Return how far the teeth of a gear stand towards its mate where they touch it, (z, R, Z) in m.
+    """Return the excess of a gear's teeth towards the mate at the points of contact, (z, R, Z) in m.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The title block of a report: what it is about, and whether its figures reach what is required of them."""
+"""The title block of a report: its subject, and verdicts on the required figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Motions of a unit by a stored result, for the page: what there is, and one of them at even stations."""
+"""Motions of a unit by a stored result, for the page: a list of the motions, and one at even stations."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from lineofaction.gearbox.units import MM
 from lineofaction.report.document import of_the_store, read_stored
 
 STATIONS = 33
-"""Along a shaft."""
+"""Number of stations along a shaft."""
 MAX_FACETS = 60_000
-"""Of a surface: one with more is drawn by the corners of its triangles."""
+"""Most facets of a surface; a surface with more is drawn by the corners of its triangles."""
 VELOCITY_REFERENCE = 5e-8
-"""m/s, root mean square, of 0 dB: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
+"""Velocity of 0 dB, m/s, root mean square: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
 QUIETEST = 1e-8  # of the reference
 _LENGTHS = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], dtype=bool)
 

@@ -1,4 +1,4 @@
-"""A picture of the gear unit that a result is of, with the names of its shafts and gears."""
+"""A picture of the gear unit of a result, with the names of its shafts and gears."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from lineofaction.report.drawing.page import Page, Section
 SIZE = (1000, 560)
 """Pixels across and down."""
 ABOVE, EDGE = 14.0, 6.0
-"""Pixels above and below the unit, and beside its names."""
+"""Pixels above and below the unit, and at the sides of its names."""
 COLORS = {
     SHAFT: (0.62, 0.64, 0.67),
     BEARING: (0.42, 0.46, 0.52),
@@ -33,7 +33,7 @@ COLORS = {
     WHEEL: (0.82, 0.66, 0.52),
     HOUSING: (0.50, 0.55, 0.60),
 }
-"""As the page has them."""
+"""Colors of bodies by kind, the same as on the page of the service."""
 DPI, TYPE = 100, 8.5
 CHARACTER, ROW, LONGEST = 7.4, 16.0, 24
 """Pixels of a character across and of a row of names; the most characters of a name."""
@@ -84,7 +84,7 @@ def is_picture(section: Section) -> bool:
 
 
 def _alternative(bodies: Sequence[Body]) -> str:
-    """Say how many shafts, gears and bearings there are, and name them."""
+    """Return a text with the numbers and names of shafts, gears and bearings."""
     counts = [
         (sum(body.kind in kinds for body in bodies), word)
         for kinds, word in (((SHAFT,), "shaft"), ((PINION, WHEEL), "gear"), ((BEARING,), "bearing"))

@@ -1,4 +1,4 @@
-"""The hash of what a task is made of, the same in every process that makes the same task."""
+"""The hash of the inputs of a task, equal in every process that makes the same task."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from enum import Enum
 import numpy as np
 
 HOW_IT_CAME = ("from_cache", "seconds")
-"""Fields that say how a thing was computed, not what it is."""
+"""Fields that record how a result was computed; they are no part of its content."""
 
 
 def content_digest(content: object) -> str:

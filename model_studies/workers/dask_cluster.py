@@ -24,16 +24,17 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 PATIENCE_S = 60.0
-"""How long a cluster may be without any worker: those of a nanny come back within seconds."""
+"""Longest time of a cluster without any worker, s. Workers of a nanny come back within seconds."""
 _LOOK_S = 1.0
-"""How often it is looked whether there are any."""
+"""Interval at which the workers of a cluster are counted, s."""
 _AT_ONCE = 256
-"""Results that are fetched by one message, at most."""
+"""Largest number of results that one message fetches."""
 MAX_RESULTS = 64
-"""Results of `cluster_cached` tasks that stay in a cluster: a gear over its face has up to 100 MB."""
+"""Number of results of `cluster_cached` tasks that stay in a cluster. A gear over its face has up to 100 MB.
+"""
 _PREFIX = "kept-"
 CONNECT_S = 10.0
-"""How long a scheduler may take to answer."""
+"""Longest wait for the answer of a scheduler, s."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Executors of tasks, and what travels to them: in this process, or by a pool of the standard library."""
+"""Executors of tasks and the transport of their inputs: this process, or a pool of the standard library."""
 
 from __future__ import annotations
 
@@ -20,18 +20,24 @@ from typing import Any, Generic, Protocol, TypeVar
 from host import children_cpu_seconds, cpu_seconds, peak_memory
 
 MAX_SHARED = 2
-"""Shared things that a thread of a worker keeps: what it prepared of one serves all its tasks."""
+"""Number of shared inputs that a thread of a worker keeps. An input that it prepared once serves all its
+tasks.
+"""
 _local = threading.local()
 R = TypeVar("R")
 S = TypeVar("S")
 T = TypeVar("T")
 LARGE = 100_000
-"""Bytes; what tasks share beyond that goes by a file and not with each of them."""
+"""Size above which the shared input of tasks goes by a file, not with each task, bytes."""
 Function = TypeVar("Function", bound=Callable[..., Any])
 START_SECONDS = 10.0
-"""CPU seconds that pay for two new processes, which load program and compiled code: less work stays here."""
+"""Least predicted CPU seconds of tasks for which two new processes are started, which load program and
+compiled code. Less work stays in this process.
+"""
 AWAKE = 0.1
-"""Part of it that pays for workers that have done tasks: they may have to load what others need."""
+"""Part of `START_SECONDS` from which workers that have done tasks get further ones: they may have to load the
+inputs of other tasks.
+"""
 
 
 class WorkersLost(Exception):
@@ -56,13 +62,13 @@ class Packed:
         return cls(content, hashlib.sha256(content).hexdigest())
 
     def in_file(self, folder: Path) -> Packed:
-        """Put it into a file of the folder."""
+        """Write the shared input into a file of the folder."""
         file = folder / self.digest
         file.write_bytes(self.content)
         return Packed(b"", self.digest, file)
 
     def unpacked(self) -> Any:
-        """Return it; the same object for all tasks of a thread, so that what it keeps is kept."""
+        """Return the shared input, one object for all tasks of a thread, so that its caches last."""
         known: dict[str, Any] = _local.__dict__.setdefault("known", {})
         if self.digest not in known:
             while len(known) >= MAX_SHARED:
@@ -73,7 +79,7 @@ class Packed:
 
 
 class _PassedFiles:
-    """A folder for what goes to other processes of this machine; it ends with the last reference to it."""
+    """A folder for inputs that other processes of the machine read; it ends with the last reference to it."""
 
     @cached_property
     def path(self) -> Path:
@@ -101,7 +107,7 @@ class RunCost:
     lost: str = ""
 
     def since(self, before: RunCost) -> RunCost:
-        """Return what was spent after another reading of the same; the peak is that of all."""
+        """Return the cost since an earlier reading of the same cost; the peak is that of the whole time."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
         return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
@@ -115,7 +121,7 @@ class RunCost:
 
 @dataclass(frozen=True)
 class _Done(Generic[R]):
-    """The result of one task, and what it cost its worker."""
+    """The result of one task, and its cost for the worker."""
 
     result: R
     cpu_seconds: float
@@ -252,7 +258,7 @@ def cluster_cached(function: Function) -> Function:
 
 @dataclass(frozen=True)
 class OrHere:
-    """Workers that may be lost; what they leave is done in this process.
+    """Workers that may be lost; tasks that they leave are done in this process.
 
     `on_loss` is called once, with the reason, when they are lost; nobody looks for them again.
     """

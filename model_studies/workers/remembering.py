@@ -22,7 +22,7 @@ _CHECKSUM = 32
 
 @dataclass(frozen=True)
 class Remembering:
-    """Workers with a folder for what they did.
+    """Workers with a folder that stores their results.
 
     The folder is of this study alone, as its files are unpickled, and the caller's to remove. Results of
     another `version` of what computes are not taken.
@@ -39,7 +39,7 @@ class Remembering:
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield what is kept, and what the others find; that is kept."""
+        """Yield stored results and new ones; the new ones are stored."""
         files = self._files(function, shared, items)
         if files is None:
             yield from self.others.run(function, shared, items)

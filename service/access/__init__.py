@@ -1,1 +1,1 @@
-"""Access to the service: keys kept as hashes, what their holders may do, and how much of it."""
+"""Access to the service: keys stored as hashes, the rights of their holders, and their limits."""

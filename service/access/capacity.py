@@ -1,4 +1,4 @@
-"""How much callers may ask: the rate of one, what they hold at the same time, and the capacity for all."""
+"""Limits of callers: requests of one caller per minute and at the same time, and the capacity for all."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from service.access.quotas import Quota
 
 _RETRY_S = 1
 NOBODY = ""
-"""Holder of what callers without a key hold."""
+"""Name of the holder that stands for all callers without a key."""
 
 logger = structlog.get_logger(__name__)
 _MINUTE_S = 60.0
@@ -46,7 +46,7 @@ class Usage:
         self._what, self._in_all, self._counts = what, in_all, Counter[str]()
 
     def number(self, name: str) -> int:
-        """Return how many a holder has."""
+        """Return the number that a holder has in use."""
         return self._counts[name]
 
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
@@ -93,7 +93,7 @@ class RateLimits:
         return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
 
     def quota(self, key: Holder) -> Quota | None:
-        """Return what a holder has left; None: it has no limit."""
+        """Return the quota of a holder and its remainder; None: no limit."""
         limit = key.requests_per_minute
         if limit is None:
             return None
@@ -111,16 +111,16 @@ class RateLimits:
 
 @dataclass(frozen=True)
 class Capacity:
-    """What one server process bears.
+    """Capacity of one server process.
 
-    `connections`: open HTTP connections on which requests are under way.
+    `connections`: most open HTTP connections with requests under way.
     """
 
     connections: int = _MAX_CONNECTIONS
 
     @property
     def comfortable_connections(self) -> int:
-        """Connections beyond which the one that has been idle for longest makes room."""
+        """The number of connections beyond which the connection that has been idle for longest is closed."""
         return self.connections * 5 // 8
 
     @property
@@ -135,7 +135,7 @@ class Capacity:
 
 
 def capacity(workers: int) -> Capacity:
-    """Return what this process bears beside so many workers of its own.
+    """Return the capacity of this process next to its worker processes.
 
     Raises `BadInput`: it may open too few files to serve at all.
     """

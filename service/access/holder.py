@@ -1,4 +1,4 @@
-"""Who sends a request: the name, scopes and limits of a caller."""
+"""The sender of a request: the name, scopes and limits of a caller."""
 
 from __future__ import annotations
 
@@ -42,24 +42,24 @@ class Holder:
     """A known caller."""
 
     name: str
-    """Stands in the log and beside jobs."""
+    """Name in the log and in jobs."""
     project: str = COMMON
-    """Whose jobs and results are seen."""
+    """Project whose jobs and results the caller sees."""
     scopes: tuple[Scope, ...] = EVERY_SCOPE
     expires: str | None = None
-    """The instant from which the caller is refused, RFC 3339, UTC; None: none."""
+    """Instant from which the caller is refused, RFC 3339, UTC; None: never."""
     requests_per_minute: int | None = None
-    """Beyond it requests are answered with 429; None: no limit."""
+    """Requests per minute, beyond which a request is answered with 429; None: no limit."""
     unfinished_jobs: int | None = None
-    """Jobs that may wait or run at the same time; None: no limit but the queue's."""
+    """Most jobs that wait or run at the same time; None: no limit but the queue's."""
     highest_priority: int | None = None
-    """That jobs may have, -9 to 9; None: any."""
+    """Highest priority of the caller's jobs, -9 to 9; None: any."""
     max_cost_s: int | None = None
     """CPU seconds that each job may take; None: no limit."""
     connections: int | None = None
-    """Requests answered at the same time, and bodies under way; None: a share of the server's."""
+    """Most requests answered at the same time, including bodies under way; None: a share of the server's."""
     streams: int | None = None
-    """Event streams open at the same time; None: no limit but the server's."""
+    """Most event streams open at the same time; None: no limit but the server's."""
 
     @property
     def limits(self) -> dict[str, int | None]:

@@ -1,4 +1,4 @@
-"""Who a request comes from, by what it presents: a key, or a token of an OpenID Connect issuer."""
+"""Identity of the sender of a request, by an access key or a token of an OpenID Connect issuer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The public keys of an OpenID Connect issuer: fetched from it alone, and anew when they change."""
+"""The public keys of an OpenID Connect issuer: fetched from the issuer, and anew when they change."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ from lineofaction.gearbox.problems import IssuerUnavailable, Unauthorised
 Json = dict[str, Any]
 logger = structlog.get_logger(__name__)
 FRESH_S, STALE_S = 3600.0, 86_400.0
-"""Keys are fetched anew after so long; while the issuer does not answer they are good for so long."""
+"""Seconds after which keys are fetched anew, and seconds for which keys stay valid while the issuer does not
+answer."""
 PAUSE_S = 10.0
-"""Between attempts: tokens with made-up key identifiers do not make us ask more often."""
+"""Seconds between attempts to fetch keys: tokens with made-up key identifiers cause no more attempts."""
 _TIMEOUT_S = 5.0
 _LARGEST = 1_000_000
 _DISCOVERY = "/.well-known/openid-configuration"
@@ -91,7 +92,7 @@ class Issuer:
         return {key["kid"]: key for key in keys if "kid" in key and key.get("use", "sig") == "sig"}
 
     def _discovered(self, http: httpx2.Client) -> str:
-        """Return where the issuer says its keys are; raise ValueError if that is not its own host."""
+        """Return the address of the issuer's keys by its configuration; raise ValueError: another host."""
         document = _document(http, self.url.rstrip("/") + _DISCOVERY)
         address = str(document["jwks_uri"])
         if document["issuer"] != self.url or _host(address) != _host(self.url):

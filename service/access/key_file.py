@@ -19,11 +19,11 @@ from service.access.holder import LIMITS, Holder, Scope, instant_of
 from service.project import COMMON, PROJECT
 
 SOON = timedelta(days=7)
-"""A key that ends within this is mentioned in the log."""
+"""Time before the expiry of a key from which the log mentions the key."""
 _DURATION = re.compile(r"([1-9][0-9]{0,4})([hdw])")
 _UNITS = {"h": timedelta(hours=1), "d": timedelta(days=1), "w": timedelta(weeks=1)}
 MIN = {"highest_priority": -9}
-"""Of limits; of others 1."""
+"""Least values of limits; the least value of a limit that is not listed is 1."""
 PREFIX = "loa_"
 """Beginning of every key."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
@@ -47,9 +47,9 @@ class AccessKey(Holder):
     """The record of a key, which names its holder."""
 
     sha256: str
-    """Of the key, hexadecimal."""
+    """SHA-256 of the key, hexadecimal."""
     created: str
-    """RFC 3339, UTC."""
+    """Instant of creation, RFC 3339, UTC."""
 
 
 def _record_of(entry: dict[str, Any]) -> AccessKey:

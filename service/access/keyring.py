@@ -75,7 +75,7 @@ class Keyring:
         self._stamp = stamp
 
     def _stamp_now(self) -> _Stamp:
-        """Return what changes whenever the file does."""
+        """Return a stamp of the file that changes whenever the file does."""
         try:
             status = self._file.path.stat()
         except OSError:

@@ -1,8 +1,8 @@
-"""What a key has left of its shares, as HTTP says it in the fields RateLimit-Policy and RateLimit.
+"""Shares of a key that are left, as HTTP states them in the fields RateLimit-Policy and RateLimit.
 
-The fields are lists of Structured Fields (RFC 9651) as of draft-ietf-httpapi-ratelimit-headers: a policy has
-the quota `q`, its window `w` in s and its unit `qu`, a limit what remains, `r`, and the seconds `t` after
-which all of the quota is there again.
+The fields are lists of Structured Fields (RFC 9651) as of draft-ietf-httpapi-ratelimit-headers. A policy has
+the quota `q`, its window `w` in s and its unit `qu`. A limit has the remainder `r`, and the seconds `t` after
+which the whole quota is available again.
 """
 
 from __future__ import annotations
@@ -15,20 +15,20 @@ POLICY, LIMIT = "RateLimit-Policy", "RateLimit"
 
 @dataclass(frozen=True)
 class Quota:
-    """A share of one key."""
+    """A share of the service that one key may take."""
 
     name: str
-    """Of the policy, letters and hyphens."""
+    """Name of the policy, letters and hyphens."""
     maximum: int
-    """The quota."""
+    """Size of the quota."""
     left: int
-    """What remains of it."""
+    """Remainder of the quota."""
     unit: str = ""
-    """Of what it is, as the draft registers it; empty: requests."""
+    """Unit of the quota, as the draft registers it; empty: requests."""
     window_s: int | None = None
-    """In which so many may come; None: so many at the same time."""
+    """Window of the quota in s; None: the quota holds at any instant."""
     full_s: int | None = None
-    """After which all of it is there again; None: as soon as others end."""
+    """Seconds after which the whole quota is available again; None: as soon as others end."""
 
     @property
     def policy(self) -> str:
@@ -39,7 +39,7 @@ class Quota:
 
     @property
     def limit(self) -> str:
-        """What remains as an item of RateLimit."""
+        """The remainder as an item of RateLimit."""
         full = "" if self.full_s is None else f";t={self.full_s}"
         return f'"{self.name}";r={max(self.left, 0)}{full}'
 

@@ -17,25 +17,27 @@ from service.project import COMMON, PROJECT
 
 Json = dict[str, Any]
 ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "EdDSA")
-"""Signatures that only the holder of a private key makes (RFC 7518, RFC 8037): no others can be allowed."""
+"""Signatures that only the holder of a private key makes (RFC 7518, RFC 8037). Other algorithms cannot be
+allowed."""
 _LEEWAY_S = 30
 _LONGEST_NAME = 200
 _REQUIRED = ["exp", "iss", "aud"]
 
 
 class OidcSettings(BaseSettings):
-    """What tokens are accepted, and what their claims mean."""
+    """Settings of the accepted tokens and the meaning of their claims."""
 
     model_config = SettingsConfigDict(env_prefix="LOA_OIDC_", frozen=True)
 
     issuer: str | None = None
-    """Claim ``iss`` of its tokens, and where its keys are found; None: no tokens are accepted."""
+    """Claim ``iss`` of accepted tokens, and the address of the issuer's keys; None: no tokens are accepted.
+    """
     audience: str = ""
-    """This service, as the claim ``aud`` names it."""
+    """Claim ``aud`` that names this service."""
     algorithms: str = "RS256,ES256"
-    """Of `ALGORITHMS`, separated by commas."""
+    """Accepted signatures among `ALGORITHMS`, separated by commas."""
     keys_url: str | None = None
-    """Where the issuer publishes its keys, if that is on another host; None: as its configuration says."""
+    """Address of the issuer's keys on another host; None: the address in the issuer's configuration."""
     name_claim: str = "sub"
     project_claim: str | None = None
     scopes_claim: str = "scope"
@@ -43,7 +45,7 @@ class OidcSettings(BaseSettings):
     path with dots leads into objects. Without a project claim all tokens are of the common project.
     """
     scope_prefix: str = "loa:"
-    """Beginning of our scopes among those of others."""
+    """Beginning of this service's scopes among the scopes of others."""
 
     @property
     def allowed(self) -> list[str]:

@@ -37,7 +37,7 @@ def json_body(content: Json) -> bytes:
 
 
 def json_body_or_memory_error(content: Json) -> bytes:
-    """Return the same, with a `MemoryError` where there is no memory for it."""
+    """Return the JSON body as `json_body`, with a `MemoryError` if the memory is too small for it."""
     return json.dumps(content, allow_nan=False, separators=(",", ":")).encode()
 
 

@@ -1,4 +1,4 @@
-"""Answers that are kept: they depend on stored results and on this program only."""
+"""Cache of answers that depend on stored results and on this program only."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MAX_BYTES = 200_000_000
 
 
 class KeptAnswers:
-    """Bodies of answers in a folder, by tag; what was not used for longest goes first.
+    """Bodies of answers in a folder, by tag; the longest unused go first.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The live worker process: many short questions, one after the other, with what they share kept in memory.
+"""The live worker process: many short questions one after the other, with shared state in memory.
 
 Started as ``python -m service.live.child DESCRIPTOR`` in a session of its own. Orders are frames on standard
 input: first its `Share`, then questions; one of the kind "stop" stops the work on one of them, by its number.
@@ -25,16 +25,16 @@ from service.live.order import LiveOrder
 from service.worker.usage import begin_work, hold_to
 
 _NICENESS = 5
-"""Less than that of jobs: somebody waits for the answer."""
+"""Niceness of live workers, less than that of jobs: somebody waits for the answer."""
 
 
 @dataclass(frozen=True)
 class Share:
-    """What a live worker has of the machine."""
+    """Share of the machine that a live worker has."""
 
     memory_mb: int
     drafts: str
-    """Folder of its temporary files, which the service removes however it ends."""
+    """Folder of the worker's temporary files, which the service removes however the worker ends."""
 
     def frame(self) -> Frame:
         """Return the message that carries it."""

@@ -14,12 +14,12 @@ LiveWork = Callable[..., Json]
 
 @dataclass(frozen=True)
 class LiveOrder:
-    """One question."""
+    """A question to a live worker."""
 
     entry: str
     """``"module:function"``, called as ``function(inputs)``; it returns plain JSON."""
     inputs: Json
-    """Plain JSON."""
+    """Argument of the function, plain JSON."""
 
     def frame(self) -> Frame:
         """Return the message that carries it."""

@@ -23,14 +23,15 @@ _RETRY_S = 1
 
 @dataclass(frozen=True)
 class Asker:
-    """Who asks a question."""
+    """The sender of a question."""
 
     key: str = NOBODY
     """Name of the access key."""
     slider: str | None = None
-    """Name that the caller gives to questions of which the newest counts; it is one of the key's alone."""
+    """Name that the caller gives to questions of which only the newest counts; each key has names of its own.
+    """
     submits: bool = False
-    """Whether a submission waits for the answer: it has a line of its own, before all others."""
+    """Whether a submission waits for the answer. Such a question has a line of its own, before all others."""
 
 
 @dataclass
@@ -40,12 +41,13 @@ class Question:
     order: LiveOrder
     asker: Asker = Asker()
     subject: str = ""
-    """What a worker that has answered a like question has in memory already."""
+    """Subject of the question. A worker that has answered a question on the same subject still has it in
+    memory."""
     lasting: bool = False
-    """Whether the work on it serves later questions about its subject, so that it is not stopped for them."""
+    """Whether later questions about the subject profit from the work, which is then not stopped for them."""
     answer: Future[bytes] = field(default_factory=Future)
     obsolete: bool = False
-    """Whether the same slider has asked something newer."""
+    """Whether the same slider has sent a newer question."""
 
     def refuse(self, error: Exception) -> None:
         """End the question with an error, if nobody answers it."""
@@ -55,24 +57,24 @@ class Question:
 
 @dataclass(frozen=True)
 class Limits:
-    """Most questions of one key and in all.
+    """Most questions of one key and of all keys.
 
     Without keys all callers are one to the service: for them only the last one holds.
     """
 
     answered: int = 1
-    """Of a key, at the same time."""
+    """Most questions of a key that are answered at the same time."""
     outstanding: int = 2
-    """Of a key, answered and waiting."""
+    """Most questions of a key, answered and waiting."""
     submissions: int = 8
-    """Of a key, answered and waiting, for which submissions wait."""
+    """Most questions of a key for which submissions wait, answered and waiting."""
     in_all: int = 20
-    """Of all keys, answered and waiting."""
+    """Most questions of all keys, answered and waiting; without keys all callers count as one key."""
 
 
 @dataclass(frozen=True)
 class _Line:
-    """Names a line: those of submissions come first."""
+    """Name of a line; lines of submissions come first."""
 
     submits: bool
     key: str
@@ -145,7 +147,7 @@ class Turns:
             del self._lines[line]
 
     def _busy(self) -> Counter[_Line]:
-        """Return how many of each line are answered."""
+        """Return the number of questions of each line that are being answered."""
         return Counter(map(_line_of, self._answered.values()))
 
     def _refuse_beyond(self, line: _Line) -> None:

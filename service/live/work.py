@@ -1,4 +1,4 @@
-"""The work of the live worker: curves of other flanks, and plans; in its own process, never the service's."""
+"""The work of the live worker, never of the service's process: curves of other flanks, and plans."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def live_ste(inputs: Json) -> Json:
 
 
 def live_plan(inputs: Json) -> Json:
-    """Return what `loa plan --json` says of a case."""
+    """Return the plan of a case as `loa plan --json` prints it."""
     case = CheckedCase(Case.model_validate_json(json.dumps(inputs["case"])))
     plan = plan_of(case, inputs["time_budget_s"], Path(inputs["cache"]))
     return plan_json(plan) | {"warnings": case_warnings(case)}

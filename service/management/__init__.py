@@ -1,1 +1,1 @@
-"""What operators read: health, readiness and metrics of one process, and the port that answers them."""
+"""Answers to operators: health, readiness and metrics of one process, and the port for them."""

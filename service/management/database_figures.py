@@ -32,7 +32,7 @@ def database_figures(workload: WorkloadReader) -> Iterable[Metric]:
 
 
 def writing_figures(writes: WriteCheck) -> Iterable[Metric]:
-    """Return whether this process can write, and how long that took."""
+    """Return metrics on whether this process can write, and on the time of a write."""
     outcome = writes.outcome()
     text = "Whether this process can write to the database, and to the place of results"
     writable = GaugeMetricFamily("loa_writable", text, labels=["part"])

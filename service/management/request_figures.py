@@ -11,7 +11,7 @@ from prometheus_client.multiprocess import MultiProcessCollector
 from lineofaction.gearbox.problems import ServiceError, last_part
 
 _METHODS = frozenset(("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS", "TRACE", "CONNECT"))
-"""Of RFC 9110 and RFC 5789; a caller may send any word."""
+"""Methods of RFC 9110 and RFC 5789, the labels of metrics; a caller may send any word."""
 
 
 class Metrics:

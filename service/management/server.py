@@ -22,9 +22,9 @@ from service.management.vitals import Vitals
 
 METRICS_TYPE = "text/plain; version=0.0.4; charset=utf-8"
 _MAX_REQUESTS = 16
-"""Answered at once; a connection beyond them is closed."""
+"""Most requests answered at the same time; a connection beyond them is closed."""
 _PATIENCE_S = 5.0
-"""For the next piece of a request."""
+"""Longest pause in s before the next piece of a request."""
 
 
 class _Answer(NamedTuple):

@@ -27,7 +27,7 @@ class EventLoop:
     loop: asyncio.AbstractEventLoop | None = None
 
     def fault(self) -> str:
-        """Return what is wrong with it, empty if it turns or has not begun."""
+        """Return the fault of the loop, empty: it turns, or has not begun."""
         turned = threading.Event()
         if self.loop is not None:
             self.loop.call_soon_threadsafe(turned.set)
@@ -38,7 +38,7 @@ class EventLoop:
 
 @dataclass(frozen=True)
 class Vitals:
-    """The signs of one process. A fault is a sentence; empty: there is none.
+    """The signs of life of one process. A fault is a sentence; empty: no fault.
 
     `serving`: returns the fault of what else it does: of the loop that answers requests.
     """

@@ -28,7 +28,7 @@ _OFFERED = (
 
 
 class Example(NamedTuple):
-    """A case to begin with: the name of its file without the ending, what it is, and its content."""
+    """A case to begin with: file name without the ending, description, and content."""
 
     name: str
     title: str

@@ -1,4 +1,4 @@
-"""The files of the pages: their own, the player of reports, plotly.js, Swagger UI."""
+"""The files of the pages: the service's, the player of reports, plotly.js, Swagger UI."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FROM_PACKAGES = {
 
 @dataclass(frozen=True)
 class PageFile:
-    """One file in memory."""
+    """A file in memory."""
 
     content: bytes
     media_type: str

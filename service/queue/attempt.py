@@ -35,7 +35,7 @@ files_read = on_demand("service.worker.preparations:files_read")
 _START = "start"
 """Stage before the first report: the process starts and loads its program."""
 _MAX_STAGES = 200
-"""Spans of one attempt; what is reported after them belongs to the last."""
+"""Most spans of one attempt; later reports belong to the last span."""
 
 
 class _AttemptTrace:
@@ -79,7 +79,7 @@ class _AttemptTrace:
 
 @dataclass(frozen=True)
 class Attempt:
-    """A claim and what works on it: in a directory of its own, with its log, its figures and its spans."""
+    """A claim and its worker in a directory, with log, figures and spans."""
 
     claim: Claim
     worker: Run

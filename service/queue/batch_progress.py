@@ -24,16 +24,16 @@ class Family:
 
     @property
     def number(self) -> int:
-        """Return how many jobs there are."""
+        """The number of jobs of the batch."""
         return sum(self.states.values())
 
     @property
     def ended(self) -> int:
-        """Return how many have ended."""
+        """The number of ended jobs of the batch."""
         return sum(self.states.get(state, 0) for state in ENDED)
 
     def values(self) -> dict[str, Any]:
-        """Return what the row of the batch is to hold."""
+        """Return the values for the row of the batch."""
         failed, dismissed = self.states.get("failed", 0), self.states.get("dismissed", 0)
         text = f"{self.ended} of {self.number} jobs have ended"
         text += f", {failed} failed" if failed else ""

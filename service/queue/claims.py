@@ -22,14 +22,16 @@ from service.store.retries import retried
 from service.version import solver_version
 
 MAX_LOST_RUNS = 10
-"""So many runs in a row may be lost; then the work is what ends its server."""
+"""Most lost runs of a computation in a row. A computation that reaches it is taken for the cause of the
+losses and fails."""
 SUSPECT_FROM = 3
-"""After so many lost runs in a row a computation runs without others: what ends the server is found so."""
+"""Number of lost runs in a row from which a computation runs alone. So the computation that ends the server
+is found."""
 _LONGEST_WAIT_S = 60.0
 
 
 def wait_s(lost_runs: int) -> float:
-    """Return how long a computation waits after so many lost runs in a row: 1 s, twice as long each time."""
+    """Return the wait of a computation after lost runs in a row, s: 1 s, twice as long each time."""
     return float(min(2.0 ** (lost_runs - 1), _LONGEST_WAIT_S)) if lost_runs else 0.0
 
 
@@ -56,13 +58,13 @@ class Claim:
 
     @property
     def suspect(self) -> bool:
-        """Whether it is to run without others."""
+        """Whether the computation must run alone."""
         return self.lost_runs >= SUSPECT_FROM
 
 
 @dataclass(frozen=True)
 class Reached:
-    """How far work is: a stage, the fraction of it that is done, and that of the whole if it is known."""
+    """Progress of work: stage, completed fraction of the stage, and of the whole if it is known."""
 
     stage: str
     stage_fraction: float
@@ -191,7 +193,7 @@ class Claims:
 
     @retried
     def running(self) -> list[Claim]:
-        """Return what runs by the table; after a start, what a server left that died."""
+        """Return the running computations of the table; at a start those of a server that died."""
         runs = (computations.c.state == "running") & ~of_batch
         with reading(self._engine) as connection:
             return [_claimed(row) for row in connection.execute(select(computations).where(runs))]

@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _LOOK_S = 1.0
-"""Between two looks at the connection and at who works."""
+"""Seconds between two looks at the connection and at the workers."""
 _STOPPING_S = 2.0
-"""How long a stop waits for a connection that is being made."""
+"""Seconds for which a stop waits for a connection that is being made."""
 logger = structlog.get_logger(__name__)
 
 
 class Task:
-    """A job that was handed to Dask, as `service.worker.worker.Worker` is one in a child of this machine."""
+    """A job that was handed to Dask; it offers the same as `service.worker.worker.Worker` of this machine."""
 
     channel: int | None = None
-    """It wakes the scheduler by itself."""
+    """Descriptor that wakes the scheduler; None: a task of Dask wakes the scheduler by itself."""
 
     def __init__(self, name: str, order: WorkOrder, log: Path, drop: Callable[[str], None]) -> None:
         self.name, self.order, self._log, self._drop = name, order, log, drop
@@ -57,12 +57,12 @@ class Task:
 
     @property
     def log_fields(self) -> dict[str, Any]:
-        """What names it in the log."""
+        """The fields that name the task in the log."""
         return {"task": self.name}
 
     @property
     def begun(self) -> bool:
-        """Whether a worker has said that it began it."""
+        """Whether a worker has reported that it began the task."""
         return self._begin != ""
 
     @property
@@ -117,7 +117,7 @@ class Task:
         return [self._steps.popleft() for _ in range(len(self._steps))], ended
 
     def finish(self) -> Outcome:
-        """Return how it ended; what Dask keeps of it is there until it is killed."""
+        """Return the outcome of the task, which Dask keeps until the task is killed."""
         assert self._outcome is not None
         return self._outcome
 
@@ -129,7 +129,7 @@ class Task:
 
 
 class Cluster:
-    """The tasks of a server on a Dask scheduler, which others may use too: a `deployment` tells them apart.
+    """The tasks of a server on a shared Dask scheduler; a `deployment` distinguishes the servers.
 
     `maximum` jobs run at the same time: one for each thread of its workers; 0 while they are away.
     """

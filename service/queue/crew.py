@@ -1,4 +1,4 @@
-"""Who works on jobs: children of this machine, or tasks of a Dask scheduler."""
+"""The executors of jobs: children of this machine, or tasks of a Dask scheduler."""
 
 from __future__ import annotations
 
@@ -50,4 +50,4 @@ class Children:
 
 
 Crew: TypeAlias = Children | Cluster
-"""Who begins work on orders; what one runs that `keeps` outlives the server and is found again by name."""
+"""Starters of work on orders. Work whose crew `keeps` it outlives the server and is found again by name."""

@@ -1,4 +1,4 @@
-"""What sets a job apart: its inputs that differ from those of its caller's job before it."""
+"""Differences between the inputs of a job and of its caller's job before it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NOT_COMPARED = Differences(since=None, first=[], number=0)
 
 
 def differences_between(reference: Json, inputs: Json, since: str | None = None) -> Differences:
-    """Return how `inputs` differ from `reference`, those of the job `since`; None: the defaults.
+    """Return the differences of `inputs` from `reference`, inputs of the job `since`; None: the defaults.
 
     Lists of tables are compared by place. The first ones are in the order of the inputs; of long lists and
     texts they have the length in words. True is not 1.
@@ -36,7 +36,7 @@ def differences_column(differences: Differences) -> str:
 
 
 def differences_of(column: str) -> Differences:
-    """Return what `differences_column` wrote; nothing of jobs from before differences were kept."""
+    """Return the differences from a column; none for jobs of versions that stored none."""
     content = json.loads(column or "{}")
     return Differences.model_validate(
         {"first": [], "number": 0, **content, "since": content.get("since") or None}

@@ -204,7 +204,7 @@ def _is_entered(connection: Connection, which: ColumnElement[bool], works: Seque
 
 
 def _differences(cases: Sequence[BatchCase], names: Sequence[str]) -> Iterator[Differences]:
-    """Yield what sets each job of a batch apart from the one before it."""
+    """Yield the differences of each job of a batch from the one before it."""
     yield NOT_COMPARED
     for (before, case), name in zip(pairwise(cases), names, strict=False):
         yield differences_between(before.inputs, case.inputs, name)

@@ -1,4 +1,4 @@
-"""A job as its caller sees it, words for what it is about, and the filter of a list of jobs."""
+"""A job as its caller sees it, words for its subject, and the filter of a list of jobs."""
 
 from __future__ import annotations
 

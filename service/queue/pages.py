@@ -32,12 +32,13 @@ from service.store.listing import NEWEST
 from service.store.results import Mark, behind
 
 FEW = 300
-"""So many lines with a duration within bounds are sorted by time; of more, a page is found in that order."""
+"""Most lines with a duration within bounds that are sorted by time. With more lines the page is found by the
+index in order of time."""
 
 
 @dataclass(frozen=True)
 class PageQuery:
-    """What a page of a list asks for: jobs of a project, up to `limit`, those behind the mark `after`."""
+    """Query for a page of a list: jobs of a project, up to `limit`, behind the mark `after`."""
 
     project: str
     job_filter: JobFilter

@@ -33,7 +33,7 @@ logger = structlog.get_logger(__name__)
 
 
 class Renewal:
-    """Makes waiting computations of other versions those of this program; what they left on disk goes."""
+    """Takes over waiting computations of other versions for this program, and removes their files."""
 
     def __init__(self, claims: Claims, registry: Registry, store: ResultStore, work: Path) -> None:
         self._claims, self._engine = claims, claims.engine

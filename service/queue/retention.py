@@ -1,4 +1,4 @@
-"""Ended jobs that nobody asks for, and what computations leave on disk."""
+"""Retention: removal of ended jobs without requests, and of files that computations leave on disk."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ FIRST_S, EVERY_S = 60.0, 3600.0
 
 
 class Retention:
-    """Removes what a service needs no more; safe beside one that runs.
+    """Removes results, jobs and files that a service needs no more, also while the service runs.
 
     It looks at workspaces and logs of the data directory too; a file that is removed from the store can be
     had back for so many days.
@@ -120,7 +120,7 @@ class Retention:
 
 
 class Housekeeper:
-    """Collects beside the scheduler what nobody asks for since so many days."""
+    """Thread that runs the retention of results without requests for a number of days."""
 
     def __init__(self, retention: Retention, days: float) -> None:
         self._retention, self._days = retention, days

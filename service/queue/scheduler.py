@@ -31,18 +31,18 @@ from service.worker.order import Outcome
 from service.worker.process import Registry
 
 _TURN_S = 0.5
-"""Between two turns in which nothing is heard."""
+"""Longest wait in s of a turn for news of workers."""
 _NOTED_EVERY_S = 0.25
-"""Progress is written down at most so often."""
+"""Least time in s between two records of the progress of a job."""
 _STOPPING_S = 1.0
-"""How long a stop waits for killed workers to be dead."""
+"""Seconds for which a stop waits until killed workers are dead."""
 _OUTAGES = (DatabaseUnavailable, StoreUnavailable)
-"""After which what has to be noted is noted later."""
+"""Errors after which an end or progress is recorded later."""
 logger = structlog.get_logger(__name__)
 
 
 class Scheduler:
-    """Lets a crew do what waits: children of this machine, or the workers of a Dask cluster."""
+    """A thread that lets a crew execute waiting computations: children of this machine, or a Dask cluster."""
 
     def __init__(
         self,

@@ -25,7 +25,7 @@ from service.store.results import USE_NOTED_EVERY_S, Mark
 from service.store.retries import optional, retried
 
 _FORMER = 200
-"""Jobs of a caller, the newest first, among which one of the process is sought."""
+"""Number of a caller's newest jobs among which the job before of the same process is sought."""
 
 
 # made once: composing them takes longer than running them
@@ -47,7 +47,7 @@ _NEWEST = (
 
 
 class Submissions:
-    """Jobs as the callers of one project see them; of all projects so many computations may wait."""
+    """Jobs of the callers of one project; the queue limits the waiting computations of all projects."""
 
     def __init__(self, engine: Engine, queue_limit: int, project: str = COMMON) -> None:
         self._engine = engine
@@ -55,7 +55,7 @@ class Submissions:
         self._project = project
 
     def within(self, project: str) -> Submissions:
-        """Return the same for another project."""
+        """Return the submissions of another project."""
         return Submissions(self._engine, self._queue_limit, project)
 
     def submit(
@@ -75,7 +75,7 @@ class Submissions:
         return self.find(self.entry(caller, terms).job(process, work, looked or now(), name))
 
     def entry(self, caller: Holder = ANYBODY, terms: Terms = USUAL) -> Entry:
-        """Return what enters jobs and batches of a caller."""
+        """Return the entry of jobs and batches of a caller."""
         return Entry(self._engine, self._queue_limit, self._project, caller, terms)
 
     @retried
@@ -161,7 +161,7 @@ class Submissions:
 
     @retried
     def counts(self) -> dict[str, int]:
-        """Return how many computations of all projects are in each state."""
+        """Return the number of computations of all projects by state."""
         with reading(self._engine) as connection:
             return states_of(connection)
 

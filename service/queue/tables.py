@@ -13,7 +13,8 @@ from service.version import solver_version
 
 _LIVE = text("state IN ('accepted', 'running')")
 BATCH = "batch "
-"""How the key of what stands for the computation of a batch begins; the hash of a result has no space."""
+"""Beginning of the key of a batch in the table of computations. The hash of a result has no space, so the
+keys cannot meet."""
 # What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
 listings = Table("listing", metadata, *listing.columns())
 

@@ -1,4 +1,4 @@
-"""The terms of a job, which the service stores beside its inputs: label, priority, cost limit, delivery.
+"""The terms of a job, which the service stores with its inputs: label, priority, cost limit, delivery.
 
 A job is one request of a caller. Jobs with equal inputs share one computation. The holder of an API key is
 the caller; a key may limit priority and cost.

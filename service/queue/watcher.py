@@ -18,9 +18,9 @@ from service.store.database import reading
 from service.store.dialects import dialect_of
 
 REST_S = 0.2
-"""Between two looks at the table, however often it changes."""
+"""Seconds between two looks at the table, however often it changes."""
 NET_S = 5.0
-"""After which it is looked at although no commit was heard of: a connection may be dead without a sign."""
+"""Seconds after which the table is read without news of a commit: a connection may be dead without a sign."""
 _RETRY_S = 1.0
 
 T = TypeVar("T")
@@ -30,7 +30,7 @@ logger = structlog.get_logger(__name__)
 
 @dataclass
 class _Followed(Generic[T]):
-    """A job, when it changed last as far as is known, and who is told."""
+    """A job, the time of its last known change, and its followers."""
 
     updated: str
     followers: list[Follower[T]] = field(default_factory=list)

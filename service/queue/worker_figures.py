@@ -1,4 +1,4 @@
-"""What the workers of one scheduler did: metrics by the process they worked for."""
+"""Metrics of the workers of one scheduler, labelled by the process that they worked for."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _ALARMING = ("died", "defect")
 
 
 class WorkerFigures(Collector):
-    """Counts of starts, ends and resources; what follows from them is for who reads them."""
+    """Counts of starts, ends and resources, from which readers derive rates and means."""
 
     def __init__(self) -> None:
         def counter(name: str, text: str, *labels: str) -> Counter:

@@ -14,7 +14,8 @@ from service.store.results import results
 from service.store.retries import retried
 
 BOUNDS_S = (1.0, 2.0, 5.0, 10.0, 20.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 3600.0, math.inf)
-"""Upper bounds of the classes; another program version may have others, each class is kept by its bound."""
+"""Upper bounds of the classes of durations. Each class is stored by its bound, since another version may have
+other bounds."""
 
 
 def bound_of(seconds: float) -> str:

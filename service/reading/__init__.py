@@ -1,1 +1,1 @@
-"""Foreign bytes are read here: those of each request by a confined child, within one set of limits."""
+"""Reading of foreign bytes: one confined child per request, within one set of limits."""

@@ -22,7 +22,7 @@ from service.live.order import LiveOrder
 from service.worker.usage import begin_work
 
 LONGEST_S = 30
-"""Time after which it ends, whatever it waits for."""
+"""Seconds after which the reader ends, whatever it waits for."""
 MAX_ANSWER_BYTES = 100_000_000
 FIELD = "reading"
 """Kind of a message whose body is the field of the file that is read next."""
@@ -30,7 +30,7 @@ _NICENESS = 5
 
 
 warm_up = prepare_confinement
-"""What a process does from which children are forked."""
+"""Preparation of the process from which children are forked."""
 
 
 def work(descriptor: int) -> None:

@@ -1,7 +1,7 @@
-"""What a reader of files sends until it ends: the fields of the files that it reads, then the answer.
+"""Messages of a reader of files until it ends: the fields of the files that it reads, then the answer.
 
-A file may end its reader, as a native library does that it leads astray. Then the field that was sent last
-names the file.
+A file may end its reader, for example by a fault in a native library. The field that was sent last then names
+the file.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from host.children.frames import Frame
 from service.reading.child import FIELD, LONGEST_S, MAX_ANSWER_BYTES
 
 MAX_BYTES = MAX_ANSWER_BYTES + 1_000_000
-"""Of an answer and of the fields before it."""
+"""Most bytes of an answer and of the fields before it."""
 _LONGEST_FIELD = 1_000
 _KILL = "SIGKILL"
 
 
 @dataclass
 class Course:
-    """How a child has read."""
+    """State of a child's reading by the messages received so far."""
 
     field: str | None = None
-    """That of the file that was read last, "" before the first; None: no order was read."""
+    """Field of the file that was read last, "" before the first; None: no order was read."""
     answer: Frame | None = None
-    """None: there is none, or a part of one, or something came after it."""
+    """Answer of the child; None: none, a part of one, or one followed by further bytes."""
     overrun: str = ""
-    """What the reading should have stayed within when it was stopped; "" if it was not."""
+    """Name of the limit for which the reading was stopped; "": it was not stopped."""
     broken: bool = False
-    """Whether the child has sent what no reader sends."""
+    """Whether the child has sent a message that no reader sends."""
 
     def take(self, frames: Iterable[Frame]) -> None:
-        """Take what the child has sent."""
+        """Take the messages that the child has sent."""
         for frame in frames:
             names_field = frame.kind == FIELD
             too_long = names_field and len(frame.body) > _LONGEST_FIELD
@@ -51,7 +51,7 @@ class Course:
             self.answer = None
 
     def bound_of_end(self, ended: Ended) -> str:
-        """Return what a file should have been that a child ended over; "" if no file ended it.
+        """Return the bound of the file over which a child ended; "": no file ended it.
 
         A kill comes from outside, by the system that lacks memory or by its operator; but for that of whoever
         follows the child, and that of a process at the end of its CPU time.

@@ -1,4 +1,4 @@
-"""Questions about files of callers: each is answered by a confined child in a folder of its own.
+"""Questions about files of callers: a confined child in a temporary folder answers each.
 
 A few are read at the same time, one of each caller; another of the same caller waits, a third is refused. So
 whoever sends files that take all they may holds up nobody else.
@@ -40,7 +40,8 @@ MODULES = (
 )
 _WARM_WITHIN_S = 30.0
 _PATIENCE_S = 2.0
-"""The child ends itself first, and so says why."""
+"""Seconds beyond the child's time limit after which it is killed: the child ends first and states the reason.
+"""
 
 logger = structlog.get_logger(__name__)
 AT_ONCE = 4
@@ -136,7 +137,7 @@ class _Children:
 
 
 def _followed(child: Child, folder: Path) -> Course:
-    """Return what a child sends, until it ends, or takes more time or writes more than it may."""
+    """Return the course of a child until its end, or until it exceeds its time or its written bytes."""
     watch = Watch.begun(LONGEST_S + _PATIENCE_S, folder, READING)
     course, look, overrun = Course(), time.monotonic() + LOOK_S, ""
     while not child.closed and not overrun and child.received <= MAX_BYTES:
@@ -149,7 +150,7 @@ def _followed(child: Child, folder: Path) -> Course:
 
 
 def _overrun(child: Child, watch: Watch) -> str:
-    """Return what a child should have stayed within, "" if it does."""
+    """Return the limit that a child exceeds, "": none."""
     if watch.late:
         return f"read within {LONGEST_S} s"
     excess = watch.excess(child.pid)
@@ -157,7 +158,7 @@ def _overrun(child: Child, watch: Watch) -> str:
 
 
 class Reader:
-    """Has files read for one question after the other, each by a child of its own; see `QuestionWorker`."""
+    """Reads files for one question after the other, each in a new child; see `QuestionWorker`."""
 
     def __init__(self, children: _Children) -> None:
         self._children = children

@@ -18,7 +18,7 @@ from lineofaction.gearbox.schemas.toml import toml_table
 
 Json = dict[str, Any]
 Announce = Callable[[str], None]
-"""Says which field of the inputs is read next."""
+"""Function that is called with the field of the inputs that is read next."""
 
 
 def _sent_files(files: Sequence[FileContentInput], folder: Path, announce: Announce) -> Find:

@@ -1,4 +1,4 @@
-"""In front of every route: who calls, how often and on how many connections; a line of every access."""
+"""Access to every route: the caller, the rate of requests, connections; one line in the log each."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SCHEME = "bearer "
 
 
 class _Visit:
-    """One access to a service with keys, until it is noted; `holder` is who it is, once that is known."""
+    """An access to a service with keys until it is logged; `holder` is the caller, once known."""
 
     def __init__(self, scope: Scope, send: Send) -> None:
         self._scope, self._send = scope, send
@@ -78,7 +78,7 @@ def _meant_for_us(scope: Scope) -> bool:
 
 
 class Access:
-    """Lets requests through that carry a key, and as long as there are no keys those meant for this machine.
+    """Lets requests with a key through; while no key exists, requests meant for this machine.
 
     `always`: ask for a key even while there is none, so that taking back the last key opens nothing.
     Otherwise keys are requested as soon as there is one.

@@ -25,7 +25,7 @@ class Admission:
         self._awaited = Usage("bodies under way", capacity.requests)
 
     def quota(self, name: str, maximum: int) -> Quota:
-        """Return what a caller has left of the requests that it may have answered at once."""
+        """Return the caller's quota of requests answered at the same time, with its remainder."""
         return Quota("concurrent", maximum, maximum - self._answered.number(name), unit="concurrent-requests")
 
     @contextmanager

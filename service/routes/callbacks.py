@@ -1,4 +1,4 @@
-"""Whom a request may have called about its job, and what they are told."""
+"""Addresses that a request may have called about its job, and the bodies of the calls."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def enter_calls(context: Context, job: str, uris: dict[str, str]) -> None:
 
 
 def deliverer_of(context: Context) -> Deliverer | None:
-    """Return what makes the calls, None where none are allowed."""
+    """Return the deliverer of calls, None: no calls are allowed."""
     settings = context.settings
     if not settings.origins:
         return None
@@ -55,7 +55,7 @@ def deliverer_of(context: Context) -> Deliverer | None:
 
 
 def _message(context: Context, identifier: str, event: str) -> Any:
-    """Return what is told: the status, the document of the results, or the problem."""
+    """Return the body of a call: the status, the document of the results, or the problem."""
     job = context.submissions.find(identifier)
     problem = problem_of(job)
     if event == "inProgress":

@@ -34,7 +34,7 @@ from service.version import program_tag
 from service.worker.process import ANALYZE
 
 READING_FAILURES = (TooLarge, TooManyHeld, QueueFull, LiveUnavailable)
-"""What a reader of foreign bytes answers beside faults of the bytes."""
+"""Refusals of a reader of foreign bytes, in addition to faults of the bytes."""
 _MAX_FILES = 16
 
 router = APIRouter(tags=["cases"], route_class=ScopedRoute)
@@ -53,7 +53,7 @@ class CaseInputs(BoundaryModel):
 
 
 class CaseRequest(BoundaryModel):
-    """A case, where an execution of analyze has it."""
+    """A case under the name that an execution of analyze has for it."""
 
     inputs: CaseInputs = Field(description="The case, as in an execution of analyze")
 
@@ -134,7 +134,7 @@ class SceneInputs(BoundaryModel):
 
 
 class SceneRequest(BoundaryModel):
-    """A scene, where an execution of simulate has it."""
+    """A scene under the name that an execution of simulate has for it."""
 
     inputs: SceneInputs = Field(description="The scene, as in an execution of simulate")
 
@@ -189,7 +189,7 @@ class HousingsRequest(BoundaryModel):
 
     @property
     def shape(self) -> str:
-        """What their surfaces depend on, as text."""
+        """The fields that determine the surfaces, as text."""
         fields = {"step_file", "mesh_file", "mesh_unit", "origin_mm", "x_axis", "z_axis"}
         return self.model_dump_json(include={"housings": {"__all__": fields}})
 
@@ -197,7 +197,7 @@ class HousingsRequest(BoundaryModel):
 class HousingSurfaceBody(BaseModel):
     """The surface of housings where they stand in their scene."""
 
-    surface: HousingSurface | None = Field(description="Null: none of them has the file of a solid")
+    surface: HousingSurface | None = Field(description="Surface; null: no housing has the file of a solid")
 
 
 @scenes_router.post(

@@ -84,7 +84,7 @@ class Context:
     _projects: dict[str, Context] = field(default_factory=dict)
 
     def within(self, project: str) -> Context:
-        """Return the same for the callers of a project."""
+        """Return the context of another project."""
         if project == self.project:
             return self
         if project not in self._projects:

@@ -34,16 +34,16 @@ class DirectRoute(ScopedRoute):
 
 
 class DirectRoutes:
-    """In front of the framework's router, which compares a path with every route it has.
+    """Middleware that answers direct routes before the framework compares a path with all its routes.
 
     Parameters
     ----------
     app : ASGIApp
-        What serves all other requests, and those that a direct route refuses by their method.
+        App that serves all other requests, and requests whose method a direct route refuses.
     router : APIRouter
-        Its direct routes are answered here.
+        Router whose direct routes the middleware answers.
     prefix : str
-        Under which the router is included.
+        Prefix of the paths of the router.
     """
 
     def __init__(self, app: types.ASGIApp, router: APIRouter, prefix: str) -> None:

@@ -32,21 +32,21 @@ DRAFTS = {
     "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
     "/scenes/housing-surface": ("housing-surface", "Surface of drafted housings"),
 }
-"""Questions that may be asked of a draft, by their own path: the path below `/drafts`, and what they are."""
+"""Questions about a draft by the path of the question: the path below `/drafts`, and a summary."""
 
 
 class FaultsBody(BaseModel):
-    """What is wrong with a draft."""
+    """The faults of a draft."""
 
     detail: str = Field(description="All faults in words")
-    faults: list[FaultBody] = Field(description="Each thing wrong: field, value, bound, what to try")
+    faults: list[FaultBody] = Field(description="Each fault: field, value, bound, suggestion")
 
 
 class DraftRoute(ScopedRoute):
-    """A route of questions about drafts: it answers what is wrong with one."""
+    """A route of questions about drafts: faults of the draft are an answer."""
 
     def answering(self) -> Callable[[Request], Any]:
-        """Return what answers, with the result or with the faults."""
+        """Return the handler that answers with the result or with the faults."""
         answer = super().answering()
 
         async def answered(request: Request) -> Response:

@@ -32,7 +32,7 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 
 
 class _TooManyStreams(QueueFull):
-    """As many callers as the service bears listen already."""
+    """Problem: the service serves as many event streams as it bears."""
 
     type = "urn:lineofaction:problem:too-many-streams"
     title = "Too many event streams"

@@ -18,9 +18,9 @@ logger = structlog.get_logger(__name__)
 headline_json = on_demand("lineofaction.gearbox.convert.answers:headline_json")
 
 MAX_AT_ONCE = 4
-"""Tables that one list reads; the next list goes on."""
+"""Most tables that one list reads; the next list continues."""
 LARGEST_BYTES = 8_000_000
-"""Of a table that is read for it: those of long periods take seconds."""
+"""Most bytes of a table that is read for a headline: tables of long periods take seconds."""
 
 
 def with_headlines(jobs: Sequence[Job], context: Context) -> list[Job]:

@@ -1,4 +1,4 @@
-"""Is it alive, can it work, what are its figures."""
+"""Health, readiness and figures of the service."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Readiness(BaseModel):
     )
     missing_protections: tuple[str, ...] | None = Field(
         None,
-        description="What the system lacks to confine readers of files; left out where nothing is missing",
+        description="Protections for readers of files that the system lacks; left out where none is missing",
     )
 
 

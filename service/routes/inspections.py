@@ -1,4 +1,4 @@
-"""What gears are as made: measured by an inspection, or drawn within a class of ISO 1328-1."""
+"""Gears as made: measured by an inspection, or drawn within a class of ISO 1328-1."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class InspectionInput(BoundaryModel):
     )
     gear: Literal["pinion", "wheel"] = Field(description="The gear that was inspected", examples=["pinion"])
     loaded: Literal["left", "right"] = Field(
-        default="right", description="Which of its flanks carry", examples=["right"]
+        default="right", description="Flanks of the inspected gear that carry the load", examples=["right"]
     )
     cutoff_mm: float | None = Field(
         default=None,
@@ -41,7 +41,7 @@ class InspectionInput(BoundaryModel):
 
 
 class AsMadeRequest(CaseRequest):
-    """A case, and what its gears are as made: measured, or else drawn within a class."""
+    """A case, and its gears as made: measured, or drawn within a class."""
 
     measured: InspectionInput | None = Field(
         default=None, description="The inspection of one gear; left out: both are drawn", examples=[None]

@@ -73,7 +73,7 @@ def job_results_router(registry: Registry) -> APIRouter:
 
 
 def batch_results(context: Context, batch: Job) -> BatchResults:
-    """Return what came of the jobs of a batch, in order."""
+    """Return the results of the jobs of a batch, in order."""
     if not batch.ended:
         raise ResultNotReady(f"Batch {batch.id} is {batch.status}: {batch.message}")
     output = context.registry[batch.process].output
@@ -90,7 +90,7 @@ def _in_batch(job: Job, output: str) -> BatchResult:
 
 
 def problem_of(job: Job) -> ServiceError | None:
-    """Return what says why a job has no result, None if it has one."""
+    """Return the problem of a job without a result, None: it has a result."""
     if job.status == "failed":
         return JobFailed(job.message, [Fault(**fault) for fault in job.faults])
     if job.status == "dismissed":
@@ -101,7 +101,7 @@ def problem_of(job: Job) -> ServiceError | None:
 
 
 def reference_of(job: Job) -> ResultReference:
-    """Return where the result of a job is."""
+    """Return the reference to the result of a job."""
     return ResultReference(href=f"{RESULTS}/{job.key}", type=NETCDF, hash=job.key)
 
 

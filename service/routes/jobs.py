@@ -71,7 +71,11 @@ Parent = Annotated[
 ]
 
 Once = Annotated[
-    bool, Query(description="Of jobs with one result the newest alone; one in vain where all are")
+    bool,
+    Query(
+        description="Whether of jobs with one result only the newest is listed; if all such jobs failed, "
+        "one of them"
+    ),
 ]
 router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 input_warnings = on_demand("service.worker.expectations:input_warnings")
@@ -89,7 +93,7 @@ async def job_filter(
     parent: Parent = None,
     once: Once = False,
 ) -> JobFilter:
-    """Return what the parameters ask for."""
+    """Return the filter of jobs by the parameters."""
     earliest, latest = _interval(instant)
     return JobFilter(
         tuple(process_id),

@@ -1,4 +1,4 @@
-"""Answers with lists: made in a few threads of their own, with a tag by which they are not sent again."""
+"""Answers with lists, made in a few separate threads, with a tag that saves sending them again."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from starlette.responses import Response
 from service.routes.media_types import JSON, answer
 
 _THREADS = ThreadPoolExecutor(2, thread_name_prefix="list")
-"""Many lists at once wait here, for each other alone: in the threads of all requests they would take the
-interpreter from the loop, which answers whether the service is alive."""
+"""Threads that make lists. Many lists at once wait for each other here. In the threads of all requests they
+would block the event loop, which answers whether the service is alive."""
 
 _HEADERS = ("ETag", "Cache-Control")
 LISTED: dict[int | str, dict[str, Any]] = {
     200: answer("The list", *_HEADERS),
     304: answer("Not modified", *_HEADERS),
 }
-"""What a route of a list declares of its answers."""
+"""Answers that a route of a list declares."""
 
 
 async def list_answer(request: Request, page: Callable[[], BaseModel]) -> Response:

@@ -21,7 +21,7 @@ NO_STORE = "no-store"
 _REVALIDATED = "private, no-cache"
 _TEXT, _ADDRESS = {"type": "string"}, {"type": "string", "format": "uri-reference"}
 OF_ALL = ("X-Request-ID", POLICY, LIMIT)
-"""Of every answer; the last two of callers with shares."""
+"""Headers of every answer; the last two only for callers with shares."""
 OF_STATUS: Mapping[int, tuple[str, ...]] = {
     401: ("WWW-Authenticate",),
     403: ("WWW-Authenticate",),
@@ -30,9 +30,10 @@ OF_STATUS: Mapping[int, tuple[str, ...]] = {
     429: ("Retry-After",),
     503: ("Retry-After",),
 }
-"""Of refusals, as HTTP has them (RFC 9110, RFC 6585; `Accept-Post`: W3C LDP, section 7.1)."""
+"""Headers of refusals by status, as HTTP has them (RFC 9110, RFC 6585; `Accept-Post`: W3C LDP, section 7.1).
+"""
 OF_VERSIONS = ("ETag", "Cache-Control", "Vary")
-"""Of what a caller may keep, also in the answer 304."""
+"""Headers of answers that a caller may store, also in the answer 304."""
 HEADERS: dict[str, dict[str, Any]] = {
     name: {"description": text, "schema": schema}
     for name, text, schema in (
@@ -126,5 +127,5 @@ def described_headers(*names: str) -> dict[str, Any]:
 
 
 def answer(description: str, *headers: str, **further: Any) -> dict[str, Any]:
-    """Return what a route declares of an answer; `further`: its ``model`` or its ``content``."""
+    """Return a route's declaration of an answer; `further`: its ``model`` or its ``content``."""
     return {"description": description, **further, "headers": described_headers(*headers)}

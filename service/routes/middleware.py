@@ -28,7 +28,7 @@ from service.routes.problem_answers import problem_of
 from service.tracing import TRACEPARENT, current_traceparent, trace_fields, valid_traceparent
 
 _MAX = {b"{": (5_000, "tables"), b"[": (50_000, "lists"), b":": (50_000, "fields"), b"=": (50_000, "fields")}
-"""Largest number of what each sign begins, in JSON or in the TOML that it carries.
+"""Largest number of tables, lists or fields in a body, by the sign that begins each in JSON or in TOML.
 
 A scene of a wind turbine has some hundred tables, two free-form flanks have a thousand lists, a reduced
 housing six thousand. Numbers are not counted: a flank may have 250 000.
@@ -36,7 +36,7 @@ housing six thousand. Numbers are not counted: a flank may have 250 000.
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
 PATIENCE_S, MIN_BYTES_PER_S = 30.0, 10_000.0
-"""A body is to be there after so long, and longer by what has come at this rate."""
+"""Seconds within which a body must arrive, and bytes per second of the body that extend this time."""
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9._-]{1,64}")
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 

@@ -1,4 +1,4 @@
-"""The STE databases queried last, held open."""
+"""Open STE databases, the most recently queried ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The description of the API: what the framework writes, and what holds for all operations alike."""
+"""The description of the API: the framework's description, completed by facts common to all operations."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ ABOUT: Json = {
     "servers": [{"url": "/", "description": "The service that answers with this description"}],
     "openapi_tags": [{"name": name, "description": text} for name, text in TAGS.items()],
 }
-"""What the framework takes of it."""
+"""Arguments of the framework's app that go into the description."""
 _KEY = {
     "type": "http",
     "scheme": "bearer",
@@ -110,15 +110,15 @@ _LINKS = {
     "results": ("job_results", "The results, once the state is successful"),
     "dismiss": ("dismiss_job", "Dismissal"),
 }
-"""From every status document, by name."""
+"""Links from every status document to further operations, by name."""
 _REF = "#/components/schemas/{model}"
 _EXAMPLE_TYPES = (JSON, CBOR, EVENT_STREAM)
 _FURTHER_MODELS = (ProblemBody, QueryInput, InputWarning, ReportSection)
-"""Models that no handler names."""
+"""Models in the description that no handler names."""
 
 
 def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
-    """Return what a route declares of the problems that are its own, as the framework takes it."""
+    """Return a route's declaration of its problems, as the framework takes it."""
     return {
         status: {"description": HTTPStatus(status).phrase, _KINDS: kinds}
         for status, kinds in _by_status(problems).items()

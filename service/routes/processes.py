@@ -51,7 +51,8 @@ logger = structlog.get_logger(__name__)
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
 _MAX_SPECIFIED = 65_536
-"""Characters of a caller's inputs that are kept with each of its jobs, beside those of the computation."""
+"""Most characters of a caller's inputs that are stored with each job, in addition to the inputs of its
+computation."""
 IdempotencyKey = Annotated[
     str | None,
     Header(
@@ -209,7 +210,7 @@ def _summary(process: Process) -> dict[str, Any]:
 
 @cache
 def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
-    """Return what a page needs to offer a study; nothing of what has no action."""
+    """Return the data from which a page offers a study; empty for a process without an action."""
     if not action:
         return AdditionalParameters(parameters=[])
     subjects: list[Any] = [name for name in _SUBJECTS if name in inputs.model_fields]

@@ -36,7 +36,7 @@ router = APIRouter(tags=["results"], route_class=ScopedRoute)
 FIGURES = "lineofaction.report.document:stored_figures"
 COMPARISON = "lineofaction.report.comparison.compare:stored_comparison"
 _INERT = {"Content-Security-Policy": "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"}
-"""Of a page that a browser opens at its address: nothing in it runs."""
+"""Headers of a page that a browser opens at its address: nothing in the page runs."""
 MOTION = "lineofaction.report.unit_motion:stored_motion"
 _MAX_MOTIONS = 1_000_000
 SOUND = "lineofaction.report.run.sound:stored_sound"
@@ -130,10 +130,14 @@ async def result_motion(
     context: Ctx,
     number: Annotated[
         int | None,
-        Query(ge=0, lt=_MAX_MOTIONS, description="Of the motion among those listed, from 0; left out: none"),
+        Query(
+            ge=0,
+            lt=_MAX_MOTIONS,
+            description="Number of the motion in the list, from 0; left out: the list alone",
+        ),
     ] = None,
 ) -> Response:
-    """Return how shafts move in a mode or under a load case, and how the surface of a housing does."""
+    """Return the motion of shafts in a mode or under a load case, and of the surface of a housing."""
     stored = await run_in_threadpool(known_result, context, key)
     order = LiveOrder(MOTION, {"kind": stored.kind, "file": str(stored.path), "number": number})
     tag = f'"{stored.sha256}-motion-{number}-{program_tag()}"'

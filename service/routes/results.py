@@ -72,7 +72,7 @@ async def list_databases(
 
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
-    """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
+    """Return the list's entry of a database, which does not count as a use; for a damaged file its name."""
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))
     except (FileNotFoundError, WrongContent):

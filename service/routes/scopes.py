@@ -1,4 +1,4 @@
-"""The routes: what each operation needs is said where it is defined, and refused before its body is read."""
+"""Routes whose endpoints state a scope: a caller without it is refused before the body is read."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Endpoint = TypeVar("Endpoint", bound=Callable[..., Any])
 KEY_SCHEME = "accessKey"
 """Name of the scheme in the description."""
 OPEN_TO_ALL = None
-"""In place of a scope: no key is needed; `service.routes.access.OPEN_PATHS` are the paths."""
+"""Scope of endpoints that need no key; `service.routes.access.OPEN_PATHS` lists their paths."""
 
 Handler = Callable[[Request], Awaitable[Response]]
 
@@ -40,7 +40,7 @@ def needs(
 
 
 class ScopedRoute(APIRoute):
-    """A route that callers with its scope reach; there is none whose endpoint declares no scope."""
+    """A route that callers with its scope reach; an endpoint without a scope cannot be a route."""
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -49,16 +49,16 @@ class ScopedRoute(APIRoute):
 
     @property
     def scope(self) -> Scope | None:
-        """What callers need; raises AttributeError if the endpoint does not say."""
+        """The scope that a caller needs; raises AttributeError: the endpoint declares none."""
         scope: Scope | None = self.endpoint.scope  # type: ignore[attr-defined]
         return scope
 
     def answering(self) -> Callable[[Request], Any]:
-        """Return what answers a request that may be answered."""
+        """Return the handler of admitted requests."""
         return super().get_route_handler()
 
     def get_route_handler(self) -> Callable[[Request], Any]:
-        """Return what answers a request if its caller may ask that."""
+        """Return the handler that admits callers with the scope."""
         answer, scope, streams = self.answering(), self.scope, self.endpoint.streams  # type: ignore[attr-defined]
         if scope is OPEN_TO_ALL:
             return answer

@@ -1,4 +1,4 @@
-"""Loading what requests will need, while the service answers already."""
+"""Loading of modules that requests will need, while the service already answers."""
 
 from __future__ import annotations
 

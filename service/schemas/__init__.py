@@ -1,1 +1,1 @@
-"""JSON bodies of the service alone."""
+"""JSON bodies of the service."""

@@ -37,12 +37,12 @@ class Subscriber(BoundaryModel):
 
 
 class WebhookState(BaseModel):
-    """What came of a call about a job."""
+    """State of a call about an event of a job."""
 
     event: Literal["inProgress", "success", "failed"]
     state: Literal["waiting", "delivered", "skipped", "given up"]
     attempts: int = Field(ge=0)
-    message: str = Field(description="Of the last attempt")
+    message: str = Field(description="Message of the last attempt")
 
 
 class Link(BaseModel):
@@ -64,7 +64,7 @@ class Landing(BaseModel):
 
 
 class Conformance(BaseModel):
-    """The conformance classes met."""
+    """The conformance classes of the service."""
 
     conformsTo: list[str]  # noqa: N815 (name of the standard)
 
@@ -77,10 +77,10 @@ class Parameter(BaseModel):
 
 
 class AdditionalParameters(BaseModel):
-    """What a page needs to offer a study; empty for other processes.
+    """Data from which a page offers a study; empty for other processes.
 
-    Its ``action`` (the words of a button), its ``subjects`` (names of the inputs that hold a case or a scene)
-    and its ``fields`` (schemas of those inputs that have a title, by name).
+    Members are ``action`` (the words of a button), ``subjects`` (names of the inputs that hold a case or a
+    scene) and ``fields`` (schemas of the inputs with a title, by name).
     """
 
     title: Literal["Card"] = "Card"
@@ -123,11 +123,11 @@ class ProcessDescription(ProcessSummary):
 
 
 class Difference(BaseModel):
-    """An input that differs from that of the job before, or from its default."""
+    """An input that differs from the job before, or from its default."""
 
     field: str = Field(description="Path of the input", examples=["case.load.torque_n_m"])
-    before: Value = Field(description="Its former value; null: not stated; of a long list its length")
-    value: Value = Field(description="Its value here; null: not stated; of a long list its length")
+    before: Value = Field(description="Value before; null: not stated; of a long list its length")
+    value: Value = Field(description="Value of this job; null: not stated; of a long list its length")
 
 
 class Differences(BaseModel):
@@ -149,12 +149,16 @@ class StatusInfo(BaseModel):
     status: JobStatus
     title: str = Field(default="", description="Name that the caller gave the job")
     tags: list[str] = Field(default=[], description="Tags that the caller gave the job")
-    priority: int = Field(default=0, description="Of the computation: the highest of the jobs that share it")
+    priority: int = Field(
+        default=0, description="Priority of the computation, the highest of the jobs that share it"
+    )
     max_cost_s: float | None = Field(
         default=None, description="CPU seconds after which the computation is ended; null: no limit"
     )
-    subject: str = Field(default="", description="What the job is about, in words: the pair, or the scene")
-    differences: Differences | None = Field(default=None, description="What sets the job apart")
+    subject: str = Field(default="", description="Subject of the job in words: the pair, or the scene")
+    differences: Differences | None = Field(
+        default=None, description="Inputs that differ from the caller's job before, or from the defaults"
+    )
     message: str = Field(description="State of the job in words")
     created: str = Field(description="RFC 3339, UTC")
     started: str | None = None
@@ -178,7 +182,7 @@ class StatusInfo(BaseModel):
     )
     headline: Headline | None = Field(
         default=None,
-        description="Of the result; null: there is none, or it is a large one of an older version",
+        description="Headline of the result; null: no result, or a large one of an older version",
     )
     webhooks: list[WebhookState] | None = Field(
         default=None, description="Calls about the job; null in lists and events"
@@ -190,7 +194,7 @@ class JobInputs(BaseModel):
     """The inputs of a job: its process is executed with them again."""
 
     processID: str  # noqa: N815
-    inputs: dict[str, Any] = Field(description="By name, as in an execution")
+    inputs: dict[str, Any] = Field(description="Inputs by name, as in an execution")
 
 
 class JobList(BaseModel):
@@ -209,7 +213,7 @@ class ResultReference(BaseModel):
 
 
 class ResultFigures(BaseModel):
-    """What is known of the file of a result; the figures of its kind are further members."""
+    """Figures of a result; the figures of its kind are further members."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -232,7 +236,7 @@ def class_name(process: str) -> str:
 
 
 class FaultBody(BaseModel):
-    """One thing wrong with the input."""
+    """A fault of the input."""
 
     field: str = Field(examples=["pair.pinion.bore_diameter_mm"])
     value: Any = Field(examples=[95.0])
@@ -276,10 +280,10 @@ class ExampleBody(BaseModel):
 
 
 class DatabaseEntry(BaseModel):
-    """One database."""
+    """A database in the list."""
 
     hash: str = Field(description="Content hash of the input, the name of the resource")
-    href: str = Field(description="Its path on the service")
+    href: str = Field(description="Path of the database on the service")
     created: str = Field(description="Time of storage, RFC 3339, UTC")
     size: int = Field(ge=0, description="Size of the file in bytes")
     case: Annotated[dict[str, Any], Named("Case")] | None = Field(
@@ -303,7 +307,7 @@ class ReportTable(BaseModel):
 
 
 class ReportPlot(BaseModel):
-    """What ``Plotly.newPlot`` takes."""
+    """Arguments of ``Plotly.newPlot``."""
 
     data: list[dict[str, Any]] = Field(description="Traces of plotly.js")
     layout: dict[str, Any] = Field(description="Layout of plotly.js")
@@ -314,27 +318,29 @@ class ReportTrack(BaseModel):
 
     name: str
     query: dict[str, str] = Field(description="Query of /v1/results/{hash}/sound")
-    time: list[float] = Field(description="s from its start")
-    along: list[float] = Field(description="Where it then is on the horizontal axis")
-    mesh_hz: list[float] | None = Field(None, description="Frequency of mesh order 1 then; null: of none")
+    time: list[float] = Field(description="Times from the start of the sound, s")
+    along: list[float] = Field(description="Value on the horizontal axis at each time")
+    mesh_hz: list[float] | None = Field(
+        None, description="Frequency of mesh order 1 at each time, Hz; null: no mesh"
+    )
 
 
 class ReportSound(BaseModel):
-    """What a plot shows, to listen to."""
+    """Sound of a plot."""
 
     caption: str
     tracks: list[ReportTrack]
 
 
 class ReportFigure(BaseModel):
-    """A plot, with what stands in for it where it cannot be seen."""
+    """A plot, with a text and a table for readers who cannot see it."""
 
     key: str
     title: str
     caption: str
     alternative: str = Field(description="The plot in words")
     plot: ReportPlot
-    table: ReportTable | None = Field(description="Its numbers; null: none")
+    table: ReportTable | None = Field(description="Numbers of the plot as a table; null: none")
     sound: ReportSound | None = Field(None, description="The plot to listen to; null: it has no sound")
 
 
@@ -365,9 +371,10 @@ class ShaftMotion(BaseModel):
     """Complex amplitudes of a shaft at stations evenly spaced along its axis."""
 
     name: str
-    position_mm: list[float] = Field(description="Of the first and the last station")
+    position_mm: list[float] = Field(description="Positions of the first and the last station")
     real: list[list[float]] = Field(
-        description="At phase 0, by station: x, y, z in mm, tilt about x, tilt about y, rotation in rad"
+        description="Motion at phase 0, by station: x, y, z in mm, tilt about x, tilt about y, rotation in "
+        "rad"
     )
     imaginary: list[list[float]] = Field(description="A quarter of a period before")
 
@@ -383,7 +390,7 @@ class HousingSurface(BaseModel):
 class SurfaceMotion(HousingSurface):
     """A housing's surface and the complex amplitudes of its motion."""
 
-    real: str = Field(description="At phase 0: x, y, z in mm, mm/s where there are levels")
+    real: str = Field(description="Motion at phase 0: x, y, z in mm, mm/s where there are levels")
     imaginary: str = Field(description="A quarter of a period before")
     level_db: str | None = Field(
         description="Level of the normal velocity, root mean square, re 50 nm/s; null: a shape without size"
@@ -395,7 +402,9 @@ class MovedUnit(BaseModel):
 
     oscillates: bool = Field(description="Whether its phase runs; a deflection rests")
     shafts: list[ShaftMotion]
-    surface: SurfaceMotion | None = Field(description="Of a housing; null: the result has none")
+    surface: SurfaceMotion | None = Field(
+        description="Motion of a housing's surface; null: the result has none"
+    )
 
 
 class MotionGroup(BaseModel):
@@ -446,23 +455,23 @@ class CaseForceBody(BaseModel):
     """A force of the scene that differs under a load case."""
 
     name: str
-    force_n: list[float] = Field(description="In x, y, z")
-    moment_n_m: list[float] = Field(description="About x, y, +z")
+    force_n: list[float] = Field(description="Force along x, y, z")
+    moment_n_m: list[float] = Field(description="Moment about x, y, z")
 
 
 class LoadCaseBody(BaseModel):
     """A load case of the scene."""
 
     name: str
-    share: float = Field(description="Of the time, 0 to 1")
-    torque_n_m: float = Field(description="On the shaft of the scene's first drive")
-    speed_rpm: float = Field(description="Of that shaft")
+    share: float = Field(description="Share of the time, 0 to 1")
+    torque_n_m: float = Field(description="Torque on the shaft of the scene's first drive")
+    speed_rpm: float = Field(description="Speed of the shaft of the scene's first drive")
     direction: str = Field(description="Flanks that carry: drive, as in the scene, or coast")
-    forces: list[CaseForceBody] = Field(description="Forces that are not as in the scene")
+    forces: list[CaseForceBody] = Field(description="Forces that differ from those of the scene")
 
 
 class UnitLine(BaseModel):
-    """What became of a component or of a value."""
+    """Fate of a component or of a value in an import."""
 
     place: str
     component: int
@@ -471,14 +480,14 @@ class UnitLine(BaseModel):
     item: str = Field(description="The attribute; empty for the component itself")
     fate: str = Field(description="taken, assumed, derived, defaulted, ignored or refused")
     words: str
-    line: int | None = Field(description="Of the component in an XML file, from 1; null in other forms")
+    line: int | None = Field(description="Line of the component in an XML file, from 1; null in other forms")
 
 
 class UnitBody(BaseModel):
     """Cases, scene and load cases of a gear unit, and the account of the import."""
 
     left_out: list[str] = Field(
-        description="What the file has and the scene has not, a sentence a reason; the scene repeats it"
+        description="Parts of the file that the scene lacks, one sentence for each reason, as in the scene"
     )
     cases: list[StageBody]
     scene: Annotated[dict[str, Any], Named("SceneInput")] | None = Field(
@@ -487,5 +496,5 @@ class UnitBody(BaseModel):
     load_cases: list[LoadCaseBody]
     lines: list[UnitLine]
     summary: list[str] = Field(
-        description="What was refused, assumed, defaulted and derived, a sentence each"
+        description="Refused, assumed, defaulted and derived values, one sentence each"
     )

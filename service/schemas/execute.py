@@ -26,7 +26,7 @@ Tags = Annotated[list[Tag], Field(max_length=16)]
 Priority = Annotated[int, Field(ge=-9, le=9)]
 Cost = Annotated[float, Field(gt=0.0, le=1e9)]
 _FORMAT = {"mediaType", "encoding", "schema"}
-"""Members of a qualified value beside "value"."""
+"""Members of a qualified value in addition to "value"."""
 _LINK = {"href", "rel", "type", "hreflang", "title"}
 """Members of a link."""
 MAX_JOBS = 200
@@ -36,7 +36,7 @@ _DEEPEST = 32
 
 
 class LabelChange(BoundaryModel):
-    """A change of a job's label; what is left out stays."""
+    """A change of a job's label; a member that is left out stays."""
 
     title: Title | None = Field(None, description="Name of the job", examples=["Tip relief 20 µm"])
     tags: Tags | None = Field(None, description="Replace the tags of the job", examples=[["ev-3", "draft"]])
@@ -139,8 +139,11 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
             Priority,
             Field(0, description="Turn of the job: the oldest of the highest is next", examples=[1]),
         ),
-        "tags": (Tags, Field([], description="What the job is found by", examples=[["ev-3", "draft"]])),
-        "subscriber": (Subscriber | None, Field(None, description="Who is told about the job")),
+        "tags": (
+            Tags,
+            Field([], description="Tags by which lists find the job", examples=[["ev-3", "draft"]]),
+        ),
+        "subscriber": (Subscriber | None, Field(None, description="Addresses that are called about the job")),
         "max_cost_s": (
             Cost | None,
             Field(None, description="CPU seconds that the job may take; default: no limit", examples=[600.0]),
@@ -154,7 +157,7 @@ def execute_model(process: str, inputs: type[BoundaryModel], output: str) -> typ
 
 
 class BatchRequest(BoundaryModel):
-    """Many inputs of one process, written as differences from what they share."""
+    """Many jobs of one process, written as shared inputs and the differences of each job."""
 
     process: str = Field(max_length=64, description="Identifier of the process", examples=["analyze"])
     inputs: dict[str, Any] = Field(
@@ -168,13 +171,13 @@ class BatchRequest(BoundaryModel):
         examples=[[{"case": {"load": {"torque_n_m": [100.0]}}}]],
     )
     title: Title = Field("", description="Name of the batch", examples=["Tip reliefs"])
-    tags: Tags = Field([], description="What the batch is found by", examples=[["ev-3", "draft"]])
+    tags: Tags = Field([], description="Tags by which lists find the batch", examples=[["ev-3", "draft"]])
     priority: Priority = Field(0, description="Turn of its jobs", examples=[1])
     max_cost_s: Cost | None = Field(
         None, description="CPU seconds that each of its jobs may take; default: no limit", examples=[600.0]
     )
 
-    subscriber: Subscriber | None = Field(None, description="Who is told about the batch")
+    subscriber: Subscriber | None = Field(None, description="Addresses that are called about the batch")
 
     def inputs_of(self, index: int) -> dict[str, Any]:
         """Return the inputs of one job: the shared ones with the differences of the job."""
@@ -183,16 +186,16 @@ class BatchRequest(BoundaryModel):
 
 
 class BatchResult(BaseModel):
-    """What came of one job of a batch: its results by output, or the problem why there are none."""
+    """Result of one job of a batch, by output, or the problem of a job without a result."""
 
     jobID: str  # noqa: N815
     status: JobStatus
-    results: dict[str, ResultReference] | None = Field(description="By name of the output")
+    results: dict[str, ResultReference] | None = Field(description="Results by name of the output")
     problem: ProblemBody | None
 
 
 class BatchResults(BaseModel):
-    """What came of the jobs of a batch, in the order of the request."""
+    """Results of the jobs of a batch, in the sequence of the request."""
 
     jobs: list[BatchResult]
 

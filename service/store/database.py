@@ -22,26 +22,26 @@ NEWEST = "schema_version"
 _OLDEST = "alembic_version"
 """The table with the number of the oldest schema whose program can use the tables: all that program reads."""
 _UNNUMBERED = "computation"
-"""A table that databases had before their schemas had numbers."""
+"""Table of databases whose schema had no number."""
 
 metadata = MetaData()
 BRIEF_MS = 100
-"""Patience of those who can do without what they write."""
+"""Patience of transactions that a caller can do without, ms."""
 _DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
 
 
 @dataclass(frozen=True)
 class _SchemaNumbers:
-    """What a database says of its schema."""
+    """Numbers of the schema as the database states them."""
 
     newest: str | None
-    """Number of the last step that was made; None: there are no tables."""
+    """Number of the last step that was made; None: the database has no tables."""
     usable_since: str | None
     """Number of the oldest schema whose program can use the tables."""
 
     @property
     def ours(self) -> bool:
-        """Whether the schema is this program's own."""
+        """Whether the schema is the schema of this program."""
         return self.newest == REVISIONS[-1]
 
     @property

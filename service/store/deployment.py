@@ -24,13 +24,13 @@ from service.store.retries import outage_of, retried
 from service.store.shortages import shortage
 
 NOTE = "deployment.json"
-"""Name of the note beside the files."""
+"""Name of the note in the folder of the files."""
 _WRITTEN = "written"
-"""Name of what is written to see whether that is possible."""
+"""Name of the file that is written to see whether writing is possible."""
 _MOMENT_MS = 600
-"""Patience of the one who sees whether the database takes what is written."""
+"""Patience of the transaction that sees whether the database takes a write, ms."""
 NOTES = (NOTE, _WRITTEN)
-"""What is beside the files and belongs to no result."""
+"""Names of files in the store that belong to no result."""
 
 deployments = Table(
     "deployment",
@@ -198,7 +198,7 @@ def _refuse_without_space(folder: Path | None) -> None:
 
 @dataclass(frozen=True)
 class _Comparison:
-    """An index and the files: how many it names, one of these, and whether it names that."""
+    """Comparison of an index with the files: files named, one of these, and whether the index names it."""
 
     named: int
     file: str | None

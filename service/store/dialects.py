@@ -23,11 +23,11 @@ from service.store.shortages import out_of_files, shortage
 from service.store.writers import writers_of
 
 CHANNEL = "loa_jobs"
-"""What PostgreSQL notifies on when a job changed; the triggers of schema 0011 do."""
+"""Channel on which PostgreSQL notifies of a changed job, by the triggers of schema 0011."""
 _POLL_S = 0.05
 _SLICE_S = 0.25
 PATIENCE_MS = 10_000
-"""How long a transaction waits for others that write, if it says nothing else."""
+"""Milliseconds for which a transaction waits for others that write, unless it states another patience."""
 _PRAGMAS = (
     f"PRAGMA busy_timeout={PATIENCE_MS}",  # first: the others may have to wait too
     "PRAGMA journal_mode=WAL",
@@ -35,8 +35,8 @@ _PRAGMAS = (
     "PRAGMA foreign_keys=ON",
 )
 DEADLINE_S = 15.0
-"""A statement that works for longer is ended: longer than the patience of those who wait for a lock. By the
-option `deadline_s` of an engine another one, of an upgrade for example none."""
+"""Seconds after which a statement is ended, longer than the patience of transactions that wait for a lock.
+The option `deadline_s` of an engine sets another limit; for an upgrade there is none."""
 _LOOK_EVERY = 20_000
 """Instructions of SQLite's machine between two looks at the clock: some milliseconds."""
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
@@ -88,7 +88,7 @@ _LOCKED = "55P03"  # by others, for longer than lock_timeout
 
 
 class _Commits(Protocol):
-    """A connection of its own that hears of commits; of the thread that made it alone."""
+    """A connection that hears of commits, for the thread that made it."""
 
     def received(self) -> bool:
         """Wait for a moment; return whether something was committed since the last call."""
@@ -177,7 +177,7 @@ class _Dialect(Protocol):
         """Whether the statement was ended by its deadline."""
 
     def remedy(self, error: DBAPIError, url: URL) -> str | None:
-        """Return what a person has to do before any attempt can succeed; None if it is not that."""
+        """Return the action of a person without which no attempt can succeed; None: none is needed."""
 
     def folder(self, url: URL) -> Path | None:
         """Return the folder of this machine that it writes to; None: it is elsewhere."""
@@ -375,7 +375,7 @@ _DIALECTS: Mapping[str, _Dialect] = {"sqlite": _SQLite(), "postgresql": _Postgre
 
 
 def dialect_of(database: Engine | Connection | URL) -> _Dialect:
-    """Return what is particular to the database."""
+    """Return the dialect of the database."""
     if isinstance(database, URL):
         return _DIALECTS[database.get_backend_name()]
     return _DIALECTS[database.dialect.name]

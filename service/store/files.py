@@ -1,4 +1,4 @@
-"""The files of results: their names, and where they are kept."""
+"""The files of results: their names, and their storage."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _NAME = re.compile(
     rf"(?:\.(?P<digest>[0-9a-f]{{{_DIGEST_LENGTH}}}))?(?:\.[0-9a-f]{{8}})?\.[a-z]+"
 )
 SET_ASIDE = ".damaged"
-"""Ending of what was found damaged: kept for a person to look at, never served."""
+"""Ending of damaged files: kept for a person to look at, never served."""
 PARTIAL = ".part"
-"""Ending of what is being written."""
+"""Ending of a file that is being written."""
 _PRIVATE = 0o600
 
 
@@ -36,11 +36,11 @@ class ResultName:
 
     kind: str
     key: str
-    """`kind`, `key`: As in the index."""
+    """`kind`, `key`: Kind and hash of the result, the same as in the index."""
     digest: str
     """Beginning of the SHA-256 of its bytes; empty in names that older versions gave."""
     project: str = COMMON
-    """Whose result it is."""
+    """Project of the result."""
 
     @classmethod
     def of(cls, file: str) -> ResultName | None:
@@ -62,7 +62,7 @@ def new_name(project: str, key: str, kind: str, sha256: str) -> str:
 
 
 class WrongContent(Exception):
-    """The bytes of a file are not those that were put."""
+    """The bytes of a file differ from the stored bytes."""
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ class KeptFile:
 
 
 class ResultFiles(Protocol):
-    """A place for files by name. What has a name is whole: nobody sees a file that is being written."""
+    """A place for files by name. A file with a name is complete: nobody sees a file that is being written."""
 
     address: str
     """The folder, or the URL of the bucket and prefix."""
     folder: Path | None
     """The folder on this machine that is written to; None: they are elsewhere."""
     reads: CacheReads
-    """Of the cache on this machine; a folder needs none."""
+    """Reads of the cache on this machine; a folder needs no cache."""
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Keep the bytes of `file`, durably when this returns; `file` stays."""

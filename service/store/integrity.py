@@ -1,4 +1,4 @@
-"""The look through a whole database at the start: a service waits for it but briefly."""
+"""Integrity check of a whole database at the start: a service waits for it only briefly."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from lineofaction.gearbox.problems import ServiceError
 from service.store.database import Schema
 
 PATIENCE_S = 2.0
-"""So long a start waits for the look, which takes 0.1 to 1 s for 100 MB, many times that from a cold disk."""
+"""Seconds for which a start waits for the check. The check takes 0.1 to 1 s for 100 MB, many times that from
+a cold disk."""
 
 
 class IntegrityCheck:
-    """One look through a database, in a thread that ends with it.
+    """A check of a database in a thread that ends with the check.
 
     Attributes
     ----------

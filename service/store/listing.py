@@ -1,4 +1,4 @@
-"""The table of what lists of jobs are chosen and ordered by, and the triggers that keep it.
+"""The table by which lists of jobs are filtered and sorted, and the triggers that maintain it.
 
 Jobs and computations are wide rows with their inputs; a list looks at narrow ones, by an index that has its
 order. The database itself keeps them, so that they are right whichever program writes, a former one too.
@@ -32,7 +32,7 @@ INDEXES = {
     "listing_by_start": ("project", "parent", "running_since"),
     "listing_by_result": ("key", "parent", "rank", "created", "job"),
 }
-"""Columns of the indexes, in order. A list takes its entries in the order of time from one of them."""
+"""Columns of the indexes, in order. A list reads its entries in the order of time from one index."""
 
 _TEXTS = ("job", "project", "parent", "created", "key", "process", "state", "title_folded", "tags")
 _FAILED = f"IN {IN_VAIN}"
@@ -82,7 +82,7 @@ def add_listing(op: Operations) -> None:
 
 
 def _values(dialect: str) -> dict[str, str]:
-    """Return what the columns of a line are, by its job j and the computation c of that."""
+    """Return the SQL of a line's columns, by its job j and the job's computation c."""
     end = "coalesce(j.dismissed, c.finished)"
     state = "CASE WHEN j.dismissed IS NULL THEN c.state ELSE 'dismissed' END"
     return {
@@ -133,7 +133,7 @@ class _Trigger(NamedTuple):
     condition: str = ""
 
     def statements(self, dialect: str) -> Iterator[str]:
-        """Yield what makes the trigger; PostgreSQL has it call a function."""
+        """Yield the statements that make the trigger; PostgreSQL has it call a function."""
         body = " ".join(f"{statement};" for statement in self.body)
         when = f"WHEN ({self.condition})" if self.condition else ""
         head = f"CREATE TRIGGER {self.name} AFTER {self.event} FOR EACH ROW {when}"

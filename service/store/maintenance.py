@@ -1,4 +1,4 @@
-"""Checks of the store against its files, and the quarantine of what is left over."""
+"""Checks of the store against its files, and the quarantine of files without an entry."""
 
 from __future__ import annotations
 
@@ -84,8 +84,7 @@ class Verified:
     """Files that have their digest."""
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
-    """`damaged`, `missing`: Names of those that had other bytes, and are set aside; of those that are gone.
-    """
+    """`damaged`, `missing`: Names of files with other bytes, which are set aside, and of missing files."""
     unknown: tuple[str, ...] = ()
     """Names of files that the index does not name. Retention never removes them."""
     quarantined: int = 0

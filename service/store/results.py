@@ -74,12 +74,12 @@ Index("result_by_project", results.c.project, results.c.kind, results.c.created)
 
 @dataclass(frozen=True)
 class IndexLine:
-    """One line of the index."""
+    """A line of the index: one result."""
 
     key: str
     """Hash of the input: the resource's name."""
     kind: str
-    """One of `lineofaction.gearbox.registry`."""
+    """Kind of the result, one of `lineofaction.gearbox.registry`."""
     sha256: str
     """Digest of the file's bytes, hexadecimal."""
     size: int
@@ -87,13 +87,13 @@ class IndexLine:
     file: str
     """Name of the file in its place."""
     used: str
-    """When it was last requested, within an hour."""
+    """Time of the last request for the result, exact to an hour."""
     reindexed: str | None = None
-    """When the line was rebuilt from its file: the result is as old as that, or older."""
+    """Time at which the line was rebuilt from its file: the result is as old as that, or older."""
     project: str = COMMON
-    """Whose result it is."""
+    """Project of the result."""
     headline: str = ""
-    """What a list of jobs shows of it, JSON; empty: nothing."""
+    """Headline of the result in a list of jobs, JSON; empty: none."""
 
     @property
     def address(self) -> str:
@@ -109,13 +109,13 @@ class StoredResult:
     kind: str
     sha256: str
     size: int
-    """`key`, `kind`, `sha256`, `size`: As in the index."""
+    """`key`, `kind`, `sha256`, `size`: Fields of the line in the index."""
     path: Path
     """The file on this machine."""
 
 
 class ResultStore:
-    """Write once, read verified: the first result of a key stays, whoever computes it again.
+    """Store of results, written once and verified on reading: the first result of a key stays.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class ResultStore:
         self.lookups = CacheReads()
 
     def within(self, project: str) -> ResultStore:
-        """Return the same for another project."""
+        """Return the store of another project."""
         if project == self.project:
             return self
         other = ResultStore(self._engine, self.files, project)
@@ -196,7 +196,7 @@ class ResultStore:
         return line
 
     def holds(self, key: str, kind: str) -> bool:
-        """Return whether a result is there; nobody has asked for it."""
+        """Return whether a result is stored; the look is no use of the result."""
         return self._intact(key, kind) is not None
 
     def _intact(self, key: str, kind: str) -> IndexLine | None:

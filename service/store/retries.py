@@ -20,13 +20,14 @@ from service.store.writers import TurnTimeout
 logger = structlog.get_logger(__name__)
 _ATTEMPTS = 6
 _PATIENCE_S = 5.0
-"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
+"""Seconds after which a step is not tried again: an attempt may already have waited for a lock as long as it
+may."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
 _KINDS: Mapping[str, tuple[str, type[DatabaseUnavailable]]] = {
     ROOM: ("no space", NoSpace),
     FILES: ("out of files", OutOfFiles),
 }
-"""Event of the log and error by what is to be done, where the database itself is sound."""
+"""Event of the log and error, by the resource that lacks, if the database itself is sound."""
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -46,7 +47,7 @@ def _is_busy(error: BaseException, database: Engine) -> bool:
 
 
 def _remedy_of(error: BaseException, database: Engine) -> str | None:
-    """Return what a person has to do if `error` says that the database cannot be used as it is."""
+    """Return the action of a person if `error` means that the database cannot be used as it is."""
     return dialect_of(database).remedy(error, database.url) if isinstance(error, DBAPIError) else None
 
 

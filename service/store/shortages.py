@@ -14,7 +14,7 @@ writes more than once."""
 
 
 def shortage(folder: Path | None) -> str:
-    """Return that there is no space left in a folder, in a sentence without its name; empty if there is."""
+    """Return a sentence on the lack of space in a folder, without its name; empty: it has space."""
     with suppress(OSError):  # what cannot be looked at is told by who writes there
         free = MIN_FREE if folder is None else shutil.disk_usage(folder).free
         if free < MIN_FREE:

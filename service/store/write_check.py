@@ -1,4 +1,4 @@
-"""Whether a service can write: tried when somebody wants to know, in a thread of its own."""
+"""Check whether a service can write, by a trial write in a separate thread."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from service.store.integrity import IntegrityCheck
 
 logger = structlog.get_logger(__name__)
 VALID_S = 1.0
-"""For so long an outcome is good: what was written then need not be tried now."""
+"""Seconds for which an outcome is valid: the next check repeats it without a new write."""
 PATIENCE_S = 0.8
-"""Nobody waits for longer than this: supervisors ask for an answer within a second."""
+"""Longest wait for the trial in s: supervisors ask for an answer within a second."""
 LATE_S = 10.0
-"""For so long after a write that succeeded one that only waits is no fault: others write, many at once. It is
-how long a submission waits for its turn."""
+"""Seconds after a successful write in which a waiting write is no fault, since many may write at once. A
+submission waits as long for its turn."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class _Writable:
 
 
 class WriteCheck:
-    """Writes to database and place of results, at most once in `VALID_S`, whoever asks.
+    """Trial writes to the database and the place of results, at most once in `VALID_S`.
 
     What a look through the database finds damaged counts as not written.
     """
@@ -57,7 +57,7 @@ class WriteCheck:
         self._succeeded = -math.inf
 
     def outcome(self) -> _Writable:
-        """Return what can be written, within `PATIENCE_S`."""
+        """Return the faults of writing, within `PATIENCE_S`."""
         with self._lock:
             old = time.monotonic() - self._begun > VALID_S
             if self._outcome is None or (old and self._outcome.done()):
@@ -88,7 +88,7 @@ class WriteCheck:
 
     @staticmethod
     def _fault(part: str, step: Callable[[], None]) -> tuple[str, bool]:
-        """Return what went wrong, and whether it may be late only; names of files are for the log."""
+        """Return the fault of a step, and whether it may only be late; names of files are for the log."""
         try:
             step()
         except BadInput as error:

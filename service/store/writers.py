@@ -1,4 +1,4 @@
-"""The writers of one SQLite file: those of this process take turns in the order in which they came.
+"""The writers of one SQLite file in this process, which take turns in the order of their arrival.
 
 SQLite lets one write at a time and lets the others try again and again, each for itself: which of many gets
 in next is chance, and some never do. In a queue each waits for those before it alone. Writers of other
@@ -22,7 +22,7 @@ class TurnTimeout(SQLAlchemyError):
 
 
 class WriterQueue:
-    """Who writes, and who waits to; for all threads of a process."""
+    """The queue of writers for all threads of a process: one writes, the others wait."""
 
     def __init__(self) -> None:
         self._lock = Lock()

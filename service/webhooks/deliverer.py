@@ -20,7 +20,8 @@ from service.webhooks.calls import Call, Calls
 from service.webhooks.requests import NotCalled, send
 
 THREADS, LOOK_S = 4, 2.0
-"""They look in turns: a call that is due is seen after half a second in the mean."""
+"""Number of threads, and seconds between two looks of a thread. The threads look in turns: a due call is seen
+within half a second."""
 _STOPPING_S = 1.0
 _GONE = 410
 logger = structlog.get_logger(__name__)
@@ -28,15 +29,15 @@ logger = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class Outbox:
-    """What calls are made of."""
+    """Parts from which calls are made: due calls, allowed origins, key, body."""
 
     calls: Calls
     origins: frozenset[Origin]
-    """Who may be called."""
+    """Origins that may be called."""
     key: bytes
-    """Of the signatures."""
+    """Key of the signatures."""
     compose: Callable[[str, str], Any]
-    """Identifier of a job and the event to the body, JSON."""
+    """Function from identifier of a job and event to the body, JSON."""
 
     def make_one(self) -> bool:
         """Make a call that is due; False: there is none."""
@@ -86,7 +87,7 @@ def signed_headers(key: bytes, identifier: str, timestamp: int, body: bytes) -> 
 
 
 class Deliverer:
-    """Makes calls until it is stopped; what it was about to make then is made by another after its lease."""
+    """Makes calls until it is stopped; another deliverer makes a call in progress after its lease."""
 
     def __init__(self, outbox: Outbox) -> None:
         self._outbox = outbox

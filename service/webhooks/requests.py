@@ -1,4 +1,4 @@
-"""One request to the receiver of a webhook: to a permitted address, bounded in time, redirects not followed.
+"""A request to the receiver of a webhook: to a permitted address, bounded in time, without redirects.
 
 A host name is called at a public address only: what it resolves to may change, and must not lead into the
 service's own network. A receiver in a private network is therefore listed by its address, which is called as
@@ -26,7 +26,7 @@ _TRANSLATED = ipaddress.ip_network("64:ff9b::/96")
 
 
 class NotCalled(Exception):
-    """A receiver must not be called, or it did not answer; the message says why."""
+    """A receiver must not be called, or it did not answer; the message has the reason."""
 
 
 def send(uri: str, body: bytes, headers: Mapping[str, str]) -> int:

@@ -1,4 +1,4 @@
-"""A worker of Dask that is told to end (SIGTERM) finishes the job that it does, and gives its result away.
+"""Draining of a Dask worker on SIGTERM: it finishes its job and hands its result over.
 
 Dask itself ends a worker at once. As ``dask worker --no-nanny --preload service.worker.draining`` it begins
 no further task, waits for those that it does until their results are elsewhere, and leaves; a second SIGTERM
@@ -19,10 +19,11 @@ if TYPE_CHECKING:
     from distributed import Worker
 
 JOBS = "loa-"
-"""How the keys of jobs begin: see `service.queue.cluster`."""
+"""Beginning of the keys of jobs, as `service.queue.cluster` sets it."""
 _LOOK_S = 0.1
 _FETCH_S, _MOVE_S = 30.0, 30.0
-"""How long results wait for the server that fetches them, and what is left for a way to other workers."""
+"""Seconds for which results wait for the server that fetches them, and seconds left for their move to other
+workers."""
 logger = structlog.get_logger(__name__)
 
 

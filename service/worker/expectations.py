@@ -1,4 +1,4 @@
-"""What is implausible about normalized inputs, and what they are predicted to cost."""
+"""Expectations of normalized inputs: implausible values, and the predicted cost."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from fe_contact.analysis.request.model_choice import decide
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
 from lineofaction.gearbox.convert.scene import check_scene
@@ -52,7 +52,7 @@ def _of_scene(scene: SceneInput) -> list[Json]:
     ]
     if len(cases) < len(scene.with_database):
         return warnings
-    moving = check_scene(scene, {name: PairFacts.of(CASES.of(case).pair) for name, case in cases.items()})
+    moving = check_scene(scene, {name: PairGeometry.of(CASES.of(case).pair) for name, case in cases.items()})
     return unique([*warnings, *scene_warnings(scene, moving)])
 
 

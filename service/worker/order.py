@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 PARTS = "parts"
-"""The file in a workspace by which a child says that it gives tasks to the cluster."""
+"""Name of the file in a workspace that marks a child which gives tasks to the cluster."""
 
 
 class Progress(Protocol):
@@ -69,7 +69,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The end of a worker: what it made, or the failure in words for the user and the faults of the input.
+    """The end of a worker: its products, or the failure in words for the user and the faults of the input.
 
     `unexpected`: a defect, the text of the exception is in the log only. `died`: the child ended after it had
     begun, which is worth another attempt. `lost`: what ran it ended, or it never began: no fault of the work.

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from fe_contact.solver_version import SOLVER_VERSION
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.convert.checked_case import CheckedCases
@@ -36,14 +36,14 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
     )
 
 
-def _pair_data(field: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+def _pair_data(field: str, mesh: MeshInput, store: ResultStore) -> PairGeometry:
     _check_source(field, mesh, store)
     if mesh.case is not None:
         try:
-            return PairFacts.of(CASES.of(mesh.case).feasible.request.pair)
+            return PairGeometry.of(CASES.of(mesh.case).feasible.request.pair)
         except BadInput as error:
             raise error.within(f"{field}.case") from None
-    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
+    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).geometry
 
 
 def _check_source(field: str, mesh: MeshInput, store: ResultStore) -> None:

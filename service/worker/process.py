@@ -1,4 +1,4 @@
-"""A process that can be run, and the registry of all: those of studies from their rows, and others."""
+"""A process that can be run, and the registry of all processes, of studies and others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The work of studies, done in a child process of its own."""
+"""The work of studies in a child process."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
 
 
 def _subject(study: Study, order: WorkOrder, progress: Progress) -> tuple[Any, tuple[Product, ...], Any]:
-    """Return what is studied, the tables that were computed for it, and its warnings if they are known."""
+    """Return the subject of a study, the tables computed for it, and its warnings if known."""
     if not study.run.tables:
         return housed_scene(order, progress), (), None
     if "scene" in order.inputs:

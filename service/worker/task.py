@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 logger = structlog.get_logger(__name__)
 _LOOK_S, _TELL_S = 0.1, 0.5
-"""Between two looks whether the job is still wanted; between two reports."""
+"""Seconds between two looks whether the job is still wanted, and between two reports."""
 _LOG_BYTES = 1_000_000
 _launchers: list[Launcher] = []
 _launching = threading.Lock()
@@ -40,7 +40,7 @@ _launching = threading.Lock()
 
 @dataclass(frozen=True)
 class Done:
-    """How a job ended on a worker: what `Worker` knows of its child, the files of its products, its log."""
+    """End of a job on a worker: outcome and use of its child, the files of its products, its log."""
 
     outcome: Outcome
     usage: Usage | None

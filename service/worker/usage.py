@@ -1,4 +1,4 @@
-"""How work begins in a process of its own, and what it uses of the machine: CPU time, memory, disk."""
+"""The start of work in a process, and its use of the machine: CPU time, memory, disk."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ BYTES_PER_MB = float(1 << 20)
 _MB = 1 << 20
 _GROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""No space, none left of a quota, none within the largest file a process may write."""
+"""Errors of a full disk: no space, none left of a quota, none within the largest file of a process."""
 
 
 def begin_work() -> None:
-    """Leave a Ctrl-C in the terminal to the service; what is implausible is said in the caller's fields."""
+    """Ignore Ctrl-C, which the service takes, and warnings of implausible inputs, which the caller gets."""
     warnings.filterwarnings("ignore", message="implausible")
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @dataclass(frozen=True)
 class Usage:
-    """Resources that a worker used: elapsed s, CPU s with what it has waited for, most resident memory in MB.
+    """Resources of a worker: elapsed s, CPU s including ended children, largest resident memory in MB.
 
     The memory is what the process reported with its outcome; of one that did not, at least that of the
     process that started it, whose memory the system counts until the program is loaded.

@@ -24,7 +24,7 @@ _SIGNALS_OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")
 
 
 class Step(NamedTuple):
-    """Progress of a worker: a stage, the fraction of it that is done, and that of the whole if it is known.
+    """Progress of a worker: stage, completed fraction of the stage, and of the whole if it is known.
 
     It was reported `at` s since 1970, after so much CPU time with what it has waited for.
     """
@@ -37,7 +37,7 @@ class Step(NamedTuple):
 
 
 class Worker:
-    """One child process for one order; it has `begun` once it says so."""
+    """One child process for one order; `begun` is True from its first message."""
 
     def __init__(self, order: WorkOrder, log: Path, launch: Launch = _ANEW) -> None:
         self.started = time.monotonic()
@@ -58,7 +58,7 @@ class Worker:
 
     @property
     def channel(self) -> int:
-        """Descriptor that becomes readable when there is something to hear."""
+        """Descriptor that becomes readable when the worker has sent something."""
         return self._child.channel
 
     @property
@@ -68,7 +68,7 @@ class Worker:
 
     @property
     def log_fields(self) -> dict[str, Any]:
-        """What names it in the log."""
+        """The fields that name the worker in the log."""
         return {"pid": self.pid}
 
     def spent(self) -> float | None:

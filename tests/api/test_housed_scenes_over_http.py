@@ -69,7 +69,7 @@ def test_modes_on_a_solid_are_those_of_the_command_line(served: Served, monkeypa
     assert [each.name[:4] for each in kept] == ["hous", "mesh"]
     cost = ReducedHousing.from_netcdf(kept[0]).cost
     assert cost is not None
-    own = found.facts["reduction_cost"]["case"]
+    own = found.metadata["reduction_cost"]["case"]
     assert (own["seconds"], own["predicted_seconds"]) == (cost.seconds, cost.predicted_seconds)
 
 

@@ -128,7 +128,7 @@ def test_the_error_of_a_force_is_that_of_the_curve_through_its_point(
     assert set(known) == {True, False}
     assert not any(error and not within for error, within in zip(known, inside, strict=True))
     x, _, m, c = (np.array(column) for column in given.values())
-    forces = np.array(found["force_n"]) / np.cos(stated.facts.base_helix_angle)
+    forces = np.array(found["force_n"]) / np.cos(stated.geometry.base_helix_angle)
     for k in np.flatnonzero(known)[::20].tolist():
         point = {"misalignment": 1e-6 * m[k], "center_distance_change": 1e-3 * c[k]}
         if forces[k] < stated.force[0]:

@@ -145,7 +145,7 @@ def test_a_study_has_the_bits_of_single_runs_and_keeps_its_worst_run(
     run = simulate(replace(alone, meshes=(mesh,), loads=(load,)))
     responses = (Response("dte_rms"), Response("bearing_force", order=1))
     assert made.figure[made.worst[0]].tolist() == responses_of(run, responses)[0]
-    (key,) = made.facts["runs"].values()
+    (key,) = made.metadata["runs"].values()
     kept = RunResult.from_netcdf(client.fetch_file(key, "run"))
     np.testing.assert_array_equal(kept.mesh_force, run.mesh_force)
 

@@ -17,7 +17,7 @@ from toml_text import toml_text
 
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import InputError
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case, validated
@@ -109,4 +109,5 @@ def test_what_is_right_is_not_refused() -> None:
     case = BadInput("good", lambda: None, "").table()
     assert check_case(validated(Case, case)).pinion.teeth == 20
     scene = validated(SceneInput, good_scene())
-    check_scene(scene, {mesh.name: PairFacts.of(check_case(mesh.case)) for mesh in scene.meshes if mesh.case})
+    with_case = [mesh for mesh in scene.meshes if mesh.case]
+    check_scene(scene, {mesh.name: PairGeometry.of(check_case(mesh.case)) for mesh in with_case})

@@ -32,7 +32,7 @@ from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.shafts import Shaft as TurningShaft
 from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput, Fault
@@ -180,8 +180,8 @@ TABLES: dict[str, Table] = {
 
 
 @cache
-def pair_facts(case: str) -> PairFacts:
-    return PairFacts.of(check_case(Case.model_validate_json(case)))
+def pair_facts(case: str) -> PairGeometry:
+    return PairGeometry.of(check_case(Case.model_validate_json(case)))
 
 
 def check(given: Case | SceneInput) -> None:

@@ -14,7 +14,7 @@ from dynamics.meshes.grid_tables import GridTables
 from dynamics.meshes.mesh_table import MeshTable, check_table
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import table_deflection, table_force
-from fe_contact.ste import MeshForce, Metadata, PairFacts, SteDatabase
+from fe_contact.ste import MeshForce, Metadata, PairGeometry, SteDatabase
 from fe_contact.ste.force_table import ForceTable
 
 FIELDS = (
@@ -186,7 +186,7 @@ def database():
         status=np.zeros(shape),
         error_estimate=np.zeros(shape),
         residuals=np.zeros((*shape, 4)),
-        facts=PairFacts((20, 30), (0.04, 0.06), 0.0118, 0.3, 0.1, 0.35, 0.025, 1),
+        geometry=PairGeometry((20, 30), (0.04, 0.06), 0.0118, 0.3, 0.1, 0.35, 0.025, 1),
         metadata=Metadata(),
     )
 

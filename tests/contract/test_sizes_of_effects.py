@@ -233,11 +233,11 @@ def test_a_response_tells_the_number_of_a_run_at_its_speed() -> None:
     speed = scene.drives[0].speed.extreme / RPM
     inputs = OverOrders(speed_rpm=[speed], orders=5)
     response, _ = sized_response(scene, inputs, Means(Path(), lambda *_: None))
-    sizes = response.facts["effect_ledger"]["influences"]
+    sizes = response.metadata["effect_ledger"]["influences"]
     assert set(sizes) == set(run)
     (table,) = [
         part
-        for part in effect_text(boundary_ledger(response.facts["effect_ledger"]))
+        for part in effect_text(boundary_ledger(response.metadata["effect_ledger"]))
         if isinstance(part, Table)
     ]
     lines = {row[0].replace(" ", "_"): row[2] for row in table.rows}

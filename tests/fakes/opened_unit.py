@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.deflection import CaseDeflection, MeshAlignment, deflect
 from dynamics.scene import Scene
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.from_rexs.gear_unit import GearUnit
@@ -29,7 +29,7 @@ POSITIONS = 3
 
 def scene_in_si(unit: OpenedUnit) -> Scene:
     assert unit.scene is not None, [line for line in unit.lines if line.fate == "refused"]
-    facts = {f"{case.name}.toml": PairFacts.of(gear_pair(case.case)) for case in unit.cases}
+    facts = {f"{case.name}.toml": PairGeometry.of(gear_pair(case.case)) for case in unit.cases}
     return check_scene(unit.scene, {mesh.name: facts[str(mesh.case_file)] for mesh in unit.scene.meshes})
 
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
 FACE_WIDTH = 0.025
@@ -85,7 +85,7 @@ def sliced_database(
         status=np.zeros(grid),
         error_estimate=np.zeros(grid),
         residuals=np.zeros((*grid, 4)),
-        facts=PairFacts(
+        geometry=PairGeometry(
             teeth=(20, 20),
             base_radius=(BASE_RADIUS, BASE_RADIUS),
             base_pitch=2.0 * math.pi * BASE_RADIUS / 20,

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 
 STIFFNESS = 4e8  # N/m at x = 0.5; falls to 3e8 at x = 0
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
@@ -40,7 +40,7 @@ def small_table() -> SteDatabase:
         status=np.zeros(grid),
         error_estimate=1e-3 * ste,
         residuals=np.zeros((*grid, 4)),
-        facts=PairFacts(
+        geometry=PairGeometry(
             teeth=(20, 20),
             base_radius=(BASE_RADIUS, BASE_RADIUS),
             base_pitch=2.0 * math.pi * BASE_RADIUS / 20,

@@ -69,7 +69,7 @@ def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_example_becomes_a_table(table: Path) -> None:
     found = SteDatabase.from_netcdf(table)
-    assert found.facts.internal
+    assert found.geometry.internal
     assert not found.status.any()
     assert found.mean(torque=60.0).value == pytest.approx(3.54e-6, rel=5e-3)
     assert found.load_share.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)

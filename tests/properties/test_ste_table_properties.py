@@ -5,7 +5,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 
 SETTINGS = settings(suppress_health_check=[HealthCheck.too_slow])
 QUERIES = np.random.default_rng(0).uniform(-3.0, 3.0, 400)
@@ -41,7 +41,7 @@ def tables(draw, alignments=((1, 1), (3, 1), (2, 3))):
         status=np.zeros(shape),
         error_estimate=np.full(shape, 1e-9),
         residuals=np.zeros((*shape, 4)),
-        facts=PairFacts((20, 30), (0.04, 0.06), 0.0118, helix, 0.1, 0.35, 0.025, 0),
+        geometry=PairGeometry((20, 30), (0.04, 0.06), 0.0118, helix, 0.1, 0.35, 0.025, 0),
         metadata=Metadata(),
     )
 
@@ -71,7 +71,7 @@ def test_force_of_the_inverse(database):
     deflection = database.ste(QUERIES, force, *at)
     sample = database.force_at(QUERIES, deflection, *at)
     rounding = 8.0 * np.spacing(np.abs(deflection)) * sample.stiffness
-    expected = force * np.cos(database.facts.base_helix_angle)
+    expected = force * np.cos(database.geometry.base_helix_angle)
     # the tangent at one point can be far below the slope a few roundings away: allow the secant's share too
     steepest = np.diff(database.force_table().level).max() / np.diff(database.force_table().deflection).min()
     allowed = 1e-10 * expected + rounding + 24.0 * np.spacing(np.abs(deflection)) * steepest
@@ -186,7 +186,7 @@ def test_scaling_of_lengths_and_forces(database, length, strength):
                 "pairs_in_contact",
                 "status",
                 "residuals",
-                "facts",
+                "geometry",
                 "metadata",
             ]
         },

@@ -19,7 +19,7 @@ class LineLoad:
     ahead: int
     """Pair index."""
     face_position: FloatArray
-    """From mid-face, m. Shape (k,)."""
+    """Distance from mid-face, m. Shape (k,)."""
     load: FloatArray
     """Normal force per length of contact line, N/m. Shape (k,)."""
 

@@ -16,15 +16,15 @@ NOTHING = float("nan")
 
 @dataclass(frozen=True)
 class FullContactPoint:
-    """One solved position under one torque, or why there is none."""
+    """One solved position under one torque, or the reason why there is no solution."""
 
     position: float
-    """By the driving gear, base pitches; NaN without a solution."""
+    """Position of the driving gear, base pitches; NaN without a solution."""
     transmission_error: float
-    """r_b1 theta_1 - r_b2 theta_2 in m, >= 0 under load; NaN without a solution."""
+    """Transmission error r_b1 theta_1 - r_b2 theta_2, m, >= 0 under load; NaN without a solution."""
     status: Status
     reason: str
-    """Empty if it converged."""
+    """Reason why there is no solution; empty if the iteration converged."""
     iterations: int
     residual: float
     """Largest relative breach of the laws that are checked: the moment of the bore's reactions is the torque
@@ -33,17 +33,17 @@ class FullContactPoint:
     torque_ratio: float
     """Torque of gear 2 over that of gear 1."""
     torque: float = NOTHING
-    """On gear 1, N m; NaN if not known."""
+    """Torque on gear 1, N m; NaN if not known."""
     load_share: Mapping[int, float] = field(default_factory=dict)
     """Share of each pair in the torque on gear 1, by pair index; empty if not known."""
     max_pressure: float = NOTHING
-    """Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
-    if not known.
+    """Largest pressure as a mean over the length of an element, Pa. Under a tip edge it grows without bound
+    as the mesh is refined. NaN if not known.
     """
     error_estimate: float = NOTHING
     """Half-width of the discretization's error band, m; NaN if not requested."""
     line_loads: tuple[LineLoad, ...] = ()
-    """Of the pairs over the face; none of a plane solution."""
+    """Line loads of the pairs over the face; empty for a plane solution."""
 
     @classmethod
     def failed(
@@ -76,15 +76,15 @@ class FullContactTable:
     """Solved positions x torques; each point has its own status."""
 
     position: FloatArray
-    """By the driving gear, base pitches. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     torque: FloatArray
-    """On gear 1, N m. Shape (T,)."""
+    """Torque on gear 1, N m. Shape (T,)."""
     points: tuple[tuple[FullContactPoint, ...], ...]
-    """P x T."""
+    """Points, P rows of T."""
     unknowns: IntArray
     """Displacements of all nodes of both gears; 0 where there is no mesh. Shape (P,)."""
     cpu_seconds: FloatArray
-    """Of each position with its mesh. Shape (P,)."""
+    """CPU seconds of each position with its mesh. Shape (P,)."""
 
     @property
     def transmission_error(self) -> FloatArray:

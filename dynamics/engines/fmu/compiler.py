@@ -22,7 +22,7 @@ FLAGS = ("-std=c99", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-Wall", "-
 _FOLDERS = {("Linux", "x86_64"): ("linux64", ".so"), ("Darwin", "x86_64"): ("darwin64", ".dylib")}
 
 
-_SECONDS = 120
+_SECONDS = 120  # most seconds of a compiler run
 
 
 class CompilerError(DynamicsError):

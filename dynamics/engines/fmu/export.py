@@ -28,7 +28,7 @@ from dynamics.meshes.mesh_table import FIELDS, MeshTable
 from host.directories import atomic_file
 
 MAGIC = b"LOAMESH1"
-_EARLIEST = (1980, 1, 1, 0, 0, 0)
+_EARLIEST = (1980, 1, 1, 0, 0, 0)  # earliest time of a ZIP entry: equal exports give equal files
 _IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _INTEGER_OUTPUTS = (
     Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 driving, 2 coast flanks, 3 both"),
@@ -188,7 +188,7 @@ def export_fmu(
 
 def _content(element: MeshElement, name: str) -> dict[str, bytes]:
     """Return everything but the binary, by its path in the file."""
-    # of each kind those that can be set first
+    # in each kind the settable variables first
     chosen = (*_inputs(element), *_parameters(element), *_REAL_OUTPUTS, *_INTEGER_OUTPUTS)
     table = _table_content(element.table)
     sources = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}

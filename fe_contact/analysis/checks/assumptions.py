@@ -26,7 +26,8 @@ from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.types import FloatArray, Json
 
 MIN_BACKLASH = 1e-9
-"""m; teeth without a thickness allowance have none but rounding."""
+"""Least backlash that counts, m. Teeth without a thickness allowance have only rounding errors as backlash.
+"""
 
 
 @dataclass(frozen=True)
@@ -34,17 +35,17 @@ class Assumption:
     """One thing that a run took for granted."""
 
     effect: str
-    """The effect that would not need it; empty if there is none."""
+    """Effect that does without the assumption; empty if there is no such effect."""
     what: str
-    """The assumption."""
+    """Text of the assumption."""
     holds: bool | None
-    """None: it could not be assessed."""
+    """Whether the assumption holds; None where it could not be assessed."""
     change: float
     """Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance counts
     by (`AllowedError.scale`), as far as that is known; NaN else.
     """
     reason: str
-    """What was found."""
+    """Finding of the check, in words."""
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -59,7 +60,7 @@ class Assumption:
 
 
 def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
-    """Check everything that a table took for granted on what it computed."""
+    """Check all assumptions of a table on its results."""
     return (
         *_tip_edges(run, _ripples(run)),
         *_neglected(run),
@@ -73,12 +74,12 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
 
 
 def check_single_point(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
+    """Check the assumptions of flank results and root stress: depth of edges relative to the deflection."""
     return (*_tip_edges(run, np.abs(_means(run))), *check_cheaply(run))
 
 
 def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
-    """Check what needs nothing but the solution."""
+    """Check the assumptions that the solution alone can show."""
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), *_crests(run), _load_patches(run))
 
 
@@ -118,7 +119,7 @@ def _at_handovers(point: OperatingPoint, load: FloatArray) -> FloatArray:
 
 
 def _neglected(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects neglected for the tolerance: estimate and bound of their influence beside what was computed."""
+    """Check the effects neglected for the tolerance: estimate and bound of their influence."""
     request = run.checked.request
     for name in request.neglected:
         influence = estimate_influence(*run.checked.assessing(name), name)
@@ -138,7 +139,7 @@ def _neglected(run: SolvedTable) -> Iterator[Assumption]:
 
 
 def _plane(run: SolvedRun) -> Iterator[Assumption]:
-    """In the plane: loads even over the face, and the finite width in the correction."""
+    """Check the assumptions of the plane: uniform load over the face, correction for the finite width."""
     request, model = run.checked.request, run.checked.model
     if model.across_face:
         return
@@ -206,7 +207,7 @@ def _load_patches(run: SolvedRun) -> Assumption:
 
 
 def _support_loads(run: SolvedTable) -> Assumption:
-    """From lift-off to twice the largest load the forces for dynamics are solved."""
+    """Check that the forces for dynamics are solved from lift-off to twice the largest load."""
     failed = sum(int(np.count_nonzero(point.solution.status)) for point in run.support)
     reason = (
         f"{failed} points have no solution" if failed else "all points beyond the requested loads are solved"

@@ -1,4 +1,4 @@
-"""The effect ledger of a run: what is on, why, its influence, what it costs, and what was checked."""
+"""The effect ledger of a run: state, reason, influence, cost and check of every effect."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A law held against a table: its worst place, the value there and the bound."""
+"""A law of mechanics checked on a table: its worst grid point, the value at it and the bound."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray, Json
 
 _DIGITS = 6
-"""Of value and bound in a message: a law may be broken in the last of them."""
+"""Significant digits of value and bound in a message. A law may be broken in the last digits alone."""
 
 
 @dataclass(frozen=True)
@@ -21,17 +21,17 @@ class LawCheck:
 
     law: str
     quantity: str
-    """`law`, `quantity`: Name of the law, and what it bounds."""
+    """`law`, `quantity`: Name of the law, and name of the quantity that it bounds."""
     location: str
     """Position, load, misalignment and center distance."""
     value: float
     bound: float
-    """`value`, `bound`: In `unit`; the bound is the nearer one where there are two."""
+    """`value`, `bound`: Value of the quantity and its bound in `unit`; of two bounds the nearer one."""
     unit: str
-    """Empty for numbers."""
+    """Unit of value and bound; empty for numbers."""
     ratio: float
-    """Part of the room between the bounds that the value takes: above 1 the law is broken, and so it is where
-    this is NaN.
+    """Distance of the value from the far bound over the distance of the bounds. Above 1, or where it is NaN,
+    the law is broken.
     """
 
     @property
@@ -62,7 +62,7 @@ class LawCheck:
 
 @dataclass(frozen=True)
 class Law:
-    """What a law bounds: its name, the quantity, its unit and how many of it are in one SI unit."""
+    """Quantity that a law bounds: names of law and quantity, unit in messages, factor from SI to the unit."""
 
     name: str
     quantity: str

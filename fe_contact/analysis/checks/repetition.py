@@ -23,7 +23,7 @@ def settled(
     repeat: Callable[[Run, Mapping[str, str]], Run],
     clock: StageClock,
 ) -> tuple[Run, tuple[Assumption, ...], list[Json]]:
-    """Check what a run took for granted; where that is wrong, do as the caller chose.
+    """Check the assumptions of a run; where one is violated, act as the caller chose.
 
     An automatic effect that turns out to be needed is switched on and the run made `repeat` with the effects
     and reasons given. What was requested by name is only reported. Raises `SolveError`: an assumption does

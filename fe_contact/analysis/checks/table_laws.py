@@ -24,17 +24,22 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.types import BoolArray, FloatArray
 
 TOUCH = 1e-9
-"""m: how well touching points are found."""
+"""Accuracy of the gaps at touching points, m."""
 BALANCE = 1e-8
-"""Of the load: how well forces balance it."""
+"""Allowed error of the balance of forces, relative to the load."""
 STRAIGHT = 1e-6
-"""Of a compliance or a pressure: rounding of differences between loads where the contact is linear."""
+"""Allowed relative error of a compliance or a pressure where the contact is linear: rounding in differences
+between loads.
+"""
 ONE_TO_ONE = 1e-6
-"""Of a compliance: base pitches that follow from derivatives have errors, but forces that are unique."""
+"""Least compliance over the tangent compliance at the higher load where base pitches follow from derivatives.
+Errors of derivatives may bend the curve, but the force at a deflection stays unique.
+"""
 LEVERS = 2.0
-"""Change of a compliance over the difference of lever arms: 1.3 where it was largest in 160 random pairs."""
+"""Allowed change of a compliance over the difference of lever arms. The largest in 160 random pairs is 1.3.
+"""
 FLATTEST_TOUCH = 0.2
-"""Least curvature of touching flanks over that of plain ones."""
+"""Least curvature of touching modified flanks over the curvature of plain flanks."""
 
 _RIGID = Law("lifting of rigid gears", "transmission error without load", "µm", 1e6)
 _LOADED = Law("lifting under load", "transmission error", "µm", 1e6)
@@ -199,7 +204,7 @@ class _AlignmentLaws:
             )
 
     def _softening(self, largest: FloatArray) -> FloatArray:
-        """Return the relative change (P,) that a compliance may have beside gaps that close.
+        """Return the relative change (P,) of a compliance that has other causes than gaps that close.
 
         By forces that move to tip edges: there the torque has another lever arm than the motion, so that load
         and deflection follow no energy. And by flanks that roll as they deflect by the `largest` amounts (P,)

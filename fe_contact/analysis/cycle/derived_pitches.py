@@ -1,8 +1,9 @@
-"""Pitches of a table by derivatives about those that are solved: its arrays, curves and their errors.
+"""Base pitches of a table by derivatives about solved pitches: arrays, curves and their errors.
 
-What a base pitch adds to that of other teeth is found to first order: transmission error, shares of the
-load, its centroid and its arm. All else is that of the state whose tangent counts at the position; the
-largest pressure of a pair of teeth is Hertz's, as the root of its share.
+A period has many base pitches where teeth differ; a state is one of them that was solved, or the contact of
+the nominal gears. The difference of a base pitch from a state is found to first order in transmission error,
+shares of the load, its centroid and its arm. All other arrays are those of the state whose tangent counts at
+the position. The largest pressure of a pair of teeth is Hertz's, as the root of its share.
 """
 
 from __future__ import annotations
@@ -32,9 +33,13 @@ from fe_contact.planning.cost_of_derivatives import BATCH
 from fe_contact.types import FloatArray, IntArray, Json, Status
 
 PART_OF_TOLERANCE = 0.4
-"""That derivatives may take where one is requested: meshes and slices are planned to use the rest."""
+"""Share of the tolerance that derivatives may take where a tolerance is requested. Plan and mesh use the
+rest.
+"""
 MAX_GROWN = 1.25
-"""Of the pressure of a pair of teeth over that in the state whose tangent counts."""
+"""Largest growth of the pressure of a pair of teeth over its pressure in the state whose tangent counts. A
+larger load share spreads along the face instead.
+"""
 _MAX_POINTS = 0.99
 
 _ARM, _CENTROID, _SHARES = 0, 1, 2
@@ -55,7 +60,7 @@ def _table_rows(pair: ParallelAxes, c: Candidates) -> FloatArray:
 
 
 def _keep(point: OperatingPoint, edges: bool, state: SolvedState) -> Mapping[str, NDArray[Any]]:
-    """Return the arrays of a table of a state, and what others follow from."""
+    """Return the arrays of a state that a table stores, and the arrays that others follow from."""
     problem, solution = state.problem, state.solution
     pressure, edge = pressed = contact_pressure(problem, solution.force)
     depth = edge_depth(point, problem, solution) if edges else np.zeros(solution.load.size)
@@ -79,17 +84,19 @@ def _of_solution(solution: ContactSolution) -> dict[str, NDArray[Any]]:
 
 
 class DerivedErrors(NamedTuple):
-    """What derivatives miss at L loads."""
+    """Errors of curves by derivatives at L loads."""
 
     band: FloatArray
-    """Of the transmission error at every position, m; 0 where it was solved. Shape (T P, L)."""
+    """Error of the transmission error at every position, m; 0 at solved positions. Shape (T P, L)."""
     curves: FloatArray
     arms: FloatArray
-    """`curves`, `arms`: Of the quantities of transmission error and load arm, m. Shape (23, L) each."""
+    """`curves`, `arms`: Errors of the curve quantities of transmission error and load arm, m. Shape (23, L)
+    each.
+    """
     share: float
     pressure: float
-    """`share`, `pressure`: Of the share of a pair, and of the largest pressure over that of the table: what
-    99 % of the drawn points keep.
+    """`share`, `pressure`: Error of the load share of a pair, and error of the largest pressure over the
+    largest pressure of the table. 99 % of the drawn points have smaller errors.
     """
 
 
@@ -98,19 +105,21 @@ class DerivedPitches:
     """The base pitches about which derivatives give all others of an operating point."""
 
     contact: CycleContact
-    """Of the table."""
+    """Contact of the table."""
     pitches: IntArray
-    """Those that were solved. Shape (K,)."""
+    """Solved base pitches. Shape (K,)."""
     state: IntArray
-    """Which state counts, of the nominal gears and those of the pitches. Shape (T, P, L)."""
+    """Index of the state whose tangent is least: 0 for the nominal gears, 1 + k for pitch k of `pitches`.
+    Shape (T, P, L).
+    """
     at_state: FloatArray
-    """Their transmission error and load arm, m. Shape (1 + K, P, L, 2)."""
+    """Transmission error and load arm of the states, m. Shape (1 + K, P, L, 2)."""
     curves: FloatArray
-    """Those of all base pitches. Shape (T, P, L, 2)."""
+    """Transmission error and load arm of all base pitches, m. Shape (T, P, L, 2)."""
 
     @classmethod
     def of(cls, envelope: Envelope, ste: FloatArray) -> DerivedPitches:
-        """Take those of an envelope whose transmission error (T, P, L) is known."""
+        """Return the pitches of an envelope whose transmission error (T, P, L) is known."""
         states = envelope.minimum.state.copy()
         states[envelope.pitches] = 1 + np.arange(envelope.pitches.size)[:, None, None]
         exact = [envelope.arrays[name] for name in _CURVES]
@@ -155,7 +164,7 @@ class DerivedTable:
     """One operating point over a whole period, by derivatives."""
 
     contacts: tuple[SolvedContact, ...]
-    """Of each set of loads. Pitches that were not solved have no residuals: NaN."""
+    """Contact for each set of loads. Residuals are NaN in pitches that were not solved."""
     derived: DerivedPitches
     errors: DerivedErrors
 
@@ -201,17 +210,17 @@ def derived_table(
 
 @dataclass(frozen=True)
 class DerivedCycle:
-    """What came of derivatives at all operating points of a table."""
+    """Outcome of the derivatives at all operating points of a table."""
 
     points: OperatingPoints
     tables: tuple[DerivedTable, ...]
-    """Of every place; empty where all base pitches are to be solved."""
+    """Tables of all operating points; empty where all base pitches are to be solved."""
     reason: str = ""
-    """Why they are; else empty."""
+    """Reason why all base pitches are to be solved; empty where derivatives suffice."""
 
     @property
     def places(self) -> OperatingPoints:
-        """Those of the table, their pitches by derivatives."""
+        """Operating points of the table; each has the derivatives of its pitches."""
         pairs = zip(self.points.places, self.tables, strict=True)
         return replace(
             self.points, places=tuple(replace(point, derived=table.derived) for point, table in pairs)
@@ -219,7 +228,7 @@ class DerivedCycle:
 
     @property
     def contacts(self) -> list[list[SolvedContact]]:
-        """What is kept of every place, for each set of loads."""
+        """Contacts for each set of loads: for each set a list over the operating points."""
         return [list(contacts) for contacts in zip(*(table.contacts for table in self.tables), strict=True)]
 
     def to_json(self) -> Json:
@@ -306,7 +315,7 @@ def _drawn_errors(envelope: Envelope) -> tuple[float, float]:
 
 
 def _with_pressed(envelope: Envelope) -> Envelope:
-    """Solve the pitches, too, in which the pressure is largest by what the others tell."""
+    """Solve also the pitches in which the pressure is largest by derivatives."""
     _, flank, edge = _shares_and_pressures(envelope, envelope.minimum)
     largest = np.maximum(flank, edge).max(axis=(1, 2, 3))
     pressed = np.argsort(-np.where(envelope.solved, 0.0, largest), kind="stable")[:BATCH]
@@ -319,7 +328,7 @@ def _support_arrays(envelope: Envelope, ste: FloatArray) -> dict[str, NDArray[An
 
 
 def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
-    """Return what a receipt says of the contact in pitches that were not solved."""
+    """Return the receipt's fields of the contact in pitches that were not solved."""
     shape = envelope.minimum.ste.shape
     return {
         "status": np.full(shape, int(Status.CONVERGED)),
@@ -332,7 +341,7 @@ def _without_solution(envelope: Envelope) -> dict[str, NDArray[Any]]:
 def _contact(
     first: SolvedContact, envelope: Envelope, arrays: Mapping[str, NDArray[Any]], unloaded: FloatArray
 ) -> SolvedContact:
-    """Return what a table keeps; problem and forces are those of the first pitch."""
+    """Return the contact as a table stores it; problem and forces are those of the first pitch."""
     solved = {
         name: _flat(envelope.exact_in(values, envelope.arrays[name][1:])) for name, values in arrays.items()
     }

@@ -20,24 +20,25 @@ from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
 CONFIDENCE = 0.99
-"""Of Student's distribution. Few pitches are missed by much more than most: at 0.95 it covers 91 % of 160
-quantities of drawn gears."""
+"""Confidence of Student's distribution for means over drawn pitches. A few pitches have much larger errors
+than most others: a confidence of 0.95 covers only 91 % of 160 quantities of drawn gears.
+"""
 
 
 @dataclass(frozen=True)
 class DrawnPitches:
-    """By how much tangents miss C drawn pitches of P positions at L loads."""
+    """Errors of tangents in C drawn pitches, at P positions and L loads."""
 
     tangent_error: FloatArray
-    """Transmission error, or arm of the load, by the tangents of all other states less the solved one, m.
-    Shape (C, P, L).
+    """Error of transmission error, or of the load arm: value by the tangents of all other states less the
+    solved value, m. Shape (C, P, L).
     """
     position: FloatArray
-    """In [0, 1). Shape (P,)."""
+    """Position in the base pitch, in [0, 1). Shape (P,)."""
 
     @property
     def correction(self) -> FloatArray:
-        """Mean of what is missed at every position (P, L), m: tangents lie above."""
+        """Mean error of the tangents at every position (P, L), m; positive where tangents lie above."""
         return np.asarray(self.tangent_error.mean(axis=0))
 
     @property

@@ -1,4 +1,10 @@
-"""The least of tangents over all pitches of a cycle, about the nominal gears and pitches that were solved."""
+"""The envelope of a cycle: the least of tangents over all base pitches, about solved states.
+
+A cycle is the period of base pitches after which the teeth of both gears meet again. A state is the solved
+contact of one base pitch, or of the nominal gears. A tangent is the transmission error to first order in the
+gaps of teeth about a state. It lies above the solution (`tangents`), so that the least of several tangents is
+nearest to it.
+"""
 
 from __future__ import annotations
 
@@ -28,17 +34,19 @@ from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 FEWEST = 8
-"""Of the drawn pitches that count at least."""
+"""Least number of drawn pitches that errors are taken from."""
 PART = 4
-"""Pitches that are solved together: their touching points are held at once."""
+"""Number of pitches that are solved together. Memory holds the touching points of all of them at once."""
 DIVISOR = 4
-"""Where one in so many pitches is to be solved, all are."""
+"""Divisor of the number of base pitches. If derivatives need more than one pitch in `DIVISOR`, all are
+solved.
+"""
 
 Rows = Callable[[ParallelAxes, Candidates], FloatArray]
-"""Quantities (Q, P, m) of candidates of which the means over the load are followed."""
+"""Function that returns the values (Q, P, m) of candidates whose means over the load are followed."""
 
 Keep = Callable[[SolvedState], Mapping[str, NDArray[Any]]]
-"""Arrays (P, L, ...) that are kept of states, row by row."""
+"""Function that returns the arrays (P, L, ...) of a state that an envelope keeps, by name."""
 
 
 def no_rows(_pair: ParallelAxes, c: Candidates) -> FloatArray:
@@ -52,15 +60,15 @@ class CycleContact:
 
     point: OperatingPoint
     position: FloatArray
-    """In [0, 1). Shape (P,)."""
+    """Position in the base pitch, in [0, 1). Shape (P,)."""
     load: FloatArray
-    """N. Shape (L,)."""
+    """Normal force, N. Shape (L,)."""
     rows: Rows = no_rows
-    """What is followed beside the transmission error."""
+    """Further quantities that are followed besides the transmission error."""
 
     @property
     def pitches(self) -> int:
-        """Base pitches after which it repeats."""
+        """Number of base pitches after which the contact repeats."""
         return self.point.model.period
 
     def exact(self, pitches: IntArray) -> FloatArray:
@@ -109,7 +117,7 @@ def _converged(solution: ContactSolution) -> ContactSolution:
 
 
 def keep_nothing(_state: SolvedState) -> Mapping[str, NDArray[Any]]:
-    """Keep nothing beside what is followed."""
+    """Keep no array of a state."""
     return {}
 
 
@@ -119,13 +127,13 @@ class LeastTangents:
 
     ste: FloatArray
     distance: FloatArray
-    """`ste`, `distance`: Transmission error by the least one, and how far its state is, m. Shape (t, P, L)
-    each.
+    """`ste`, `distance`: Transmission error by the least tangent, and distance of its state, m. Shape (t, P,
+    L) each.
     """
     state: IntArray
-    """Which one it is, in the order in which they were taken. Shape (t, P, L)."""
+    """Index of the least tangent, in the order in which tangents were taken. Shape (t, P, L)."""
     sums: FloatArray
-    """What is followed, about the same state. Shape (t, P, L, Q)."""
+    """Followed quantities, about the state of the least tangent. Shape (t, P, L, Q)."""
 
     @classmethod
     def of(cls, tangent: Tangent, gaps: ToothGaps, pitches: IntArray) -> LeastTangents:
@@ -166,25 +174,25 @@ class Envelope:
 
     contact: CycleContact
     keep: Keep
-    """What is kept of the states."""
+    """Function that selects the arrays of each state that are kept."""
     gaps: ToothGaps
     nominal: FloatArray
     """Mean of gears without gaps of teeth, m. Shape (L,)."""
     pitches: IntArray
-    """Of the states after the first, which is that of the nominal gears. Shape (K,)."""
+    """Base pitches of all states but the first, which is the state of the nominal gears. Shape (K,)."""
     exact: FloatArray
     exact_sums: FloatArray
-    """`exact`, `exact_sums`: Of them: transmission error, m, and what is followed. Ndarray, shapes (K, P, L),
-    (K, P, L, Q).
+    """`exact`, `exact_sums`: Solved transmission error, m, and solved followed quantities in `pitches`.
+    Ndarray, shapes (K, P, L), (K, P, L, Q).
     """
     arrays: Mapping[str, NDArray[Any]]
     """Arrays (1 + K, P, L, ...) of all states by name."""
     minimum: LeastTangents
-    """In all pitches."""
+    """Least tangents in all pitches."""
     drawn: IntArray
     """Pitches that were drawn: the first of the states. Shape (C,)."""
     without: LeastTangents
-    """In those, of all tangents but their own."""
+    """Least tangents in the drawn pitches, each without the tangent about its own state."""
 
     @classmethod
     def of(cls, contact: CycleContact, keep: Keep = keep_nothing) -> Envelope:
@@ -251,9 +259,9 @@ class Envelope:
 
     @property
     def next(self) -> IntArray:
-        """The `BATCH` pitches to solve next, none beside another.
+        """The `BATCH` pitches to solve next, no two of them neighbors.
 
-        First those that may hold an end of the range, then those furthest from what stands for them.
+        First come pitches that may hold an end of the range, then those furthest from their tangent's state.
         """
         ends = self._beyond.max(axis=(0, 2))
         ends = np.argsort(-ends, kind="stable")[: min(BATCH // 2, np.count_nonzero(ends > 0.0))]
@@ -266,14 +274,15 @@ class Envelope:
 
     @property
     def drawn_errors(self) -> DrawnPitches:
-        """What tangents about other states miss in the drawn pitches.
+        """Errors of tangents in the drawn pitches, each without the tangent about its own state.
 
-        Pitches further than any that is left stand for none of those: they would have been solved.
+        Drawn pitches at a larger distance from the other states than every unsolved pitch are left out: they
+        represent none of the unsolved pitches. At least `FEWEST` drawn pitches count.
         """
         return self._drawn_errors(self.without.ste - self.exact[: self.drawn.size])
 
     def drawn_sum_errors(self, q: int) -> DrawnPitches:
-        """Return the same of one quantity that is followed."""
+        """Return the errors of tangents in the drawn pitches for the followed quantity q."""
         return self._drawn_errors((self.without.sums - self.exact_sums[: self.drawn.size])[..., q])
 
     def _drawn_errors(self, errors: FloatArray) -> DrawnPitches:
@@ -284,11 +293,11 @@ class Envelope:
 
     @property
     def ste(self) -> FloatArray:
-        """Transmission error (T, P, L), m: solved, or the least tangent less what it misses in the mean."""
+        """Transmission error (T, P, L), m: solved, or the least tangent less its mean error."""
         return self.exact_in(self.minimum.ste - self.drawn_errors.correction, self.exact)
 
     def sum(self, q: int) -> FloatArray:
-        """Return one quantity that is followed in the same way, (T, P, L)."""
+        """Return the followed quantity q, corrected as the transmission error is, (T, P, L)."""
         values = self.minimum.sums[..., q] - self.drawn_sum_errors(q).correction
         return self.exact_in(values, self.exact_sums[..., q])
 
@@ -299,7 +308,7 @@ class Envelope:
         return values
 
     def nearest(self, name: str) -> NDArray[Any]:
-        """Return what was kept of the state whose tangent is least, (T, P, L, ...)."""
+        """Return the kept array of the state whose tangent is least, by its name, (T, P, L, ...)."""
         p, load = np.indices(self.minimum.state.shape[1:])
         return np.asarray(self.arrays[name][self.minimum.state, p, load])
 
@@ -311,7 +320,7 @@ class Envelope:
         return errors
 
     def sum_errors(self, q: int) -> FloatArray:
-        """Return the same of one quantity that is followed; both ends may be missed by the most."""
+        """Return the errors of curves of the followed quantity q; both ends may have the largest error."""
         drawn = self.drawn_sum_errors(q)
         errors = drawn.quantity_errors
         errors[PEAK_TO_PEAK] = 2.0 * drawn.error
@@ -319,9 +328,10 @@ class Envelope:
 
     @property
     def _beyond(self) -> FloatArray:
-        """By how much pitches may stand out of the range of those solved, above and below, (2, T, L) in m.
+        """Bounds by which unsolved pitches may exceed the range of the solved ones, (2, T, L) in m.
 
-        Above a tangent nothing lies but what drawn pitches show, below it no more than is missed at most.
+        The first is the bound above: the least tangent plus the largest amount by which a drawn pitch exceeds
+        its tangent. The second is the bound below: the least tangent less the largest error of the tangents.
         """
         errors, known = self.drawn_errors.tangent_error, self.exact
         above = self.minimum.ste.max(axis=1) + np.maximum(-errors.min(axis=(0, 1)), 0.0)
@@ -344,7 +354,7 @@ def chosen(
 
 
 def _within(allowed: AllowedError, part: float, envelope: Envelope) -> bool:
-    """Whether derivatives give mean and peak-to-peak within a part of what is allowed, at all loads.
+    """Whether derivatives give mean and peak-to-peak within a part of the tolerance, at all loads.
 
     The mean is that of nominal gears: deviations turn the gears, and it may be zero.
     """

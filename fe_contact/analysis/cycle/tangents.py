@@ -5,8 +5,8 @@ a tooth does at each position is found once for every tooth of either gear, not 
 meets in a hunting cycle.
 
 At a given load the transmission error is concave in the gaps: where teeth part, others take over. So a
-tangent lies above it, and of several tangents the least counts. Flanks that slope touch beside the point at
-which their gap is taken, some nanometers closer; what drawn pitches are missed by holds that too.
+tangent lies above it, and of several tangents the least counts. Flanks that slope touch near the point at
+which their gap is taken, some nanometers closer; the errors measured in drawn pitches contain that.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class ToothGaps:
 
     @classmethod
     def of(cls, pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> ToothGaps:
-        """Find those of the `tooth_gaps` of a model, where the flanks without them touch."""
+        """Return the `tooth_gaps` of a model where the flanks without them touch."""
         first, second = (_by_tooth(pair, candidates, gear, model) for gear in (0, 1))
         return cls(np.unique(candidates.pair), model.period, (first, second))
 
@@ -69,20 +69,21 @@ class LoadSums:
     """Means of Q quantities over the load about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
-    """At the state. Shape (P, L, Q)."""
+    """Means at the state. Shape (P, L, Q)."""
     by_tooth: tuple[FloatArray, FloatArray]
-    """What each tooth of either gear adds as a member of each pair. Tuple of ndarray, shape (J, R, P, L, Q).
+    """Contribution of each tooth of either gear as a member of each pair. Tuple of ndarray, shape (J, R, P,
+    L, Q).
     """
     at_state: FloatArray
-    """What the teeth of the state add together. Shape (P, L, Q)."""
+    """Sum of the contributions of the teeth of the state. Shape (P, L, Q)."""
 
     def over(self, gaps: ToothGaps, pitches: IntArray, where: BoolArray) -> FloatArray:
-        """Return those at points (k, Q) of whole base pitches (t,), `where` (t, P, L) tells."""
+        """Return the means at points (k, Q) of whole base pitches (t,), selected by `where` (t, P, L)."""
         t, p, load = np.nonzero(where)
         return self.value[p, load] - self.at_state[p, load] + self._added(gaps, pitches, t, p, load)
 
     def about(self, gaps: ToothGaps, pitch: int) -> LoadSums:
-        """Return the same about the state of a base pitch."""
+        """Return the means about the state of a base pitch."""
         p, load = (index.ravel() for index in np.indices(self.value.shape[:2]))
         added = self._added(gaps, np.array([pitch]), np.zeros(p.size, dtype=np.int64), p, load)
         return replace(self, at_state=added.reshape(self.value.shape))
@@ -102,19 +103,20 @@ class Tangent:
     """Transmission error at P positions and L loads about one state, to first order in the gaps of teeth."""
 
     value: FloatArray
-    """At the state, m. Shape (P, L)."""
+    """Transmission error at the state, m. Shape (P, L)."""
     part: FloatArray
-    """Part of each pair in what a gap adds, 1 in sum. Shape (J, P, L)."""
+    """Weight of each pair in the contribution of a gap, sum 1. Shape (J, P, L)."""
     by_tooth: tuple[FloatArray, FloatArray]
-    """What each tooth of either gear adds as a member of each pair, m. Tuple of ndarray, shape (J, R, P, L).
+    """Contribution of each tooth of either gear as a member of each pair, m. Tuple of ndarray, shape (J, R,
+    P, L).
     """
     at_state: FloatArray
-    """The same of the teeth of the state, m. Shape (J, P, L)."""
+    """Contribution of the teeth of the state, m. Shape (J, P, L)."""
     sums: LoadSums
-    """Of the same state."""
+    """Means over the load about the same state."""
 
     def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
-        """Return what the teeth that meet in whole base pitches (t,) add to the state, (J, t, P, L) in m."""
+        """Return the motion by the teeth that meet in pitches (t,), over the state, (J, t, P, L) in m."""
         (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
         beyond = driving - self.at_state[:, None]
         motion = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
@@ -144,7 +146,7 @@ class SolvedState:
 
 
 def nominal_tangent(gaps: ToothGaps, state: SolvedState) -> Tangent:
-    """Return the tangent about the gears without what differs from tooth to tooth."""
+    """Return the tangent about the gears whose teeth are alike."""
     (tangent,) = _tangents(gaps, state, 1)
     return tangent
 
@@ -185,6 +187,6 @@ def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]
 
 
 def _sums_by_tooth(added: FloatArray, loads: int) -> FloatArray:
-    """Return what teeth add (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
+    """Return the contributions of teeth (J, P, R, L (1 + Q)) by tooth first, (J, R, P, L, 1 + Q)."""
     by_tooth = np.swapaxes(added, 1, 2)
     return np.ascontiguousarray(by_tooth).reshape(*by_tooth.shape[:3], loads, -1)

@@ -1,1 +1,1 @@
-"""From a checked request to a database, in as many passes as its tolerance needs."""
+"""Runs that make a database from a checked request, in as many passes as its tolerance needs."""

@@ -14,7 +14,7 @@ from fe_contact.contact.condition_number import condition_numbers
 from fe_contact.types import FloatArray, Json, Status
 
 FEW_ITERATIONS = 40
-"""Iterations that a point is expected to need at most; those beyond are counted."""
+"""Usual limit of the iterations of a point. The receipt counts the points that need more."""
 
 
 def contact_receipt(

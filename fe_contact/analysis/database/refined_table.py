@@ -1,4 +1,4 @@
-"""Passes of a run under a tolerance: plan, run, measure, refine what dominates, until it is met."""
+"""Passes of a run under a tolerance: plan, run, measure, refine the largest errors, until it is met."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from model_studies.stage_clock import StageClock
 MAX_PASSES = 4
 
 OnDraft = Callable[[SteDatabase, str], None]
-"""Called with the table of a pass that is refined, and what is refined in words."""
+"""Callback for the table of a pass that is refined, and the refined parts in words."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class _Passes:
     on_draft: OnDraft | None
 
     def first(self, checked: Checked) -> Pass:
-        """Run what the accuracy is expected to ask for."""
+        """Run the discretization that the accuracy is expected to need."""
         clock = StageClock(self.run.workers.cost)
         with clock.stage("planning"):
             choice = decide(checked, self.run.cache, tried=True)
@@ -132,7 +132,7 @@ def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
 
 
 def _beyond_between(table: SteDatabase) -> str:
-    """Say which intervals alone keep a table from its tolerance: no mesh lowers what they take."""
+    """Return the text of intervals that keep a table from its tolerance: no mesh lowers their errors."""
     intervals = table.metadata.receipt["tolerance"]["between_nodes"]
     if not intervals:
         return "the table cannot be interpolated between its nodes"

@@ -26,7 +26,7 @@ from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
 
 AIM = 0.9
-"""Part of the tolerance that a pass is planned to use; the rest is for what predictions miss."""
+"""Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
 """Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
@@ -176,7 +176,7 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
 
 
 def _settled(resolution: _Resolution) -> _Resolution:
-    """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
+    """Refine the largest errors until the tolerance is predicted to be met, or nothing is left to refine."""
     while resolution.used > AIM:
         used, sources = resolution.used, resolution.sources
         decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)

@@ -1,4 +1,4 @@
-"""Passes of a run under a tolerance, and what all of them cost."""
+"""Passes of a run under a tolerance, and their total cost."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class Pass:
     cost: Json
     """Times by stage and memory, as in a receipt."""
     table: SteDatabase | None
-    """None: the pass failed."""
+    """Table of the pass; None if the pass failed."""
     refinement: Refinement | None = None
-    """What was refined before it; None: the first one."""
+    """Refinement before the pass; None for the first pass."""
     failure: str = ""
-    """Why there is no table."""
+    """Reason why the pass has no table; empty where it has one."""
 
     @property
     def used(self) -> float:
@@ -38,7 +38,7 @@ class Pass:
         return f"{self.decision.checked.model_name}, {self.decision.mesh.option.name}"
 
     def to_json(self) -> Json:
-        """Return what ran, what it cost, what it used, and what was refined before it and why."""
+        """Return model, discretization, cost and refinement of the pass as plain JSON."""
         mesh, made, table = self.decision.mesh, self.refinement, self.table
         failed = {"failure": self.failure} if self.failure else {}
         return failed | {
@@ -64,7 +64,7 @@ def of_all_passes(passes: Sequence[Pass], table: SteDatabase, reason: str) -> St
 
 
 def _predicted(passes: Sequence[Pass]) -> Json:
-    """Add up what was predicted of every pass before it began; memory is the largest."""
+    """Add up the predictions of all passes before they began; memory is the largest."""
     predictions = [done.table.metadata.receipt["prediction"] for done in passes if done.table is not None]
     stages = {
         name: sum(prediction["stages"][name] for prediction in predictions)

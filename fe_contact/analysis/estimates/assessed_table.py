@@ -1,4 +1,4 @@
-"""The assessed table: its errors by source, and what is known of them."""
+"""The assessed table: its errors by source, and the loads inserted for its accuracy."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def interval_errors(shape: tuple[int, ...], axes: Mapping[str, AxisError]) -> tu
 
 
 def _summary(errors: FloatArray) -> Json:
-    """Return the largest over the alignments of each source by load, m, and what was not estimated.
+    """Return the largest error over the alignments by source and load, m, and the sources not estimated.
 
     A source is not estimated if it is unknown anywhere.
     """
@@ -67,23 +67,27 @@ class AssessedTable:
     """Errors of a table."""
 
     band: FloatArray
-    """Of every point, m; NaN where not estimated. Shape (P, F, M, D)."""
+    """Error of the transmission error at every point, m; NaN where not estimated. Shape (P, F, M, D)."""
     curve_error: FloatArray
-    """Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics by source, m; NaN where not estimated. Shape (9, 23, F, M,
+    D).
+    """
     load_arm_error: FloatArray
-    """The same of the load arm. Shape (3, 23, F, M, D)."""
+    """Error of mean, peak-to-peak and harmonics of the load arm by source, m. Shape (3, 23, F, M, D)."""
     interval_error: FloatArray
-    """Of points between the nodes of an axis, at the lower one, m. Shape (3, F, M, D)."""
+    """Error of points between the nodes of an axis, stored at the lower node, m. Shape (3, F, M, D)."""
     inserted: SupportLoads | None
-    """Loads with which the table has these errors between its loads."""
+    """Solutions at inserted loads. With these nodes the table has the stated errors between its loads."""
     by_source: Json
     held_out: Json
-    """`by_source`, `held_out`: The largest by source; what was measured between the nodes of each axis."""
+    """`by_source`, `held_out`: The largest errors by source; the errors measured between the nodes of each
+    axis.
+    """
     bias: PlaneBias | None
-    """What the plane leaves out of a finite width where it is not corrected; no error holds it."""
+    """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
-        """Return the table with them, and with the metadata that state them."""
+        """Return the table with these errors and with the metadata that state them."""
         with_errors = replace(
             table,
             error_estimate=self.band,
@@ -95,7 +99,7 @@ class AssessedTable:
         return with_errors if self.inserted is None else with_support_loads(with_errors, self.inserted)
 
     def with_derivatives(self, derived: DerivedCycle | None) -> AssessedTable:
-        """Return them with what derivatives miss, if any base pitch of the table is by them."""
+        """Return the errors with those of derivatives, if any base pitch of the table follows from them."""
         if derived is None or not derived.tables:
             return self
         errors = [table.errors[:3] for table in derived.tables]
@@ -109,7 +113,7 @@ class AssessedTable:
         )
 
     def to_json(self) -> Json:
-        """Return what the receipt says of the errors."""
+        """Return the receipt's fields of the errors as plain JSON."""
         sources = {"error_by_source": self.by_source, "held_out": self.held_out}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
         return sources | bias | _summary(self.curve_error)
@@ -176,7 +180,7 @@ def _at_inserted(errors: FloatArray, table: SteDatabase) -> FloatArray:
 
 
 def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) -> AssessedTable:
-    """Return the errors of a table of which none was estimated, but for what is known in closed form."""
+    """Return the errors of a table without estimates, with the errors known in closed form."""
     bias = table_bias(table, points, plan)
     unknown = np.full(table.error_estimate.shape, np.nan)
     errors = np.full((len(SOURCES), QUANTITIES, plan.load.size, *points.shape), np.nan)
@@ -185,7 +189,7 @@ def unassessed_table(table: SteDatabase, points: OperatingPoints, plan: Plan) ->
 
 
 def table_bias(table: SteDatabase, points: OperatingPoints, plan: Plan) -> PlaneBias | None:
-    """Return what the plane leaves out of the curves of a table."""
+    """Return the bias of the plane model in the curves of a table."""
     pair, ste = points.nominal.pair, table.static_transmission_error
     bias = plane_bias(pair, plan.discretization)
     mean = mean_of_curves(table.position, ste, table.period)

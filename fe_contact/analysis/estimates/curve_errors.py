@@ -56,8 +56,9 @@ HARMONIC_SHARE = 0.3
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
 
 LEFT_OF_ARM = (1.75, 1.0, 1.25)
-"""What meshes leave of mean, peak-to-peak and harmonics of the load arm, over the same parts of the
-transmission error: where the load lies follows from differences of compliance along the face."""
+"""Errors that meshes leave in mean, peak-to-peak and harmonics of the load arm, over the same errors of the
+transmission error. They differ because the load arm follows from differences of compliance along the face.
+"""
 
 BALANCE = 0.5
 """Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
@@ -117,7 +118,7 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
 
 
 def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
-    """Return quantities, and what meshes, patches, slices and free ends leave, (5, 23, F, M, D) in m.
+    """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
     `balance` is the least change of a mean over the mean size of the change about it.
     """
@@ -160,7 +161,7 @@ def _changes(
 def _off_mesh_by_load(
     points: OperatingPoints, solutions: list[ContactSolution], sample: TableSample
 ) -> FloatArray:
-    """Return what load adds to the order beside the mesh to which it adds most, (F, M, D) in m.
+    """Return the largest contribution of load to an order that is no mesh order, (F, M, D) in m.
 
     What gears do without load, as the eccentricity of one, no model of teeth that bend has wrong.
     """

@@ -1,4 +1,4 @@
-"""Errors of what excites at one load of a table: transmission error, arm of the load, sense of sliding."""
+"""Errors of the excitations at one load of a table: transmission error, load arm, sense of sliding."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ class ExcitationErrors:
 
     transmission_error: FloatArray
     load_arm: FloatArray
-    """`transmission_error`, `load_arm`: m; of the transmission error with what the method leaves out."""
+    """`transmission_error`, `load_arm`: Errors in m. Those of the transmission error contain the model error.
+    """
     friction: FloatArray
-    """Of the friction over the largest, the coefficient of friction times the mesh force."""
+    """Error of the friction force over the largest one, the coefficient of friction times the mesh force."""
     off_mesh: float
-    """Of the transmission error in any order beside the mesh orders, m."""
+    """Error of the transmission error in any order that is no mesh order, m."""
 
 
 def excitation_errors(table: SteDatabase, force: float) -> ExcitationErrors:

@@ -1,4 +1,4 @@
-"""Errors between even positions, measured by half of them: nothing is solved for it.
+"""Errors between even positions, measured by leaving half of them out, without a further solution.
 
 Curves through every second position are held against those through all. What the second half changed is
 carried on to what a third would; corners between the positions, which it may have passed by, are looked for
@@ -15,8 +15,9 @@ from fe_contact.ste.interpolation import Axis
 from fe_contact.types import FloatArray
 
 LEFT_BY_HALF = 0.75
-"""Error of all positions over what half of them changes: 1/3 for second order, and more for kinks, which may
-stand anywhere in an interval."""
+"""Error of all positions over the change by leaving half of them out: 1/3 for second order, and more for
+kinks, which may lie anywhere in an interval.
+"""
 
 PASSED_BY = 1.25
 """Peak-to-peak that is missed over the corners at which chords beside an interval meet: flanks bend towards

@@ -47,18 +47,20 @@ class AlignmentErrors:
     """Error between the nodes of an axis of alignments."""
 
     made: SolvedTable
-    """With the alignments that were inserted."""
+    """Solved table with the inserted alignments."""
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
     change: FloatArray
-    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, I, F)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out alignment, m. Shape (23,
+    I, F).
+    """
     limit: str
-    """Why intervals that miss the goal got no further node; empty where all meet it."""
+    """Reason why intervals that miss the goal got no further node; empty where all meet it."""
 
 
 @dataclass(frozen=True)
 class HeldOutAlignments:
-    """An axis of a table, held against solutions between its nodes.
+    """An axis of a table compared with solutions between its nodes.
 
     On the other axis of alignments they are solved at the node nearest to zero. A longer period is assessed
     in its first pitch, at some of its positions and loads.
@@ -91,11 +93,11 @@ class HeldOutAlignments:
 
     @property
     def _last_probes(self) -> tuple[float, ...]:
-        """Held-out alignments of a finished axis: each center distance has a compliance of its own."""
+        """Return the held-out alignments of a finished axis; each center distance needs a compliance."""
         return MIDDLE if self.goal_of is None and self.axis == CENTER_DISTANCE else QUARTERS
 
     def _further(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
-        """Return the middles of the intervals that miss the goal; solve the held-out points that tell."""
+        """Return the middles of intervals that miss the goal; solve the held-out points that measure it."""
         if self.goal_of is None:
             return np.empty(0)
         nodes = getattr(made.table, self.axis)
@@ -108,7 +110,7 @@ class HeldOutAlignments:
         return np.asarray(middles[beyond])
 
     def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
-        """Return which intervals (I,) of an axis miss the goal; those without a solution do not."""
+        """Return the intervals (I,) of an axis that miss the goal; those without a solution do not count."""
         assert self.goal_of is not None
         _, change = self._spread(made, *self._errors(made, truths))
         goal = self.goal_of(made.table)
@@ -159,7 +161,7 @@ class HeldOutAlignments:
         truths.update(zip(at.tolist(), (curves[..., 0] for curves in solved), strict=True))
 
     def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, at: float) -> Start:
-        """Start a misalignment between the solutions at the nodes beside it."""
+        """Return the start of a misalignment between the solutions at its neighbor nodes."""
         table = made.table
         nodes, changes = table.misalignment, table.center_distance_change
         above = int(np.searchsorted(nodes, at))
@@ -213,7 +215,7 @@ class HeldOutAlignments:
 
 
 def first_pitch(table: SteDatabase) -> SteDatabase:
-    """Return the first base pitch of a longer period: at its own positions the rest does not matter."""
+    """Return the first base pitch of a longer period: interpolation at its positions needs no other pitch."""
     if table.period == 1:
         return table
     rows = int(np.searchsorted(table.position, 1.0))

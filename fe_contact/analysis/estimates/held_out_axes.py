@@ -1,4 +1,7 @@
-"""Interpolation error of a table between the nodes of its axes, measured at points it does not hold."""
+"""Interpolation error of a table between the nodes of its axes, measured at held-out points.
+
+A held-out point is solved, but is no node of the table.
+"""
 
 from __future__ import annotations
 
@@ -33,11 +36,13 @@ class AxisError:
     (I, L) or (I, 1).
     """
     change: FloatArray
-    """What that does to mean, peak-to-peak and harmonics, m. Ndarray, shape (23, I, L) or (23, I, 1)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out point, m. Ndarray, shape
+    (23, I, L) or (23, I, 1).
+    """
     inserted: FloatArray
-    """Values beside those requested, with which the table has these errors. Shape (n,)."""
+    """Values that were inserted between the requested ones. Shape (n,)."""
     limit: str = ""
-    """Why intervals that miss a tolerance got no further value; empty where all meet it."""
+    """Reason why intervals that miss a tolerance got no further value; empty where all meet it."""
 
     def to_json(self) -> Json:
         """Return plain JSON; intervals without a solution hold null."""
@@ -48,12 +53,12 @@ class AxisError:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A table with the nodes that were inserted, and what it misses between all of them."""
+    """A table with its inserted nodes, and its errors between all nodes."""
 
     made: SolvedTable
-    """With its inserted alignments."""
+    """Solved table with its inserted alignments."""
     axes: Mapping[str, AxisError] = field(default_factory=dict)
-    """By the name of the axis."""
+    """Errors of the axes, by the name of the axis."""
     loads: SupportLoads | None = None
     """Solutions at the inserted loads."""
 

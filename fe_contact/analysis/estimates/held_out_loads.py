@@ -33,8 +33,9 @@ from fe_contact.ste.support_loads import SupportLoads, with_support_loads
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
-"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
-than four intervals the middles alone: those are short."""
+"""Positions of the held-out loads in every interval, on a logarithmic scale: a kink may round the curve
+anywhere in it. With more than four intervals only the middles are solved, since the intervals are short.
+"""
 AWAY = 1.4
 """Error anywhere in an interval over the largest at its held-out loads and the positions of the table: a kink
 lies at another position for every load. Set on drawn tables (docs/decisions/0012)."""
@@ -50,25 +51,27 @@ class LoadErrors:
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each load, m. Shape (F - 1,)."""
     change: FloatArray
-    """What it does to mean, peak-to-peak and harmonics, m. Shape (23, F - 1)."""
+    """Change of mean, peak-to-peak and harmonics by the difference at the held-out load, m. Shape (23, F -
+    1).
+    """
     inserted: SupportLoads | None
     """Solutions at further loads, with which the table has these errors, in all its base pitches."""
     limit: str
-    """Why intervals that miss the goal got no further load; empty where all meet it."""
+    """Reason why intervals that miss the goal got no further load; empty where all meet it."""
 
 
 @dataclass(frozen=True)
 class HeldOutLoads:
-    """The first pitch of a table at some positions, held against solutions between its loads."""
+    """The first pitch of a table at some positions, compared with solutions between its loads."""
 
     table: SteDatabase
-    """One base pitch."""
+    """Table of the first base pitch."""
     rows: IntArray
     """Positions that are solved. Shape (R,)."""
     places: OperatingPoints
-    """Of the table."""
+    """Operating points of the table."""
     solved: Solved
-    """Of every place: held-out loads start from them."""
+    """Solutions of all operating points. The contact at held-out loads starts from them."""
 
     def errors(self, goal: IntervalGoal | None = None) -> LoadErrors:
         """Measure the error of every interval; with a goal insert loads until it is met or halved enough."""
@@ -151,7 +154,7 @@ class HeldOutLoads:
         return AWAY * error.max(axis=1), AWAY * changes.max(axis=2)
 
     def _shares(self, probes: SupportLoads, change: FloatArray, goal: IntervalGoal) -> FloatArray:
-        """Return the larger part of what is allowed that the changes take of mean and peak-to-peak, (L,).
+        """Return the larger part of the tolerance that the changes of mean and peak-to-peak take, (L,).
 
         Every point of an interval states the error of the worst: the least that is allowed in it counts.
         """
@@ -211,7 +214,7 @@ class HeldOutLoads:
 
 
 def halvings_reached(limit: int) -> str:
-    """Say that an axis was halved as often as it may be."""
+    """Return the text that intervals were halved as often as allowed."""
     return f"the limit of {limit} halvings is reached"
 
 

@@ -1,4 +1,4 @@
-"""Operating points between those of a solved table: solved by themselves and put between its own."""
+"""Operating points inserted between those of a solved table: their solutions join its arrays."""
 
 from __future__ import annotations
 

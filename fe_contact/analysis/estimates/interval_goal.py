@@ -1,4 +1,4 @@
-"""What is left of a tolerance for interpolation between the nodes of a table's axes."""
+"""Share of a tolerance that is left for interpolation between the nodes of a table's axes."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class IntervalGoal:
     """Goal of the intervals of all axes."""
 
     tolerance: AllowedError
-    """Of mean and peak-to-peak STE."""
+    """Allowed error of mean and peak-to-peak STE."""
     used: FloatArray
-    """Part of it that the errors at the nodes use. Shape (F, M, D)."""
+    """Part of the tolerance that the errors at the nodes use. Shape (F, M, D)."""
 
     def shares(self, axis: str) -> FloatArray:
         """Return the part of the tolerance (I,) that interpolation may take in every interval of an axis.
@@ -41,4 +41,6 @@ class IntervalGoal:
 
 
 GoalOf = Callable[[SteDatabase], IntervalGoal]
-"""Returns the goal of a table: inserted nodes have errors of their own."""
+"""Function that returns the goal of a table. Inserted nodes have errors too, so that the goal follows the
+table.
+"""

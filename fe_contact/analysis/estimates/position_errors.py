@@ -30,13 +30,15 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray, IntArray
 
 LEFT_BY_MIDDLES = 1.5
-"""Error of the positions over what their middles change: 4/3 for second order, and more for kinks, which may
-stand anywhere in an interval. Peaks at handovers, which would fall with the first power of the spacing, are
-looked for by themselves: the chords beside their interval bound them as they are (`peak_excess`)."""
+"""Error of the positions over the change by inserting their middles: 4/3 for second order, and more for
+kinks, which may lie anywhere in an interval. Peaks at handovers would fall with the first power of the
+spacing. They are searched for separately: the chords of the neighboring intervals bound them (`peak_excess`).
+"""
 LOADS = 7
 """Nodes of an axis of loads that are solved: peaks between positions come and go from one to the next."""
 SOLVED_PART = 4
-"""Of the intervals between fixed positions one in so many is solved, if so many bend."""
+"""Divisor of the number of bending intervals between fixed positions: at most one in `SOLVED_PART` is solved.
+"""
 NEXT_SPACING = 0.25
 """Error at half the spacing over that at the spacing: second order."""
 
@@ -46,9 +48,9 @@ class PositionErrors:
     """Errors for lack of positions, the largest of the assessed operating points at each load."""
 
     band: FloatArray
-    """Largest error beside each position of all base pitches, m. Shape (T P, F)."""
+    """Largest error near each position of all base pitches, m. Shape (T P, F)."""
     curves: FloatArray
-    """Of mean, peak-to-peak and harmonics, m. Shape (23, F)."""
+    """Errors of mean, peak-to-peak and harmonics, m. Shape (23, F)."""
 
 
 def position_errors(
@@ -79,13 +81,13 @@ def position_errors(
 
 
 def _bound(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
-    """Return what errors `left` (T P, C) in the intervals after the nodes do to the curves, (23, C) in m."""
+    """Return the errors of curves by errors `left` (T P, C) in intervals after nodes, (23, C) in m."""
     band = np.maximum(left, np.roll(left, 1, axis=0))
     return error_bound(_knots(nodes, period), band, nodes.value, period)
 
 
 def _left_of_difference(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray:
-    """Return the same of what pitches differ by from their mean: no other error is beside the mesh orders."""
+    """Return the errors of the differences of pitches from their mean, which alone are no mesh orders."""
     by_pitch = nodes.value.reshape(period, nodes.position.size, -1)
     difference = (by_pitch - by_pitch.mean(axis=0)).reshape(left.shape)
     failed = NEXT_SPACING * predicted_failure(Axis(_knots(nodes, period), float(period)), difference)
@@ -145,7 +147,7 @@ def measured_nodes(
 
 
 def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
-    """Return by how much values (K, C) at the knots of a closed axis differ from what the others predict, m.
+    """Return the differences of values (K, C) at the knots of a closed axis from predicted ones, m.
 
     Every second knot is predicted from the rest, then the rest from those.
     """

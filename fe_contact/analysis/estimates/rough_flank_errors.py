@@ -1,4 +1,4 @@
-"""Errors of strips on rough flanks: what the even gap in place of the true one misses."""
+"""Errors of strips on rough flanks, by the even gap that replaces the true one (`contact.rough_strip`)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,12 @@ from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, QUANTITIES
 from fe_contact.types import FloatArray
 
 BETWEEN_LOADS = 1.5
-"""Error of the even gap at any load over the largest at those that are solved, of nine contacts in ten."""
+"""Error of the even gap at any load over the largest error at the solved loads. Nine contacts in ten keep it.
+"""
 AT_AN_EDGE = 0.25
-"""Of what crests give way beyond plain flanks, where a tip edge touches them: no gap is fitted there."""
+"""Error of the even gap at a tip edge over the additional deflection of crests beyond plain flanks. No even
+gap is fitted at edges.
+"""
 
 
 def rough_flank_errors(problem: ContactProblem, solution: ContactSolution) -> FloatArray:

@@ -23,9 +23,9 @@ class TableSample:
     """Points of a table (P positions of each of T pitches, F, M, D) that are solved again."""
 
     position: FloatArray
-    """Of the table, in the first base pitch. Shape (P,)."""
+    """Positions of the table in the first base pitch. Shape (P,)."""
     period: int
-    """Base pitches T."""
+    """Number T of base pitches."""
     axes: Axes
     """Loads, misalignments, changes of the center distance."""
     rows: IntArray
@@ -57,7 +57,7 @@ class TableSample:
 
     @property
     def every_row(self) -> IntArray:
-        """Their rows among those of the table, (T R,)."""
+        """Indices of the solved positions of all pitches among the positions of the table, (T R,)."""
         return (np.arange(self.period)[:, None] * self.position.size + self.rows).ravel()
 
     def shaped(self, by_point: Sequence[FloatArray]) -> FloatArray:
@@ -103,7 +103,7 @@ class TableSample:
         return Start(problem.candidates, np.nan_to_num(force))
 
     def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
-        """Return those of the table's places, which do not depend on the bodies.
+        """Return the contact candidates of the table's points, which do not depend on the bodies.
 
         None in other slices and under other load patches, which have candidates of their own.
         """
@@ -116,23 +116,23 @@ class TableSample:
 
 @dataclass(frozen=True)
 class Nested:
-    """STE and load arm at some points of a table, from the run's own and rougher discretizations."""
+    """STE and load arm at some points of a table, on the discretization of the run and on rougher ones."""
 
     sample: TableSample
-    """The points."""
+    """The sampled points."""
     table: FloatArray
-    """The table's own, m. Shape (2, T R, f, m, d)."""
+    """Values of the table itself, m. Shape (2, T R, f, m, d)."""
     plane: FloatArray
-    """Without the correction for a finite width; `table` if there is none."""
+    """Values without the correction for a finite width, m; equal to `table` if there is no correction."""
     patched: FloatArray
-    """Under the wider load patches of the coarse meshes, without that correction."""
+    """Values under the wider load patches of the coarse meshes, without the correction, m."""
     coarse: FloatArray
-    """Under these on the coarse meshes."""
+    """Values under the wider load patches on the coarse meshes, without the correction, m."""
     sliced: FloatArray
-    """In half the slices; `table` in the plane."""
+    """Values with half the number of slices, m; equal to `table` in the plane."""
 
     @property
     def parts(self) -> tuple[Nested, Nested]:
-        """Those of the STE and of the load arm, arrays (T R, f, m, d)."""
+        """The values of STE and of load arm, each with arrays (T R, f, m, d)."""
         every = np.stack([self.table, self.plane, self.patched, self.coarse, self.sliced], axis=1)
         return Nested(self.sample, *every[0]), Nested(self.sample, *every[1])

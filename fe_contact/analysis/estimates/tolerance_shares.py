@@ -1,4 +1,4 @@
-"""The tolerance of a request, held against the errors of a table at and between its nodes."""
+"""The tolerance of a request compared with the errors of a table at and between its nodes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fe_contact.types import FloatArray, Json
 
 
 def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
-    """Return the errors of mean and peak-to-peak by source in parts of what is allowed.
+    """Return the errors of mean and peak-to-peak by source, relative to the tolerance.
 
     A plane that the program chose errs by its whole bias; the one of the caller is the model that was
     requested.
@@ -53,7 +53,7 @@ def _with_bias(table: SteDatabase, curve_error: FloatArray, bias: PlaneBias | No
 
 
 def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
-    """Part the errors at nodes, each (6, ...), into those that work lowers and those that last.
+    """Part the errors at nodes, each (6, ...), into errors that work lowers and errors that it does not.
 
     Those of the method last; so do those of the plane, where the caller chose it.
     """
@@ -72,7 +72,7 @@ def used_at_nodes(shares: FloatArray, request: Request) -> FloatArray:
 def interval_goal(
     table: SteDatabase, at_nodes: FloatArray, request: Request, bias: PlaneBias | None
 ) -> IntervalGoal:
-    """Return what errors at nodes (6, 23, F, M, D) in m leave of the tolerance of a request to intervals."""
+    """Return the share of a tolerance that errors at nodes (6, 23, F, M, D), m, leave to intervals."""
     tolerance = request.options.allowed
     shares = _with_bias(table, at_nodes, bias) / allowed_errors(table, tolerance)
     return IntervalGoal(tolerance, used_at_nodes(shares, request))

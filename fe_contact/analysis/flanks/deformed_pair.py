@@ -42,15 +42,15 @@ class DeformedPair:
     """
 
     position: float
-    """Base pitches."""
+    """Position of the driving gear, base pitches."""
     deflection: float
     """Static transmission error, m."""
     pinion: DeformedGear
     wheel: DeformedGear
     wheel_base_radius: float
-    """m; negative for a ring gear."""
+    """Base radius of the wheel, m; negative for a ring gear."""
     wheel_center: tuple[float, float, float]
-    """m."""
+    """Center of the wheel, m."""
 
     @property
     def wheel_lag(self) -> FloatArray:

@@ -36,8 +36,9 @@ FREE_ENDS = {
 the line load clear of edges is off by -2.1 to +1.5 %, of which the references leave 1.4 % open, the pressure
 by -0.8 to +1.8 %, the load at an edge over a slice by -1.9 to +0.2 %."""
 IN_THE_PLANE = {"line_load": 2e-3, "pressure": 5e-3, "edge_line_load": 5e-3}
-"""The same of a plane model, which has no ends: largest pressures of full contact, plain, relieved and
-crowned, are within 0.5 % of it, loads at a tip edge within 0.2 %."""
+"""Relative errors that a plane model leaves open; it has no ends of the face. Largest pressures of full
+contact on plain, relieved and crowned flanks are within 0.5 % of it, loads at a tip edge within 0.2 %.
+"""
 
 
 def with_errors(

@@ -69,7 +69,7 @@ def content(results: LoadDistribution) -> NetcdfContent:
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Read what makes a `LoadDistribution`, by its fields.
+    """Read the fields of a `LoadDistribution`.
 
     Raises `DatabaseError`: the file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
     """
@@ -96,14 +96,14 @@ def _errors(path: Path, attributes: Json) -> FlankErrors:
 
 
 def _arrays(results: LoadDistribution) -> dict[str, Any]:
-    """Return what is read back, in its order; netCDF has no booleans."""
+    """Return the arrays of a file that are read back, in its order; netCDF has no booleans."""
     arrays = {name: getattr(results, name) for name in STORED}
     edge = np.broadcast_to(results.at_edge, results.force.shape)
     return arrays | {"on_path": results.on_path.astype(np.int8), "at_edge": edge.astype(np.int8)}
 
 
 def _derived(results: LoadDistribution) -> dict[str, Variable]:
-    """Return what follows from the rest, for readers without this library."""
+    """Return derived arrays of a file, for readers without this library."""
     along = ("position",)
     centroid = {"units": "m", "long_name": "along the face"}
     per_width = {"units": "N m-1", "long_name": "force of all pairs per face width"}

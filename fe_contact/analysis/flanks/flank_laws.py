@@ -19,7 +19,7 @@ from fe_contact.types import FloatArray
 _Places = tuple[NDArray[np.intp], ...]
 
 OVERLAP = 1e-6
-"""Of the largest deflection: how well the solver closes gaps."""
+"""Allowed overlap of flanks over the largest deflection: accuracy of the gaps that the solver closes."""
 
 _PUSHING = Law("contacts push", "force pulling over the load")
 _PRESSING = Law("contacts push", "pressure below zero over the largest")
@@ -147,6 +147,6 @@ class _Flanks:
         return half_width(load, radius, self.problem.modulus)
 
     def _among(self, places: _Places) -> Callable[..., str]:
-        """Return what names a place by its number among `places`, indices of arrays (P, N K)."""
+        """Return a function that names a place by its number among `places`, indices of arrays (P, N K)."""
         stretches = self.flanks.face_position.size
         return lambda i: self._at(int(places[0][i]), *divmod(int(places[1][i]), stretches))

@@ -1,4 +1,4 @@
-"""Flank results: what happens on the flanks of a gear pair at one load and one alignment."""
+"""Flank results of a gear pair at one load and one alignment: line load, pressure, gap."""
 
 from __future__ import annotations
 

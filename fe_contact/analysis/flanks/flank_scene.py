@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 from fe_contact.errors import DatabaseError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from fe_contact.types import Json
 
 Both = tuple[float, float]
@@ -21,7 +21,7 @@ class FlankScene:
     """`normal_force`, `torque`: F_bn in N and the torque on the driving gear in N m."""
     misalignment: float
     center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
     start_of_active_profile: Both
     pitch_point: Both
     tip: Both
@@ -32,18 +32,19 @@ class FlankScene:
     """Points A, B, C, D, E as roll lengths of the driving gear, m."""
     common_face: Both
     """Ends of the common face, as distances from the pinion's mid-face, m."""
-    facts: PairFacts
+    geometry: PairGeometry
 
     def to_json(self) -> Json:
-        """Return plain JSON with the same names."""
-        return asdict(self)
+        """Return plain JSON with the same names, but for `facts`: the geometry."""
+        plain = asdict(self)
+        return plain | {"facts": plain.pop("geometry")}
 
     @classmethod
     def from_json(cls, content: Json) -> FlankScene:
         """Read back what `to_json` wrote; `DatabaseError` if it is something else."""
         try:
             plain: Json = {name: tuple(v) if isinstance(v, list) else v for name, v in content.items()}
-            plain["facts"] = PairFacts.from_json(content["facts"])
+            plain["geometry"] = PairGeometry.from_json(plain.pop("facts"))
             return cls(**plain)
         except (TypeError, ValueError, KeyError, AttributeError) as error:
             raise DatabaseError("the scene of the flank results is not readable") from error
@@ -68,5 +69,5 @@ def flank_scene(
         tip=(pair.pinion.tip_roll_length, pair.wheel.tip_roll_length),
         path_of_contact=path.points,
         common_face=pair.common_face,
-        facts=PairFacts.of(pair),
+        geometry=PairGeometry.of(pair),
     )

@@ -34,17 +34,17 @@ class FlankErrors:
     """Errors of figures of flank results over their values, or why there are none."""
 
     line_load: float | None = None
-    """`line_load`, `pressure`: Of the largest ones clear of edges. None: not estimated."""
+    """`line_load`, `pressure`: Relative errors of the largest values away from edges. None: not estimated."""
     face_load_factor: float | None = None
     largest_face_load_factor: float | None = None
-    """`face_load_factor`, `largest_face_load_factor`: Of K_Hbeta over the cycle, and of the largest one at a
-    position.
+    """`face_load_factor`, `largest_face_load_factor`: Relative errors of K_Hbeta over the cycle, and of the
+    largest K_Hbeta at a position.
     """
     pressure: float | None = None
     edge_line_load: float | None = None
-    """Of the largest one at edges, as a mean over a slice."""
+    """Relative error of the largest line load at edges, as a mean over a slice."""
     reason: str = "one solution tells no error"
-    """Why those that are None are not estimated."""
+    """Reason why errors that are None are not estimated."""
     kink_length: float = 0.0
     """Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
     infinite at the kink, the stated one 4/pi times the mean over this length.
@@ -57,7 +57,7 @@ class LoadDistribution:
     """One load on P positions, N tooth pairs and K stretches of the common face, several a slice."""
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (N,)."""
     face_position: FloatArray
@@ -66,8 +66,8 @@ class LoadDistribution:
     """Static transmission error, m. Shape (P,)."""
     roll_length_1: FloatArray
     roll_length_2: FloatArray
-    """`roll_length_1`, `roll_length_2`: Where the flanks touch or come closest, on either gear, m. Shape (P,
-    N, K) each.
+    """`roll_length_1`, `roll_length_2`: Roll lengths on either gear at which the flanks touch or come
+    closest, m. Shape (P, N, K) each.
     """
     on_path: BoolArray
     """Whether any part of the stretch lies between A and E, where plain involutes touch. Shape (P, N, K)."""
@@ -86,7 +86,7 @@ class LoadDistribution:
     touch. Shape (P, N, K).
     """
     slice_width: float
-    """Of a stretch along the face, m."""
+    """Width of a stretch along the face, m."""
     base_helix_angle: float
     """beta_b of gear 1, rad."""
     scene: FlankScene
@@ -96,7 +96,7 @@ class LoadDistribution:
     at_edge: BoolArray | bool = False
     """Whether the strip reaches an edge of either flank; nowhere in files older than it. Shape (P, N, K)."""
     errors: FlankErrors = field(default_factory=FlankErrors)
-    """Of the largest line load, of K_Hbeta and of the largest pressure."""
+    """Relative errors of the largest line load, of K_Hbeta and of the largest pressure."""
 
     @property
     def clear_pressure(self) -> FloatArray:
@@ -159,14 +159,14 @@ class LoadDistribution:
         return _estimate(largest, self.errors.largest_face_load_factor, "1")
 
     def at(self, positions: BoolArray) -> LoadDistribution:
-        """Return the same at some of the positions (P,), without errors."""
+        """Return the load distribution at some of the positions (P,), without errors."""
         per_position = {name: getattr(self, name)[positions] for name in _PER_POSITION}
         edge = np.broadcast_to(self.at_edge, self.force.shape)[positions]
         return replace(self, **per_position, at_edge=edge, errors=FlankErrors())
 
     @property
     def load_centroid(self) -> FloatArray:
-        """Where along the face the load of all pairs acts (P,), m; `face_centroid` of the STE database."""
+        """Position along the face where the load of all pairs acts (P,), m; `face_centroid` of databases."""
         loaded = (self.force * self.lever).sum(axis=1)
         return np.asarray((loaded @ self.face_position) / loaded.sum(axis=1))
 
@@ -181,7 +181,7 @@ class LoadDistribution:
 
     @property
     def mean_face_load_factor(self) -> float:
-        """K_Hbeta of the face load averaged over all positions: what it is over a mesh cycle."""
+        """K_Hbeta of the face load averaged over all positions of a mesh cycle."""
         return float(_largest_over_mean(self.face_load.mean(axis=0)))
 
     @property
@@ -196,7 +196,7 @@ class LoadDistribution:
         return _over_mean_of(self.line_load, self._meshing)
 
     def to_xarray(self) -> xarray.Dataset:
-        """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
+        """Return all fields with units, and derived ones: line load, factors, contact patterns."""
         from fe_contact.analysis.flanks.flank_file import content  # noqa: PLC0415
 
         return content(self).to_xarray()
@@ -294,7 +294,7 @@ def _estimate(value: float, relative: float | None, unit: str) -> Estimate:
 
 
 def _windows(values: Stretches, count: int) -> Stretches:
-    """Return so many stretches beside each other of values (..., K), (..., K + 1 - count, count)."""
+    """Return windows of `count` neighboring stretches of values (..., K), (..., K + 1 - count, count)."""
     return np.lib.stride_tricks.sliding_window_view(values, count, axis=-1)
 
 

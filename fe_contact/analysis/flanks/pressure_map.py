@@ -1,4 +1,4 @@
-"""Pressure over the unrolled flank, between what was computed."""
+"""Pressure over the unrolled flank, interpolated between the computed points."""
 
 from __future__ import annotations
 

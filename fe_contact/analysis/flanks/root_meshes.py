@@ -1,4 +1,4 @@
-"""Meshes for the stress of the tooth roots, and coarser ones that tell its error."""
+"""Meshes for the stress of the tooth roots, and coarser ones for its error."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 
 FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
-"""Elements along the root, and their depth below both flanks, against those of the contact's sectors."""
+"""Number of elements along the root, and element size in the depth below both flanks, over those of the
+sectors of the contact.
+"""
 
 
 @dataclass(frozen=True)
 class _PlaneRootMeshes:
-    """Sections of both gears, driving gear first: those of the contact, and others half as fine."""
+    """Sections of both gears, driving gear first: the sections of the contact, and sections half as fine."""
 
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
@@ -26,7 +28,7 @@ class _PlaneRootMeshes:
 
 @dataclass(frozen=True)
 class FaceRootMeshes:
-    """Sectors of both gears, driving gear first: those of the contact, finer at the root.
+    """Sectors of both gears, driving gear first: the sectors of the contact, finer at the root.
 
     The coarse ones are the contact's own, with layers of the next coarser mesh.
     """

@@ -95,7 +95,7 @@ class RootStress:
     """`torque`, `normal_force`: Torque on the driving gear, N m, and normal force of the teeth F_bn, N."""
     misalignment: float
     center_distance_change: float
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
     receipt: Json
     """CPU seconds by stage, memory, the plan, assumptions and repeated solutions: plain JSON."""
     warnings: list[Json] = field(default_factory=list)

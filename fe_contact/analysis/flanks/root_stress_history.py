@@ -24,13 +24,13 @@ class RootPeak:
     error of the root's mesh, of the contact's discretization and of the model.
     """
     position: float
-    """Base pitches."""
+    """Position of the driving gear, base pitches."""
     pair: int
-    """Whose tooth; position (modulo 1) + pair counts along the passage of one tooth."""
+    """Pair of the stressed tooth; position (modulo 1) + pair counts along the passage of one tooth."""
     flank_coordinate: float = field(metadata=in_unit("m"))
-    """m; between stations by a parabola."""
+    """Coordinate along the profile from the middle of the tooth space, m; between stations by a parabola."""
     tangent_angle: float = field(metadata=in_unit("rad"))
-    """Of the surface there with the tooth's center line, rad."""
+    """Angle between the tangent of the surface and the center line of the tooth at the peak, rad."""
     face_position: float = field(metadata=in_unit("m"))
     """Distance from the pinion's mid-face, m."""
 
@@ -58,39 +58,43 @@ class RootStressHistory:
     """Surface stress of the tooth roots of one gear."""
 
     position: FloatArray
-    """Base pitches, by the driving gear's angle. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     pair: IntArray
-    """Pair index of each tooth: those that touch, and one beyond at either end, which only neighbors load.
+    """Pair index of each tooth: the touching teeth, and one more at either end, which only neighbors load.
     Shape (N,).
     """
     flank_coordinate: FloatArray
-    """Of the stations along the profile, m, from the middle of the tooth space to the form point. Shape (p,).
+    """Coordinates of the stations along the profile, m, from the middle of the tooth space to the form point.
+    Shape (p,).
     """
     tangent_angle: FloatArray
-    """Of the surface there with the tooth's center line, rad. Shape (p,)."""
+    """Angle between the tangent of the surface and the center line of the tooth at each station, rad. Shape
+    (p,).
+    """
     face_position: FloatArray
-    """Of the stations across, as distance from the pinion's mid-face, m; a single one in the plane. Shape
-    (q,).
+    """Positions of the stations across the face, as distance from the pinion's mid-face, m; a single one in
+    the plane. Shape (q,).
     """
     stress: FloatArray
-    """Pa. Third axis: tension root (beside the loaded flank), compression root. Fourth: along the profile,
-    across it in the surface, shear between the two. Shape (P, N, 2, 3, p, q).
+    """Stress, Pa. Third axis: tension root (next to the loaded flank), compression root. Fourth: along the
+    profile, across it in the surface, shear between the two. Shape (P, N, 2, 3, p, q).
     """
     near_load: BoolArray
-    """Stations of the tension root under a load patch of their tooth or within half a patch of it. The
-    surface there is not free, and the patch is wider than the contact: they count for no peak. Shape (P, N,
-    p, q).
+    """Whether a station of the tension root lies under a load patch of its tooth or within half a patch of
+    it. The surface there is not free, and the patch is wider than the contact: such stations count for no
+    peak. Shape (P, N, p, q).
     """
     relative_error: float
-    """Of the peaks: by the mesh of the root, by positions, slices and mesh of the contact, and by the model.
+    """Relative error of the peaks: by the mesh of the root, by positions, slices and mesh of the contact, and
+    by the model.
     """
     critical_coordinate: float
-    """Where ISO 6336-3 takes the critical section: the tangent has 30 degrees (internal gears: 60) with the
-    tooth's center line, m.
+    """Flank coordinate of the critical section of ISO 6336-3, m: the tangent has 30 degrees (internal gears:
+    60) with the center line of the tooth.
     """
 
     def at(self, positions: BoolArray) -> RootStressHistory:
-        """Return the same at some of the positions (P,)."""
+        """Return the stress at some of the positions (P,)."""
         rows = {name: getattr(self, name)[positions] for name in ("position", "stress", "near_load")}
         return replace(self, **rows)
 
@@ -125,7 +129,7 @@ class RootStressHistory:
         return crest_values(self.flank_coordinate, np.moveaxis(values, 2, -1))
 
     def passage(self) -> RootPassage:
-        """Return what one tooth meets, all its pairs' positions in a row.
+        """Return the stress of one tooth over its passage through mesh, the positions of all pairs in a row.
 
         Positions in several base pitches are of several teeth, which then stand beside each other.
         """

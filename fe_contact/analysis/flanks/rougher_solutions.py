@@ -1,4 +1,4 @@
-"""An operating point on rougher discretizations: what errors on the flanks and in the roots are told by."""
+"""An operating point on rougher discretizations, for the errors of flank results and root stress."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ from fe_contact.errors import SolveError
 from fe_contact.types import BoolArray, FloatArray
 
 FEWEST_POSITIONS = 8
-"""Positions from which on every second one tells what lies between them."""
+"""Least number of positions with which every second position is left out to measure the error between
+positions.
+"""
 
 
 class Rougher(NamedTuple):
@@ -59,7 +61,7 @@ def rougher_solutions(solved: SolvedOperatingPoint, cache: Path | None) -> Itera
 
 
 def _at(solved: SolvedOperatingPoint, keep: BoolArray) -> SolvedOperatingPoint:
-    """Return the same at some of the positions (P,)."""
+    """Return the operating point at some of the positions (P,)."""
     rows = np.flatnonzero(keep)
     fields = {name: values[rows] for name, values in vars(solved.solution).items() if name != "load"}
     return replace(
@@ -68,7 +70,7 @@ def _at(solved: SolvedOperatingPoint, keep: BoolArray) -> SolvedOperatingPoint:
 
 
 def _on(solved: SolvedOperatingPoint, contact: PairContact) -> SolvedOperatingPoint:
-    """Return the same operating point and positions on another discretization."""
+    """Return the operating point, solved at the same positions on another discretization."""
     places = solved.places.on(contact)
     position = solved.problem.candidates.position
     pitch = np.floor(position).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Contact of one load and one alignment: what flank results and deformed gears start from."""
+"""Contact of one load and one alignment, the start of flank results and deformed gears."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from fe_contact.types import FloatArray, Json, Status
 from model_studies.stage_clock import StageClock
 
 POSITIONS = 64
-"""Over one mesh cycle, where none are requested."""
+"""Number of positions over one mesh cycle where none is requested."""
 LISTED = 5
 """Positions without a solution that a message names."""
 
@@ -30,7 +30,7 @@ LISTED = 5
 def solved_point(
     checked: Checked, at: ArrayLike | None, clock: StageClock, run: Run
 ) -> tuple[SolvedOperatingPoint, Json]:
-    """Solve an operating point at positions, check what that took for granted, and repeat it if needed.
+    """Solve an operating point at positions, check its assumptions, and repeat the solution if needed.
 
     Raises `InputError`: a value that cannot be used, by field name; `MeshError`, `SolveError` as
     `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".

@@ -1,4 +1,4 @@
-"""Assumptions of a condensed pair's table: what its solution can show is checked, the rest is named."""
+"""Assumptions of a condensed pair's table: some are checked on its solution, the others are named."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class CondensedContacts:
         )
 
     def with_flanks(self, pair: ParallelAxes) -> CondensedContacts:
-        """Return the same bodies with other flanks; they share what is assembled.
+        """Return the bodies with other flanks; they share the assembled compliance.
 
         Where flanks touch does not depend on the bodies. The contacts in the same slices share one record of
         it, which `touch` fills; other slices do not fit that record.
@@ -65,7 +65,7 @@ class CondensedContacts:
         )
 
     def touch(self, model: ContactModel, sample: TableSample) -> None:
-        """Record where the flanks touch: at all positions of a table, and at those of the sample.
+        """Record the touching points of the flanks at all positions of a table, and at those of the sample.
 
         Call it on the result of `with_flanks`: all its contacts in the same slices read this record.
         """
@@ -85,7 +85,7 @@ class CondensedContacts:
             self.fine.keep_rows(model, position, rows)
 
     def at_distance(self, change: float) -> CondensedContacts:
-        """Return the same bodies at a center distance larger by `change` in m; nothing is assembled there.
+        """Return the bodies at a center distance larger by `change`, m; nothing is assembled at it.
 
         What is assembled (`_problems`) depends on the center distance, so it is not shared.
         """
@@ -95,7 +95,7 @@ class CondensedContacts:
         return CondensedContacts.of(nominal, coarse)
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
-        """Assemble what is not kept yet: the fine pair at all positions, others at those of the sample."""
+        """Assemble missing compliances: of the fine pair at all positions, of others at the sample's."""
         candidates = self.fine.candidates(model, sample.position)
         self.fine.assemble(model, candidates)
         positions = sample.position[sample.rows]

@@ -70,7 +70,7 @@ def condensed_errors(
 
 
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
-    """Return what the level of the meshes is known to leave, (23, F, 1, 1), and its band (1, F, 1, 1), m.
+    """Return the known errors of the level of the meshes, (23, F, 1, 1), and its band (1, F, 1, 1), m.
 
     A harmonic may be wrong by as much as peak-to-peak. A misaligned pair leads at no load, and so may its
     mean: what the meshes are wrong by then hangs on what the load adds.

@@ -42,10 +42,13 @@ from fe_contact.types import FloatArray
 from model_studies.stage_clock import StageClock
 
 PLANE_POSITIONS, FACE_POSITIONS = 192, 64
-"""Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
-handovers are steep, and positions cost little."""
+"""Equally spaced positions of a base pitch, in the plane and over the face. The compliance at them is
+assembled once for all flanks. In the plane handovers are steep, and positions cost little.
+"""
 MAX_ROWS, FEWEST_POSITIONS = 4096, 16
-"""Of longer periods, which repeat the positions in every base pitch."""
+"""Limits where teeth differ and the positions repeat in every base pitch: the most positions of the whole
+period, and the fewest of a base pitch.
+"""
 CACHED_DISTANCES = 2
 """Changes of the center distance at which the compliance stays assembled."""
 
@@ -57,14 +60,14 @@ class _Latest:
 
 @dataclass(frozen=True)
 class CondensedPair:
-    """Gears with their compliance, as a table had them."""
+    """Gears with the compliance of a table, for other flanks, loads and alignments."""
 
     checked: Checked
-    """What the table was asked, its model bound to the bodies it had."""
+    """Request of the table, its model bound to the bodies of the table."""
     contacts: CondensedContacts
-    """At the nominal center distance; they keep what was assembled for the positions."""
+    """Contacts at the nominal center distance. They keep the assembled compliance of the positions."""
     neglected: Mapping[str, str] = field(default_factory=dict)
-    """Effects of the bodies that the tolerance of the table neglected, and why."""
+    """Effects of the bodies that the tolerance of the table neglected, each with the reason."""
     _by_distance: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
     _latest: _Latest = field(default_factory=_Latest, repr=False)
 
@@ -197,7 +200,7 @@ class CondensedPair:
     def posed(
         self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float
     ) -> tuple[Checked, CondensedContacts, OperatingPoints, PositionNodes, Plan]:
-        """Return what the contact is solved with: request, bodies with the flanks, positions and plan.
+        """Return the data of a contact solution: request, bodies with the flanks, positions and plan.
 
         Parameters and errors are those of `table`.
         """
@@ -262,7 +265,7 @@ class CondensedPair:
         return bodies, operating_points(scene, request.choices, bodies.fine)
 
     def _at(self, change: float) -> CondensedContacts:
-        """Return the contacts at a change of the center distance in m; those requested last are kept."""
+        """Return the contacts at a change of the center distance in m; the latest ones stay in memory."""
         if change == 0.0:
             return self.contacts
         if change not in self._by_distance:
@@ -303,7 +306,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
 
 
 def _plain(pair: Any) -> list[object]:
-    """Return what a pair is but for the modification of its flanks."""
+    """Return the pair without the modification of its flanks."""
     gears = pair.pinion, pair.wheel
     sizes = [getattr(pair, part.name) for part in fields(pair) if part.name not in ("pinion", "wheel")]
     for gear in gears:

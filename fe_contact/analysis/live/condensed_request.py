@@ -1,4 +1,4 @@
-"""The condensed bodies of a request: other flanks and alignments follow without a table of their own."""
+"""The condensed bodies of a request, for other flanks and alignments without a further table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Block of positions of a line of the table: the task that workers solve."""
+"""Block of positions on a line of a table, the task that workers solve.
+
+A line of the table is one center distance with all its misalignments.
+"""
 
 from __future__ import annotations
 
@@ -18,42 +21,44 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class ContactBlock:
-    """One block."""
+    """Contact problem of a block of positions at all misalignments."""
 
     pair: ParallelAxes
-    """At the center distance of the line."""
+    """Gear pair at the center distance of the line."""
     plan: Plan
     candidates: Candidates
-    """Of plain involutes at the positions of the block."""
+    """Contact candidates of plain involutes at the positions of the block."""
     models: tuple[ContactModel, ...]
-    """Of the misalignments; they share one compliance."""
+    """Contact models of the misalignments. They share one compliance."""
     pitches: IntArray | None
-    """Whole base pitches to put the positions into, as `PairContact.solve` takes them. Ndarray of int, shape
-    (T,),.
+    """Whole base pitches that the positions are repeated in, as `PairContact.solve` takes them. Ndarray of
+    int, shape (T,).
     """
     loads: tuple[FloatArray, ...]
-    """Sets of normal forces in N; each is solved by itself."""
+    """Sets of normal forces, N; each set is solved by itself."""
     conditioned: bool = False
     """Whether condition numbers are wanted."""
     edges: bool = False
     """Whether the depth of tip edges under the first set of loads is wanted."""
     starts: tuple[FloatArray, ...] | None = None
-    """Forces in N on the candidates that each model starts from; default: each load from the one below it.
-    Tuple of ndarray, shape (rows, L, n).
+    """Forces on the candidates that the solution of each model starts from, N. Default: each load starts from
+    the load below it. Tuple of ndarray, shape (rows, L, n).
     """
     assembled: ContactProblem | None = None
-    """Of the candidates, with the compliance between them, where that is known: it need not be assembled."""
+    """Problem of the candidates with their assembled compliance, where it is known; else None, and the
+    compliance is assembled.
+    """
 
     def start(self, model: int) -> Start | None:
-        """Return what the solution of a model is started from."""
+        """Return the forces that the solution of a model starts from."""
         return None if self.starts is None else Start(self.candidates, self.starts[model])
 
 
 @dataclass(frozen=True)
 class SolvedBlock:
-    """What is kept of each model of a block for each set of loads, and condition numbers.
+    """Solved contacts of a block, for each model and each set of loads, and condition numbers.
 
-    The latter are of the compliance at the positions, if they were wanted.
+    The condition numbers are those of the compliance at the positions; None unless they were requested.
     """
 
     contacts: tuple[tuple[SolvedContact, ...], ...]

@@ -12,10 +12,10 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
 OF_PAIRS = ("load_share", "pair_pressure")
-"""Those with an axis of pairs."""
+"""Names of the arrays that have an axis of tooth pairs."""
 
 OF_SUPPORT = ("static_transmission_error", "tangent_compliance", "pairs_in_contact")
-"""What is stored of support loads."""
+"""Names of the arrays that a table stores at support loads."""
 
 
 def contact_fields(

@@ -37,7 +37,7 @@ from model_studies.progress import Report, unreported
 from model_studies.workers import InProcess, Workers
 
 TASK_SECONDS = 0.1
-"""CPU seconds that a block is predicted to take: five times what it costs Dask to hand it out."""
+"""Predicted CPU seconds of a block: five times the cost of its distribution by Dask."""
 
 R = TypeVar("R")
 
@@ -79,7 +79,7 @@ class _Line:
 
 
 def _solved_lines(lines: Sequence[_Line], workers: Workers, report: Report = unreported) -> list[SolvedBlock]:
-    """Solve lines; their contacts keep what was assembled for them. `report` is called after each line."""
+    """Solve lines; their contacts keep the assembled compliances. `report` is called after each line."""
     solved: list[SolvedBlock] = []
     for line, blocks in zip(lines, _by_line(lines, workers, solve_block), strict=True):
         joined = _joined(line, blocks)
@@ -130,7 +130,7 @@ def _joined(line: _Line, blocks: list[SolvedBlock]) -> SolvedBlock:
 
 
 def _joined_contact(parts: list[SolvedContact], problem: ContactProblem, pitches: int) -> SolvedContact:
-    """Put what is kept of the blocks of a line together; forces are those of one base pitch."""
+    """Join the contacts of the blocks of a line; forces are those of one base pitch."""
     solutions = [part.solution for part in parts]
     forces = _rows([solution.force for solution in solutions], 1)
     solution = replace(_joined_arrays(solutions, pitches, ("load", "force")), force=forces)
@@ -165,7 +165,7 @@ def _joined_touch(parts: list[Touch]) -> Touch:
 
 
 def _joined_arrays(parts: list[Arrays], pitches: int, same: tuple[str, ...] = ()) -> Arrays:
-    """Put dataclasses of arrays over the rows together; those that are the `same` in all stay."""
+    """Join dataclasses of arrays over their rows; arrays named in `same` are equal in all of them."""
     joined: Arrays = replace(
         parts[0],
         **{
@@ -328,7 +328,7 @@ def _sent_lines(
     pitches: IntArray | None,
     known: Sequence[Candidates] | None = None,
 ) -> Lines:
-    """Gather the places that share a compliance into lines, each with the numbers of its places.
+    """Return lines of operating points that share a compliance, each with the numbers of its points.
 
     Empty where there is nobody else to solve them, or less than one task of work.
     """

@@ -17,7 +17,7 @@ from model_studies.workers import InProcess, Workers
 
 
 class Derived(Protocol):
-    """Who gives the base pitches of a long period by derivatives about some of them."""
+    """Rule that gives the base pitches of a long period by derivatives about some of them."""
 
     def on(self, point: OperatingPoint, position: FloatArray, load: FloatArray) -> FloatArray:
         """Return transmission error and load arm (T P, L, 2) in m at positions (P,) and loads (L,).
@@ -60,11 +60,11 @@ class OperatingPoints:
     shape: tuple[int, int]
     """Numbers of misalignments and center distances."""
     places: tuple[OperatingPoint, ...]
-    """Those of one center distance share their compliance."""
+    """Operating points, those of one center distance one after the other. They share its compliance."""
     nominal: PairContact
     """The pair at its nominal center distance, which may be no operating point of the table."""
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
-    """Who solves them."""
+    """Workers that solve the operating points."""
 
     @property
     def period(self) -> int:
@@ -78,7 +78,7 @@ class OperatingPoints:
 
     @property
     def assessed_indices(self) -> tuple[int, ...]:
-        """Indices of those among all operating points."""
+        """Indices of the assessed operating points among all."""
         last = len(self.places) - 1
         return tuple(sorted({0, last // 2, last}))
 
@@ -93,20 +93,20 @@ class OperatingPoints:
         return self._with_contacts(lambda contact: contact.in_coarse_patches)
 
     def on_bodies(self, nominal: PairContact) -> OperatingPoints:
-        """Return the same places over other compliances of the gears, those of `nominal`."""
+        """Return the operating points over other compliances of the gears, those of `nominal`."""
         points = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
         return replace(points, nominal=nominal)
 
     def on(self, contact: PairContact) -> OperatingPoints:
-        """Return the same places, which are of one center distance, with another contact."""
+        """Return the operating points, which are of one center distance, with another contact."""
         return self._with_contacts(lambda _contact: contact)
 
     def in_slices(self, count: int) -> OperatingPoints:
-        """Return the same places in other slices."""
+        """Return the operating points in another number of slices."""
         return self._with_contacts(lambda contact: contact.in_slices(count))
 
     def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> OperatingPoints:
-        """Return the same places with other contacts; those of one center distance share their compliance."""
+        """Return the operating points with other contacts; one center distance has one compliance."""
         contacts = {id(point.contact): change(point.contact) for point in self.places}
         points = tuple(replace(point, contact=contacts[id(point.contact)]) for point in self.places)
         return replace(self, places=points)

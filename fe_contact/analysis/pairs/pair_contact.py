@@ -52,32 +52,37 @@ Bodies = PlaneFlanks | FaceFlanks
 
 @dataclass(frozen=True)
 class PairContact:
-    """A pair whose flank compliances are known; every question about it is cheap."""
+    """A pair whose flank compliances are known. Only gaps and contact are left to compute."""
 
     pair: ParallelAxes
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
-    """`plane`, `face`: Of both gears, in the plane or over the face width; exactly one of the two."""
+    """`plane`, `face`: Compliances of both gears, in the plane or over the face width; exactly one of the
+    two.
+    """
     uncorrected: PlaneFlanks | None = None
-    """Those in the plane before they were corrected for the finite width, if they were."""
+    """Compliances in the plane before the correction for the finite width; None if there was no correction.
+    """
     varied: bool = False
-    """Whether its flanks are to vary: problems then tell how compliance changes along them, sloped or not."""
+    """Whether the flanks of the pair are to vary. Problems then have the change of the compliance along the
+    flanks, with or without slopes.
+    """
     touches: dict[bytes, Touch] = field(default_factory=dict, repr=False)
-    """Where its flanks touch under the gaps of the only model it is used with, by the bytes of the positions;
-    where there is none it is found for every problem.
+    """Touching points of the flanks under the gaps of the one model that the pair is used with, by the bytes
+    of the positions. Where the mapping lacks positions, each problem finds its own touching points.
     """
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of_bodies(cls, pair: ParallelAxes, plan: Plan, bodies: Bodies) -> PairContact:
-        """Return a pair of these compliances, which are of the kind of its plan."""
+        """Return a pair with these compliances, which are in the plane or over the face as its plan is."""
         over_face = isinstance(plan.discretization, FaceDiscretization)
         return cls(pair, plan, **{"face" if over_face else "plane": bodies})  # type: ignore[arg-type]
 
     @property
     def bodies(self) -> Bodies:
-        """Its compliances; the same object at every center distance."""
+        """Compliances of the gears; the same object at every center distance."""
         bodies = self.plane if self.face is None else self.face
         if bodies is None:
             raise ValueError("a pair contact needs the compliance of its gears")
@@ -102,7 +107,7 @@ class PairContact:
     def problem(
         self, model: ContactModel, position: FloatArray, pitch: IntArray | None = None
     ) -> ContactProblem:
-        """Assemble what `solve` solves."""
+        """Assemble the contact problem that `solve` solves."""
         problem = self._problem(model, position)
         problem = with_flanks(self.pair, problem, model, self.touches.get(position.tobytes()))
         if pitch is None and not model.tooth_gaps:
@@ -144,7 +149,7 @@ class PairContact:
         return replace(self, plane=self.uncorrected, uncorrected=None, _problems={})
 
     def in_slices(self, count: int) -> PairContact:
-        """Return the same bodies in another number of slices; itself in the plane."""
+        """Return the contact with another number of slices; itself in the plane."""
         made = self.plan.discretization
         if not isinstance(made, FaceDiscretization):
             return self
@@ -174,11 +179,11 @@ class PairContact:
         return contact_candidates(self.pair, model, position, self.plan.patch, slices)
 
     def key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
-        """Return what a kept compliance depends on, beside the bodies."""
+        """Return the key of an assembled compliance for the same bodies."""
         return (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
 
     def _keep(self, model: ContactModel, candidates: Candidates) -> None:
-        """Assemble the compliance of candidates, in the place of what was kept first."""
+        """Assemble the compliance of candidates; it replaces the oldest one in memory."""
         self._make_room()
         bodies = self._assembled(candidates, model.couple_teeth)
         self._store(model, with_compliances(self.pair, bodies, model))
@@ -188,7 +193,7 @@ class PairContact:
         self._problems[self.key(model, problem.candidates.position)] = problem
 
     def _make_room(self) -> None:
-        """Let go of what was kept first, before the memory of another is needed."""
+        """Drop the oldest compliance, before the memory of another is needed."""
         while len(self._problems) >= CACHED_PROBLEMS:
             self._problems.pop(next(iter(self._problems)))
 

@@ -1,4 +1,4 @@
-"""Contact of uncoupled slices: every slice of every tooth pair is a spring of its own.
+"""Contact of uncoupled slices: every slice of every tooth pair is an independent spring.
 
 The error d of springs with stiffness k_i, gap g_i and lever arms a_i (motion) and t_i (torque) obeys
 
@@ -33,7 +33,7 @@ from fe_contact.hertz import contact_modulus
 from fe_contact.types import FloatArray, IntArray, Status
 
 SLICES = 65
-"""Of the common face; uncoupled slices cost next to nothing."""
+"""Slices of the common face; uncoupled slices cost next to nothing."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Contact of an operating point over many base pitches: solved in parts, and what a table keeps of it.
+"""Contact of an operating point over many base pitches, solved in parts and reduced to stored arrays.
 
 The touching points of a whole hunting cycle take gigabytes. Parts of its base pitches are laid out, solved
 and reduced one after the other: memory holds those of one part beside the arrays of the table.
@@ -43,16 +43,16 @@ def problems_in_parts(
 
 @dataclass(frozen=True)
 class SolvedContact:
-    """What is kept of the contact of an operating point at P positions in each of T base pitches."""
+    """Contact of an operating point at P positions in each of T base pitches, as a table stores it."""
 
     problem: ContactProblem
-    """Of the first of the base pitches."""
+    """Contact problem of the first base pitch."""
     solution: ContactSolution
-    """Of all of them, but for its forces (P, L, n): those in the first."""
+    """Solution in all base pitches, except its forces (P, L, n), which are those of the first base pitch."""
     stored: Mapping[str, NDArray[Any]]
-    """Arrays (T P, L, ...) by their names in the table."""
+    """Arrays (T P, L, ...) of the table, by their names."""
     edge_depth: FloatArray
-    """How far tip edges would be inside the mating flanks, m; 0 where they stay clear or were left aside.
+    """Largest depth of tip edges inside the mating flanks, m; 0 where edges stay clear or were not assessed.
     Shape (L,).
     """
 

@@ -12,7 +12,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 OUTSIDE = 1e-3
-"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
+"""Distance before A and after E at which the gap of an edge is assessed, base pitches. The gap grows from
+there on.
+"""
 
 
 def handovers(pair: ParallelAxes) -> FloatArray:

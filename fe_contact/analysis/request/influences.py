@@ -13,7 +13,7 @@ Influences = Mapping[str, Influence | None]
 
 
 def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -> dict[str, Influence | None]:
-    """Estimate what leaving each effect out of a request's model changes at its nominal load.
+    """Estimate the influence of each effect of a request's model at its nominal load.
 
     Parameters
     ----------

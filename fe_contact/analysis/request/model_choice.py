@@ -39,17 +39,19 @@ class Decision:
     """A request with its model and mesh."""
 
     checked: Checked
-    """With the chosen model, and a ledger that says why."""
+    """Request with the chosen model, and a ledger that states the reason."""
     mesh: MeshChoice
     plan: Plan
     wished: Decision | None = None
-    """What the tolerance needs, where the time does not allow it."""
+    """Decision that the tolerance needs, where the time does not allow it."""
     behind: Decision | None = None
-    """What is expected to follow, where a mesh that is expected to miss the tolerance is tried first."""
+    """Decision that is expected to follow, where a mesh that is expected to miss the tolerance is tried
+    first.
+    """
 
     @property
     def passes(self) -> tuple[Decision, ...]:
-        """The request and what is expected to follow it."""
+        """The request and the request that is expected to follow it."""
         return (self,) if self.behind is None else (self, self.behind)
 
     def in_slices(self, count: int) -> Decision:
@@ -75,11 +77,11 @@ class Decision:
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
 
     def predicted(self, cache: Path | None) -> Prediction:
-        """Predict what the run costs, with the compliances that are in the cache."""
+        """Predict the cost of the run, with the compliances that are in the cache."""
         return self.checked.predicted(self.plan, cache)
 
     def to_json(self) -> Json:
-        """Return what was chosen, as plain JSON."""
+        """Return the chosen model and mesh as plain JSON."""
         return {"model": self.checked.model_name} | self.mesh.to_json()
 
 
@@ -113,7 +115,7 @@ def decide(
 def _trial(
     models: Sequence[Checked], chosen: MeshChoice, curves: ExpectedCurves | None
 ) -> tuple[Checked, MeshOption] | None:
-    """Return the most exact of the meshes that cost next to nothing beside the chosen one, or None.
+    """Return the most exact mesh whose cost is negligible against the chosen one, or None.
 
     Costs are compared without the positions that a tolerance asks for, so that what is tried beside a dearer
     mesh costs no less. The uncorrected plane is left out: a tighter tolerance would not try it.
@@ -138,7 +140,7 @@ def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = F
 
 
 def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decision:
-    """Choose by the tolerance what fits into the time budget; else the most exact that fits."""
+    """Choose a mesh that meets the tolerance within the time budget; else the most exact within it."""
     options = checked.request.options
     budget = options.time_budget or 0.0
 
@@ -185,7 +187,7 @@ def _wishes(checked: Checked) -> bool:
 
 
 def alternative_requests(checked: Checked) -> list[Checked]:
-    """Return the request with every model that may stand in for its own; itself where it is bound."""
+    """Return the request with every model that may replace its own; itself where the model is fixed."""
     request = checked.request
     face, width = request.model_effects
     overridden = set(request.model_effects) & {*request.neglected, *request.turned_on}
@@ -269,7 +271,7 @@ def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
 
 
 def _reason(tells: bool, text: str, parts: str) -> str:
-    """Say why an effect that tells the models apart was turned here; reasons of others stay."""
+    """Return why an effect that decides about the model was switched; reasons of other effects stay."""
     mine = tells and text in ("taken", "left out")
     return f"{text} for the requested accuracy: expected error {parts}" if mine else text
 

@@ -9,8 +9,10 @@ from fe_contact.effects import ContactScene, LedgerEntry
 from fe_contact.effects.influence.estimate import estimate_influences, largest_part
 
 SHARE = 0.1
-"""Part of the tolerance that all neglected effects together may change by their estimates, which are right
-within a factor of two in most cases (docs/accuracy.md): what is neglected stays below it."""
+"""Part of the tolerance that the estimated influences of all neglected effects may add up to. Estimates are
+right within a factor of two in most cases (docs/accuracy.md), so that the true influence stays below the
+tolerance.
+"""
 
 LARGEST_PART = 0.5
 """Part of the tolerance that their gaps together may change at most, by their bounds over estimated sizes."""

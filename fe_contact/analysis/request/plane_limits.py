@@ -15,7 +15,7 @@ from fe_contact.geometry import FlankModification
 
 
 def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
-    """Refuse what acts across the face, and what effects that are on have there, where the model is a plane.
+    """Refuse parts of a request that act across the face where the model is a plane.
 
     That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse.
     """

@@ -32,16 +32,17 @@ class Request:
     center_distance_change: FloatArray
     """`misalignment`, `center_distance_change`: Table axes, m."""
     pitches: int | None = None
-    """Base pitches that the table shall cover where teeth differ; None: until all repeats."""
+    """Number of base pitches of the table where teeth differ; None: until the contact of all teeth repeats.
+    """
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
     """`neglected`, `turned_on`: Automatic effects that are neglected because the accuracy does not need them,
     or on because a run without them showed that it does, and why.
     """
     loads_as: str = "torques"
-    """How the caller gave the load: "torques" or "normal_forces"."""
+    """Kind of loads in the request: "torques" or "normal_forces"."""
     registry: Sequence[Effect] = field(default_factory=lambda: EFFECTS)
-    """The effects that there are."""
+    """All effects that the request knows."""
     nodes_alone: bool = False
     """Whether the table is read at its nodes alone: nothing is inserted between them for a tolerance."""
 
@@ -75,7 +76,7 @@ class Request:
 
     @property
     def scene(self) -> ContactScene:
-        """The scene that the effects assess by: what is neglected is not in it."""
+        """Scene by which effects decide, without neglected parts."""
         scene = self.complete_scene
         for name in self.neglected:
             scene = scene.effect(name).without(scene) or scene
@@ -87,7 +88,7 @@ class Request:
 
     @property
     def model_effects(self) -> tuple[str, str]:
-        """Names of the effects that tell the models apart: the face, and the finite width of a plane."""
+        """Names of the effects that decide about the model: the face, and the finite width of a plane."""
         return self.named("across_face"), self.named("finite_width")
 
     @property
@@ -103,7 +104,7 @@ class Request:
 
     @property
     def model_chosen(self) -> bool:
-        """Whether the caller chose the model, or one of the effects that tell the models apart."""
+        """Whether the caller chose the model, or one of the effects that decide about it."""
         return any(self.requested_choices.get(name, "auto") != "auto" for name in self.model_effects)
 
     @property
@@ -113,7 +114,7 @@ class Request:
         return self.requested_choices | overrides
 
     def to_json(self) -> Json:
-        """Return plain JSON in SI units: what decides the result."""
+        """Return the inputs that decide the result as plain JSON in SI units."""
         return self.options.to_json() | {
             "pair": written(self.pair),
             "normal_force": self.load.tolist(),

@@ -56,7 +56,7 @@ def as_checked(
     *,
     neglect: bool = True,
 ) -> Checked:
-    """Check the inputs of a table or of one point, as `check_request` does; what is checked stays as it is.
+    """Check the inputs of a table or of one point, as `check_request` does; checked inputs pass unchanged.
 
     Raises `InputError`: a value that cannot be used, or no loads, by field name.
     """
@@ -89,7 +89,7 @@ def neglecting(checked: Checked) -> Checked:
 def _without_neglected(
     request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...]
 ) -> tuple[Request, ContactModel, tuple[LedgerEntry, ...]]:
-    """Neglect what the tolerance does not need, unless that is decided, and compose what is left."""
+    """Neglect effects that the tolerance does not need, unless that is decided, and compose the others."""
     if not (request.neglected or request.turned_on):
         neglected = neglected_effects(request.scene, ledger, request.options.tolerance)
         if neglected:
@@ -101,7 +101,7 @@ def _without_neglected(
 def _checked(
     request: Request, composed: ContactModel, ledger: tuple[LedgerEntry, ...], *, check_size: bool = True
 ) -> Checked:
-    """Refuse what the composed model of a request cannot hold."""
+    """Refuse parts of a request that the composed model cannot hold."""
     if composed.across_face:
         _refuse_thin_discs(request.pair, request.options.level)
     _refuse_distances(request)

@@ -1,4 +1,4 @@
-"""The contact of a request as it was solved: what its checks and its results read."""
+"""The solved contact of a request, which its checks and its results read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,9 @@ from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray
 
 Solved = list[tuple[ContactProblem, ContactSolution]]
-"""Of every place; of several base pitches of a table the problem and the forces are those of the first."""
+"""Problem and solution of every operating point. In a table of several base pitches, the problem and the
+forces are those of the first.
+"""
 
 
 def edges_left_out(checked: Checked) -> bool:
@@ -39,7 +41,7 @@ class SolvedRun:
 
     @property
     def edge_depths(self) -> list[FloatArray]:
-        """How far tip edges would be inside the mating flanks at every place, (L,) in m."""
+        """Largest depths of tip edges inside the mating flanks at every operating point, (L,) in m."""
         pairs = zip(self.places.places, self.solved, strict=True)
         return [edge_depth(point, *solved) for point, solved in pairs]
 
@@ -60,10 +62,10 @@ class SolvedOperatingPoint(SolvedRun):
 
     @property
     def problem(self) -> ContactProblem:
-        """Its contact problem."""
+        """Contact problem of the operating point."""
         return self.solved[0][0]
 
     @property
     def solution(self) -> ContactSolution:
-        """Its solution at all positions and loads."""
+        """Solution of the operating point at all positions and loads."""
         return self.solved[0][1]

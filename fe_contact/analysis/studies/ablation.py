@@ -1,4 +1,4 @@
-"""Ablation of a case: every effect toggled by itself, the change beside what it was estimated at."""
+"""Ablation of a case: every effect is toggled by itself, its change is compared with its estimate."""
 
 from __future__ import annotations
 
@@ -41,19 +41,19 @@ class Figures(model_studies.Figures):
     Attributes
     ----------
     mean, peak_to_peak : ndarray, shape (L,)
-        m.
+        Mean and peak-to-peak STE, m.
     cpu_seconds : float
-        Of the contact, measured.
+        CPU seconds of the contact solution, measured.
     """
 
     harmonics: FloatArray = field(metadata=in_unit("m", "curve", "harmonic"))
     """Amplitudes of the mesh harmonics, the first one first, m. Shape (L, 5)."""
     predicted_cpu_seconds: float
-    """Of the whole run with nothing in the cache."""
+    """CPU seconds of the whole run, predicted for an empty cache."""
 
     @property
     def cost(self) -> float:
-        """The predicted CPU seconds: those that were measured depend on the cache."""
+        """The predicted CPU seconds. The measured ones depend on the cache."""
         return self.predicted_cpu_seconds
 
 
@@ -85,19 +85,19 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     Attributes
     ----------
     nominal, effects, left_out
-        Of every ablation.
+        Figures and effects as in every ablation.
     """
 
     torque: FloatArray = field(metadata=in_unit("n_m", "curve"))
-    """On the driving gear, N m. Shape (L,)."""
+    """Torque on the driving gear, N m. Shape (L,)."""
     normal_force: FloatArray = field(metadata=in_unit("n", "curve"))
-    """N. Shape (L,)."""
+    """Normal force, N. Shape (L,)."""
     misalignment: float = field(metadata=in_unit("m"))
-    """At which the figures are, m."""
+    """Misalignment of the figures, m."""
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
-        """Check the request whose effects are toggled, once; what is checked stays as it is."""
+        """Check the request whose effects are toggled, once; a checked request passes unchanged."""
         nominal = None if axes is None else replace(axes, center_distance_changes=(0.0,))
         return as_checked(pair, nominal, replace(options, receipt="minimal", on_violation="report"))
 

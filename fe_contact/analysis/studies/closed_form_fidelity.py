@@ -24,7 +24,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.table_fields import table_fields, table_support
 from fe_contact.planning.plan import Plan
 from fe_contact.solver_version import SOLVER_VERSION, software_versions
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from model_studies.stage_clock import StageClock
 
@@ -50,7 +50,7 @@ class _ClosedFormFidelity:
 
     @property
     def family(self) -> str:
-        """A family of its own."""
+        """Family of the fidelity, which has no other member."""
         return self.name
 
     def refusal(self, checked: Checked) -> str | None:
@@ -100,7 +100,7 @@ class _ClosedFormFidelity:
             torque=request.torque,
             misalignment=request.misalignment,
             center_distance_change=request.center_distance_change,
-            facts=PairFacts.of(request.pair),
+            geometry=PairGeometry.of(request.pair),
             period=points.period,
             error_estimate=points.gathered([self.relative_error * np.abs(part) for part in elastic]),
             metadata=Metadata(),

@@ -17,7 +17,7 @@ class Fidelity(model_studies.Fidelity[Checked], Protocol):
 
     @property
     def element_size(self) -> float:
-        """Size of the elements beside that of the other fidelities of the family; 0 without elements."""
+        """Size of the elements relative to the other fidelities of the family; 0 without elements."""
 
     def as_computed(self, checked: Checked) -> Checked:
         """Return the request as this fidelity computes it: with its model and mesh.

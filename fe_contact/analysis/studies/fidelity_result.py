@@ -34,20 +34,22 @@ class FidelityResult(model_studies.FidelityResult):
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
-    """`mean`, `peak_to_peak`: Of each curve (loads, then alignments), m. Shape (C,) each."""
+    """`mean`, `peak_to_peak`: Mean and peak-to-peak STE of each curve (loads, then alignments), m. Shape (C,)
+    each.
+    """
     stated_error: float
-    """The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
-    positions is in it, which is the same for all fidelities.
+    """Relative error of mean and peak-to-peak that the table of the fidelity states, the largest over the
+    curves. It contains the error of the positions, which is the same for all fidelities.
     """
     stages: dict[str, float]
     """CPU seconds by stage."""
     peak_memory_bytes: int
-    """Of the process by the end of the fidelity."""
+    """Peak memory of the process by the end of the fidelity, bytes."""
     mean_error: float = NAN
     peak_to_peak_error: float = NAN
-    """`mean_error`, `peak_to_peak_error`: Relative difference to the reference, the worst over the curves; of
-    the reference what its mesh leaves, by the difference of the next coarser mesh and the second order of
-    convergence (NaN if none was run).
+    """`mean_error`, `peak_to_peak_error`: Relative difference to the reference, the largest over the curves.
+    For the reference itself it is the error that its mesh leaves, from the difference of the next coarser
+    mesh and the second order of convergence; NaN if no coarser mesh was run.
     """
 
 

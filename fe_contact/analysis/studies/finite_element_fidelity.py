@@ -38,11 +38,11 @@ class FiniteElementFidelity:
 
     @property
     def element_size(self) -> float:
-        """Size of the elements beside that of the other fidelities of the family."""
+        """Size of the elements relative to the other fidelities of the family."""
         return SECTOR_FLANK_SIZE[self.level] if self.model == "3d" else 1.0 / PLANE_REFINEMENT[self.level]
 
     def refusal(self, checked: Checked) -> str | None:
-        """Say why the fidelity is not valid: no plane holds what acts across the face."""
+        """Return why the fidelity is not valid: a plane holds nothing that acts across the face."""
         try:
             self.as_computed(checked)
         except InputError as error:

@@ -86,7 +86,7 @@ class Frontier(model_studies.Frontier[FidelityResult]):
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
-        """Check the request that every fidelity computes, once; what is checked stays as it is."""
+        """Check the request that every fidelity computes, once; a checked request passes unchanged."""
         return as_checked(pair, axes, replace(options, positions=options.positions or POSITIONS))
 
 

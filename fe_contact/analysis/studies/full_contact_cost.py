@@ -19,7 +19,7 @@ ORIGIN = (
 )
 
 MEASURED_GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
-"""Both gears of the pair that was measured, 80 mm apart."""
+"""Gear of the pair whose cost was measured. Both gears are alike; their center distance is 80 mm."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class FullContactLevel:
         return self.seconds_per_solve * solves
 
     def to_json(self, solves: int) -> Json:
-        """Return what a table of so many positions x loads costs as plain JSON."""
+        """Return the cost of a table of `solves` positions times loads as plain JSON."""
         return {
             "unknowns": self.unknowns,
             "cpu_seconds": self.seconds(solves),
@@ -51,7 +51,7 @@ FULL_CONTACT = (
 
 
 def known_full_contact(pair: ParallelAxes) -> tuple[FullContactLevel, ...]:
-    """Return what full contact is known to cost on this very pair: nothing on any other."""
+    """Return the measured costs of full contact for the measured pair; nothing for any other pair."""
     measured = MEASURED_GEAR.macro_geometry()
     gears = [gear.macro_geometry() for gear in (pair.pinion, pair.wheel)]
     plain = all(gear.modification.neutral for gear in (pair.pinion, pair.wheel))

@@ -45,17 +45,17 @@ class FullContactRecord:
     solved_in: str
     """Plane strain or three dimensions."""
     misalignment: FloatArray
-    """m. Shape (M,)."""
+    """Misalignment, m. Shape (M,)."""
     position: FloatArray
-    """By the driving gear, base pitches. Shape (P,)."""
+    """Position of the driving gear, base pitches. Shape (P,)."""
     torque: FloatArray
-    """On the driving gear, N m. Shape (T,)."""
+    """Torque on the driving gear, N m. Shape (T,)."""
     transmission_error: FloatArray
-    """m; NaN where there is no solution. Shape (M, P, T)."""
+    """Transmission error, m; NaN where there is no solution. Shape (M, P, T)."""
     error_estimate: FloatArray
     """Error by the mesh of the record, m. Shape (M, P, T)."""
     unknowns: int
-    """Displacements of all nodes of both gears, at most."""
+    """Displacement unknowns of all nodes of both gears, upper bound."""
     seconds_per_solve: float
     """CPU seconds of a position and load, with its coarser mesh."""
 
@@ -110,14 +110,14 @@ class FullContactRecord:
 
     @classmethod
     def from_json(cls, content: Mapping[str, Any]) -> FullContactRecord:
-        """Read what `to_json` wrote."""
+        """Read a record that `to_json` wrote."""
         arrays = ("misalignment", "position", "torque", "transmission_error", "error_estimate")
         return cls(**{**content, **{name: np.array(content[name], dtype=float) for name in arrays}})
 
 
 @dataclass(frozen=True)
 class FullContactComparison:
-    """A record at some of its positions, and what a study of accuracy differs by from it.
+    """A record at some of its positions, and its differences from the fidelities of an accuracy study.
 
     Errors are relative, the worst of all curves; NaN where there is nothing to compare.
     """
@@ -125,11 +125,11 @@ class FullContactComparison:
     record: FullContactRecord
     mean_error: float = float("nan")
     peak_to_peak_error: float = float("nan")
-    """`mean_error`, `peak_to_peak_error`: Of the record against the finest fidelity."""
+    """`mean_error`, `peak_to_peak_error`: Relative errors of the record against the finest fidelity."""
     plane_strain_mean: float = float("nan")
     plane_strain_peak_to_peak: float = float("nan")
-    """`plane_strain_mean`, `plane_strain_peak_to_peak`: Of the fidelity in plane strain against the record:
-    what two independent contact solvers differ by.
+    """`plane_strain_mean`, `plane_strain_peak_to_peak`: Relative differences of the fidelity in plane strain
+    from the record: the distance of two independent contact solvers.
     """
 
     @property
@@ -194,7 +194,7 @@ def full_contact_records() -> tuple[FullContactRecord, ...]:
 
 
 def solved_in(checked: Checked) -> str:
-    """Return what full contact of a request needs: the face where gears or flanks vary along it."""
+    """Return the model that full contact of a request needs: the face where gears or flanks vary along it."""
     request = checked.request
     varies = any(gear.modification.varies_along_face for gear in (request.pair.pinion, request.pair.wheel))
     inclined = varies or request.options.model == "3d" or bool(np.any(request.misalignment != 0.0))

@@ -12,7 +12,9 @@ from fe_contact.geometry.web_compliance import shear_modulus
 from fe_contact.types import FloatArray
 
 BENDING_HARMONICS = 12
-"""Of the load around a gear; bending falls with the third power of their number."""
+"""Highest harmonic of the load around a gear. The bending of the body falls with the third power of the
+harmonic.
+"""
 
 
 SAMPLES = 101

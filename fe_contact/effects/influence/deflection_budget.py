@@ -1,8 +1,8 @@
-"""What the transmission error under load is made of, by the slice model.
+"""Budget of the transmission error under load, by the slice model.
 
 Where flanks carry, m_q d = m_q g_q + (N K h)_q + lambda_q. The work of the forces F_q in this, over
 sum_q m_q F_q, splits the transmission error d exactly: every part is its own displacement, weighted by the
-forces. What is left of d after gaps, teeth, bodies and shafts is the contact's own approach.
+forces. The rest of d after gaps, teeth, bodies and shafts is the approach of the contact.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ class DeflectionBudget:
     """
     teeth: Both
     bodies: Both
-    """`teeth`, `bodies`: Bending, shear and compression of the teeth with what they are clamped in; body, web
-    and seat. Shape (ndarray, ndarray) each.
+    """`teeth`, `bodies`: Bending, shear and compression of the teeth with their foundations; deflection of
+    body, web and seat. Shape (ndarray, ndarray) each.
     """
     shafts: FloatArray
     """Bending of shafts and bearings."""

@@ -21,14 +21,14 @@ class EstimatedInfluence:
 
     mean: FloatArray
     peak_to_peak: FloatArray
-    """`mean`, `peak_to_peak`: Of the static transmission error, m, at each load and the largest misalignment
-    in size. Shape (L,) each.
+    """`mean`, `peak_to_peak`: Change of the static transmission error, m, at each load and the misalignment
+    of the largest size. Shape (L,) each.
     """
     full: EstimatedCurve
-    """With the effect, at the same places."""
+    """Estimated curve with the effect, at the same operating points."""
     largest: float
-    """Largest change of either in parts of the value with the effect, over all loads and both ends of the
-    misalignments, >= 0.
+    """Largest relative change of mean or peak-to-peak, over the value with the effect, at all loads and both
+    ends of the misalignments, >= 0.
     """
 
 
@@ -47,7 +47,7 @@ def estimate_influence(
     name: str,
     minimum: float = 0.0,
 ) -> EstimatedInfluence | None:
-    """Estimate what leaving the effect `name` out of the model changes.
+    """Estimate the change of results without the effect `name` of the model.
 
     Parameters
     ----------

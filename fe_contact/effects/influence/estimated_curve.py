@@ -34,7 +34,7 @@ FACE_SLICES = 11
 
 
 MAX_PITCHES = 32
-"""Base pitches looked at where teeth differ."""
+"""Number of base pitches that an estimate solves where teeth differ."""
 
 
 _PATCH, _EDGE = 0.15, 0.0125
@@ -45,7 +45,7 @@ _MAX_STEPS, _EVEN = 512, 3
 
 
 UNEVEN_PITCHES = 4
-"""Base pitches looked at beside these, those of the teeth that deviate most."""
+"""Number of further base pitches that an estimate solves: those of the teeth that deviate most."""
 
 
 Both = tuple[FloatArray, FloatArray]
@@ -61,7 +61,7 @@ class EstimatedCurve:
 
 @dataclass(frozen=True)
 class Springs:
-    """Slice models of one pair; what states of it have in common is assembled once."""
+    """Slice models of one pair; data that its states share are assembled once."""
 
     pair: ParallelAxes
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)

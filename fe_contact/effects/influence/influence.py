@@ -1,4 +1,4 @@
-"""The influence of an effect: what neglecting it changes at the nominal load."""
+"""Influence of an effect: change of the results at the nominal load if the effect is neglected."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from fe_contact.types import Json
 from model_studies.ablation import TRIFLE
 
 RIPPLE_FLOOR = 20e-9
-"""m; per cent of a peak-to-peak below this are not given: it is what meshes and springs leave uncertain."""
+"""Least peak-to-peak STE whose relative change is stated, m. Meshes and springs leave smaller ripples
+uncertain.
+"""
 
 
 _UM = 1e6
@@ -23,9 +25,9 @@ class Influence:
     """Change by leaving an effect out: without it less with it."""
 
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     misalignment: float
-    """m."""
+    """Misalignment of the figures, m."""
     mean: float
     peak_to_peak: float
     """`mean`, `peak_to_peak`: Change of the static transmission error, m."""

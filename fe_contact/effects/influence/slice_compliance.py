@@ -1,4 +1,4 @@
-"""Compliance between loaded slices without finite elements: springs that know of each other.
+"""Compliance between loaded slices without finite elements: coupled springs in closed form.
 
 A slice bends its own tooth (`tooth_bending`) and, less and less, the slices beside it: exponentially over a
 decay length, as a beam on an elastic foundation, reflected at the free ends of the face, so that an even load
@@ -47,11 +47,11 @@ class _GearCompliance(NamedTuple):
     """Normal approach (P, n, n) in m of each slice per N on each other, of one gear."""
 
     tooth: FloatArray
-    """Bending, shear and compression of the tooth, and what it is clamped in."""
+    """Bending, shear and compression of the tooth, and compliance of its foundation."""
     contact: FloatArray
-    """From under the load patch to the tooth's middle."""
+    """Approach between the load patch and the middle of the tooth."""
     body: FloatArray
-    """Body, web and seat."""
+    """Approach by body, web and seat."""
 
 
 def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
@@ -65,7 +65,7 @@ def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactMod
 def slice_compliances(
     pair: ParallelAxes, slices: LoadedSlices, model: ContactModel
 ) -> tuple[_GearCompliance, _GearCompliance]:
-    """Return the compliance between slices of the driving and of the driven gear by what yields.
+    """Return the compliance between slices of the driving and of the driven gear, by source.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _of_gear(
 
 
 def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
-    """Displacement (n, n) of teeth by what the body under them does."""
+    """Return the displacement (n, n) of teeth by the motion of the body under them."""
     distance, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
     inner, outer = sorted((gear.seat_radius, gear.root_radius))
     depth = outer - inner

@@ -21,8 +21,8 @@ class _ToothBending:
     """Flank coordinates from root to tip, m. Shape (n,)."""
     tooth: FloatArray
     foundation: FloatArray
-    """`tooth`, `foundation`: Displacement along the normal per line load of the tooth itself and of what it
-    is clamped in, m/(N/m). Shape (n,) each.
+    """`tooth`, `foundation`: Displacement along the normal per line load, by the tooth itself and by its
+    foundation, m/(N/m). Shape (n,) each.
     """
     depth: FloatArray
     """Distance in m along the normal from the flank to the tooth's center line. Shape (n,)."""

@@ -15,7 +15,7 @@ class Later:
         self._module = f"lineofaction.{module}"
 
     def __getattr__(self, name: str) -> Any:
-        """Return what the module has under this name.
+        """Return the attribute of the module by this name.
 
         What modules make while they load stays: collections neither run then nor look at it later, which is
         a tenth of the start.

@@ -56,7 +56,7 @@ class _FmuOptions:
 
 @dataclass(frozen=True)
 class _RunPart:
-    """What of a run is exported."""
+    """Options that choose the exported part of a run."""
 
     function: Annotated[
         str,

@@ -97,7 +97,9 @@ def _geometry(
 @computing
 def _ste(
     database: Annotated[Path, typer.Argument(help="STE database (netCDF), or the folder of tables.")],
-    torque: Annotated[float | None, typer.Option(help="On the driving gear, N m; default: highest.")] = None,
+    torque: Annotated[
+        float | None, typer.Option(help="Torque on the driving gear, N m; default: the highest.")
+    ] = None,
     force: Force = None,
     at: Annotated[
         str | None,

@@ -39,8 +39,12 @@ def _housing(
         str | None,
         typer.Option(help="Origin of the file in the scene, x,y,z in mm; default: found by the bores."),
     ] = None,
-    x_axis: Annotated[str | None, typer.Option(help="Its x axis in the scene, x,y,z.")] = None,
-    z_axis: Annotated[str | None, typer.Option(help="Its z axis in the scene, x,y,z.")] = None,
+    x_axis: Annotated[
+        str | None, typer.Option(help="Direction of the file's x axis in the scene, x,y,z.")
+    ] = None,
+    z_axis: Annotated[
+        str | None, typer.Option(help="Direction of the file's z axis in the scene, x,y,z.")
+    ] = None,
     output: Annotated[
         Path | None,
         to_file("Scene with the housing to write, the STEP file beside it; of a folder, default: its scene."),

@@ -25,7 +25,7 @@ verbs = typer.Typer()
 
 @dataclass(frozen=True)
 class _HeardOptions:
-    """What of a run is heard."""
+    """Options that choose the quantity of a run that is heard."""
 
     quantity: Annotated[
         str,
@@ -50,7 +50,7 @@ class _HeardOptions:
 
 @dataclass(frozen=True)
 class _HousingOptions:
-    """Where a run is heard through the housings of a scene."""
+    """Options that choose the point or microphone at which a scene's housings are heard."""
 
     scene: Annotated[
         Path | None,
@@ -63,7 +63,7 @@ class _HousingOptions:
         str,
         typer.Option(
             metavar="X,Y,Z",
-            help="Where the sound pressure is heard, in mm in the frame of the scene: free field.",
+            help="Microphone of the sound pressure in a free field, in mm in the frame of the scene.",
             show_default="none",
         ),
     ] = ""

@@ -28,7 +28,7 @@ verbs = typer.Typer()
 
 @dataclass(frozen=True)
 class _ViewOptions:
-    """What of a run is shown."""
+    """Options that choose the part of a run that a page shows."""
 
     quantity: Annotated[
         str,
@@ -106,50 +106,51 @@ def _report(
 
 @dataclass(frozen=True)
 class _RecordingOptions:
-    """What the file of a recording does not say."""
+    """Options that complete the file of a recording."""
 
     channel: Annotated[
-        str, typer.Option(help="Of a recording: the channel that is compared.", show_default="the only one")
+        str, typer.Option(help="Channel of a recording that is compared.", show_default="the only one")
     ] = ""
     unit: Annotated[
         str,
-        typer.Option(help="Of a recording: unit of that channel, as m/s² or g.", show_default="the file's"),
+        typer.Option(help="Unit of that channel of a recording, as m/s² or g.", show_default="the file's"),
     ] = ""
     full_scale: Annotated[
-        float, typer.Option(help="Of a recording: what 1 in the file is in the unit; of WAV: the full scale.")
+        float, typer.Option(help="Value, in the unit, of 1 in a recording's file; of WAV: the full scale.")
     ] = 1.0
     tacho: Annotated[
-        str, typer.Option(help="Of a recording: channel of the speed or tacho.", show_default="the only one")
+        str, typer.Option(help="Channel of the speed or tacho of a recording.", show_default="the only one")
     ] = ""
     tacho_unit: Annotated[
-        str, typer.Option(help="Of a recording: unit of the speed, as rpm.", show_default="the file's")
+        str, typer.Option(help="Unit of the speed of a recording, as rpm.", show_default="the file's")
     ] = ""
     pulses_per_turn: Annotated[
-        float, typer.Option(help="Of a recording: the tacho is so many pulses a turn; 0: a speed.")
+        float, typer.Option(help="Pulses per turn of a recording's tacho; 0: the channel is a speed.")
     ] = 0.0
     rpm: Annotated[
-        float, typer.Option(help="Of a recording without a tacho: its one speed, rpm; 0: there is a tacho.")
+        float, typer.Option(help="Constant speed of a recording without a tacho, rpm; 0: it has a tacho.")
     ] = 0.0
     ratio: Annotated[
-        float, typer.Option(help="Of a recording: speed of the driving gear over that of the recorded shaft.")
+        float, typer.Option(help="Speed of the driving gear over that of a recording's shaft.")
     ] = 1.0
 
 
 @dataclass(frozen=True)
 class _ChangeOptions:
-    """Where two flanks are heard, and within what."""
+    """Options of a comparison of two flanks in a scene: tolerances, load cases, speeds, required level."""
 
     scene: Annotated[
-        Path | None, typer.Option(help="Scene file in which two flanks are heard: what a change brings.")
+        Path | None, typer.Option(help="Scene file in which the sounds of two flanks are compared.")
     ] = None
     tolerances: Annotated[
-        Path | None, typer.Option(help="Of the flanks: file with the options of loa scatter (TOML).")
+        Path | None,
+        typer.Option(help="File with the tolerances of the flanks, the options of loa scatter (TOML)."),
     ] = None
     load_cases: Annotated[
-        Path | None, typer.Option(help="Of the scene: file with [[load_cases]] (TOML), as of loa deflect.")
+        Path | None, typer.Option(help="File with [[load_cases]] of the scene (TOML), as for loa deflect.")
     ] = None
     speed_rpm: Annotated[
-        str | None, typer.Option(help="Of the scene: speeds in rpm, FIRST:LAST:STEP or a list.")
+        str | None, typer.Option(help="Speeds of the scene in rpm, FIRST:LAST:STEP or a list.")
     ] = None
     requirement_db: Annotated[
         float | None, typer.Option(help="Highest level of all orders that 95 % of the pairs may have.")

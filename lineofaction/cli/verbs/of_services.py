@@ -77,7 +77,7 @@ class _TermOptions:
 
     @property
     def as_sent(self) -> dict[str, Any]:
-        """Return them as the client takes them."""
+        """Return the terms of a job as the client takes them."""
         limits = {"priority": self.priority, "max_cost_s": self.max_cost_s}
         return {"title": self.title, "tags": tuple(self.tag or ()), **limits}
 
@@ -179,11 +179,15 @@ def _dismiss(
 class _KeyLimits:
     """The limits of a key; None: none."""
 
-    requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None
+    requests_per_minute: Annotated[
+        int | None, typer.Option(help="Requests per minute; default: no limit.")
+    ] = None
     unfinished_jobs: Annotated[
         int | None, typer.Option(help="Limit on waiting and running jobs; default: no limit.")
     ] = None
-    highest_priority: Annotated[int | None, typer.Option(help="Of its jobs, -9 to 9; default: any.")] = None
+    highest_priority: Annotated[
+        int | None, typer.Option(help="Highest priority of the key's jobs, -9 to 9; default: any.")
+    ] = None
     max_cost_s: Annotated[
         int | None, typer.Option("--max-cost", help="CPU seconds of a job; default: no limit.")
     ] = None
@@ -204,7 +208,9 @@ def _add(
     project: Annotated[
         str | None, typer.Option(help="Project whose jobs and results the key sees; default: the common one.")
     ] = None,
-    scopes: Annotated[str | None, typer.Option(help="Of read,submit,dismiss,operate; default: all.")] = None,
+    scopes: Annotated[
+        str | None, typer.Option(help="Scopes of the key among read,submit,dismiss,operate; default: all.")
+    ] = None,
     expires: Expires = None,
     limits: _KeyLimits,
     file: KeysFile = None,

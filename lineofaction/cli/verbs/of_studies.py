@@ -27,7 +27,7 @@ GROUPS = ("start", "pair", "gearbox", "design", "sound", "trust", "results", "se
 
 
 class StudyGroup(TyperGroup):
-    """A group of verbs that has those of all studies too; each is made when it is requested.
+    """A group of verbs that includes the verbs of all studies; each is made on its first request.
 
     A study whose verb is in the group already has that one.
     """

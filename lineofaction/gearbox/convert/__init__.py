@@ -1,1 +1,1 @@
-"""Between the boundary and the libraries: the only place that knows mm, um, degrees and rpm."""
+"""Conversion between the boundary and the libraries, the only place that knows mm, um, degrees and rpm."""

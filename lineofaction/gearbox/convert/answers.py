@@ -22,7 +22,7 @@ GEARS = "pinion", "wheel"
 _RIPPLE = np.linspace(0.0, 2.0, 49)
 """Positions of a ripple that is drawn small, base pitches: six for a period of the fourth harmonic."""
 _NOTHING = 1e-12
-"""m: what rounding leaves."""
+"""Length in m below which a value is rounding."""
 
 
 def curve_json(
@@ -149,7 +149,7 @@ def _figures(curve: Curve) -> Json:
 
 
 def headline_json(table: SteDatabase) -> Json:
-    """Return what a list shows of a table at its middle load: ripple over two pitches, its main figures.
+    """Return the headline of a table at its middle load: ripple over two pitches, main figures.
 
     The ripple is in um less its mean; an error that was not estimated is None.
     """
@@ -166,7 +166,7 @@ def headline_json(table: SteDatabase) -> Json:
 
 
 def summary_json(database: SteDatabase) -> Json:
-    """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
+    """Return the summary of `loa analyze`: figures for every load, effect ledger, receipt, failed points."""
     with boundary_errors():
         curves = [database.curve(force=float(force), allow_failed=True) for force in database.force]
     loads = [
@@ -188,7 +188,7 @@ def summary_json(database: SteDatabase) -> Json:
 
 
 def metadata_json(database: SteDatabase) -> Json:
-    """Return what a database says about itself, with its axes, and the loads of teeth that differ."""
+    """Return the metadata of a database with its axes, and the loads of teeth that differ."""
     teeth = _tooth_loads_by_load(database)
     return {
         "schema_version": database.metadata.schema_version,
@@ -220,7 +220,7 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
-    """Return what each source states of mean, peak-to-peak and first harmonic at a load, m."""
+    """Return the errors of mean, peak-to-peak and first harmonic at a load by source, m."""
     rows = [
         (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
         for name, parts in receipt.get("curve_error", {}).items()

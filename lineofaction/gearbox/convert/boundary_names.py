@@ -48,7 +48,7 @@ _CASE = {figure.name: f"pair.{figure.field}" for figure in (*SHARED, *figures(Ge
     "on_violation": "accuracy.on_violation",
 }
 _OF_TABLE = {"drives": ImposedRotation, "integration": Integration, "temperatures": Temperatures}
-"""What declares fields whose names mean something else in other tables."""
+"""Dataclasses that declare fields whose names mean something else in other tables, by their table."""
 _SUFFIXES_IN_TEXT = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
 
@@ -66,7 +66,7 @@ _ANYWHERE = (
     *(SeatWall, HousingMaterial, ReductionSettings),
     *(RollingBearing, BallBearing, RollerBearing, CatalogLine, RingFits),
 )
-"""What declares its fields, by names that mean the same in every table."""
+"""Dataclasses that declare fields whose names mean the same in every table."""
 DECLARED = (*_ANYWHERE, *_OF_TABLE.values())
 
 

@@ -1,4 +1,4 @@
-"""From a case to a gear pair and the arguments of `fe_contact.analyze`."""
+"""Conversion of a case to a gear pair and the arguments of `fe_contact.analyze`."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 
 Toothed = TypeVar("Toothed", bound=Toothing)
 THICK = 10.0
-"""Face widths from bore to root up to which `check_request` refuses no disc: rounding leaves less than a
-tenth of what it allows."""
+"""Distance from bore to root in face widths up to which `check_request` accepts every disc: rounding takes
+less than a tenth of its tolerance."""
 PLANE = ("plane_strain", "plane_stress")
 """Models that a case may state, and that have no misalignment."""
 
@@ -132,7 +132,7 @@ def _pitch_deviation(gear: ToothingInput) -> PitchDeviation:
 
 
 def table_axes(case: Case) -> TableAxes:
-    """Return what the table of a case is computed over, in SI."""
+    """Return the axes of the table of a case, in SI."""
     load, errors, allowed = case.load, case.errors, allowed_misalignment(case)
     with boundary_errors():
         return TableAxes(

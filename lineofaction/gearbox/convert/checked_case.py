@@ -1,4 +1,4 @@
-"""Cases that can be computed: what a schema cannot check and a request can afford."""
+"""Cases with the checks that a schema cannot do: feasibility and predicted cost."""
 
 from __future__ import annotations
 
@@ -44,22 +44,22 @@ class CheckedCase:
 
     @cached_property
     def pair(self) -> ParallelAxes:
-        """As `gear_pair`."""
+        """The gear pair of the case, as `gear_pair` returns it."""
         return gear_pair(self.case)
 
     @cached_property
     def axes(self) -> TableAxes:
-        """As `table_axes`."""
+        """The axes of the case's table, as `table_axes` returns them."""
         return table_axes(self.case)
 
     @cached_property
     def options(self) -> AnalysisOptions:
-        """As `analysis_options`."""
+        """The analysis options of the case, as `analysis_options` returns them."""
         return analysis_options(self.case)
 
     @property
     def converted(self) -> tuple[ParallelAxes, TableAxes, AnalysisOptions]:
-        """All three, as the library takes them."""
+        """Pair, axes and options, as the library takes them."""
         return self.pair, self.axes, self.options
 
     @cached_property
@@ -90,7 +90,7 @@ class CheckedCase:
             return check_request(*converted, check_size=check_size, neglect=neglect)
 
     def request(self, make: Callable[[CheckedCase, Inputs], Requested], inputs: Inputs) -> Requested:
-        """Return what a study requests of the library: made once, for its check and for its work.
+        """Return the request of a study to the library, made once for its check and for its work.
 
         Raises `BadInput`.
         """

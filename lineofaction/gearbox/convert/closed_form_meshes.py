@@ -8,7 +8,7 @@ from dynamics.identity_cache import identity_cached
 from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.declared import in_si
 from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
@@ -18,7 +18,7 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 
 
 @identity_cached
-def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, MeshTable]]:
+def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairGeometry, MeshTable]]:
     """Return facts and table of every mesh that states its stiffness, by name."""
     return {
         mesh.name: (_pair_geometry(f"meshes[{index}].stiffness", mesh.stiffness), _table(index, mesh))
@@ -27,7 +27,7 @@ def _closed_forms(meshes: tuple[MeshInput, ...]) -> dict[str, tuple[PairFacts, M
     }
 
 
-def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairFacts:
+def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairGeometry:
     """Return the facts of the pair: base radii in the ratio of the teeth, the center distance from them."""
     pinion, wheel = mesh.teeth
     if mesh.internal and wheel <= pinion:
@@ -37,7 +37,7 @@ def _pair_geometry(field: str, mesh: StiffnessMeshInput) -> PairFacts:
     radius = mesh.base_radius_mm * MM
     radii = (radius, radius * wheel / pinion)
     angle, helix = mesh.working_pressure_angle_deg * DEGREE, mesh.base_helix_angle_deg * DEGREE
-    return PairFacts(
+    return PairGeometry(
         teeth=(pinion, wheel),
         base_radius=radii,
         base_pitch=2.0 * math.pi * radius / pinion,

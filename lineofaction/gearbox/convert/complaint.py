@@ -1,4 +1,4 @@
-"""A complaint about a scene or a pair: the order it is, per revolution of a shaft, and what passes beside."""
+"""A complaint about a sound: its order per revolution of a shaft, and the excitations near that order."""
 
 from __future__ import annotations
 
@@ -37,28 +37,31 @@ from model_studies import in_unit
 KM_H = 1.0 / 3.6
 HARMONICS, TOLERANCE = 10, 0.05
 NEAREST, NAMED = 6, 3
-"""Harmonics that are listed beside a complaint, and that are named where none passes."""
+"""Number of harmonics listed around the order of a complaint, and number named if none passes."""
 EXCITATION, HARMONIC = "excitation", "harmonic number"
-"""Ranks of what passes: by the force that excites; where that is not known, as if it fell with the number."""
+"""Grounds on which harmonics near a complaint are ranked: by the force that excites, or, where no force is
+known, as if the force fell with the number of the harmonic.
+"""
 _SURFACE = "Give a housing by step_file, mesh_file or modes_file, or leave the microphone out."
 _SEVERAL = {MESH: "meshes", SIDEBAND: "meshes", SHAFT: "shafts", BEARING: "bearings"}
 
 
 @dataclass(frozen=True)
 class Complaint:
-    """What is heard."""
+    """A disturbing sound, by its order and its shaft, with the excitations of the scene near that order."""
 
     shaft: str
-    """That orders are of."""
+    """Shaft to whose revolutions orders refer."""
     order: float
-    """Per revolution of it."""
+    """Order of the sound per revolution of `shaft`."""
     speed: float | None = field(metadata=in_unit("rad_per_s"))
     frequency: float | None = field(metadata=in_unit("hz"))
-    """`speed`, `frequency`: Of the shaft, rad/s, and what is heard at it, Hz; None: an order at any speed."""
+    """`speed`, `frequency`: Speed of the shaft, rad/s, and frequency of the sound at that speed, Hz; None: an
+    order at any speed."""
     tolerance: float
-    """Relative."""
+    """Relative distance from the order within which an excitation passes."""
     passing: tuple[Passing, ...]
-    """What is within the tolerance, and at least the `NEAREST` harmonics, the nearest first."""
+    """Excitations within the tolerance, and at least the `NEAREST` harmonics, the nearest first."""
     turns: Mapping[str, float]
     """Revolutions of every shaft per revolution of `shaft`."""
     per_pitch: float
@@ -66,17 +69,17 @@ class Complaint:
     the leading shaft.
     """
     drivers: Mapping[str, tuple[str, float]]
-    """Of every mesh the shaft of its driving gear, and how often it repeats per revolution of `shaft`."""
+    """Shaft of the driving gear of every mesh, and how often the mesh repeats per revolution of `shaft`."""
     levels: Mapping[str, tuple[float, ...]]
     """Forces, N, by which the harmonics of meshes excite at the loads of the scene; empty: not known."""
     bearing: str | None = None
-    """Where it is measured; None: on the bearing that feels it most."""
+    """Bearing where the vibration is measured; None: the bearing with the largest force."""
     torques: Mapping[str, float] = field(default_factory=dict)
-    """Of every mesh with a table the torque on its driving gear at which it is heard, N m."""
+    """Torque at which the complaint is made, on the driving gear of every mesh with a table, N m."""
 
     @property
     def within(self) -> tuple[Passing, ...]:
-        """What passes within the tolerance: meshes, the likeliest first, then what is nearer than all.
+        """The excitations within the tolerance: meshes by likelihood, then others nearer than any mesh.
 
         A harmonic is as likely as its excitation is large (`ranked_by`), and less the farther off it is: at
         the tolerance, which counts as two standard deviations, by exp(-2).
@@ -90,7 +93,7 @@ class Complaint:
 
     @property
     def ranked_by(self) -> str:
-        """What meshes within the tolerance are ranked by beside the distance: `EXCITATION` or `HARMONIC`."""
+        """The ground on which meshes within the tolerance are ranked: `EXCITATION` or `HARMONIC`."""
         near = [line for line in self.passing if line.within(self.tolerance)]
         meshes = [line for line in near if line.excitation.kind == MESH]
         known = all(math.isfinite(self.level(line)) for line in meshes)
@@ -111,7 +114,7 @@ class Complaint:
 
     @property
     def marks(self) -> Json:
-        """Return what plots mark: values by the labels of axes, and the order by which results count.
+        """The marks of plots: values by the labels of axes, and the order by which results count.
 
         `meshes` have it by which runs and tables count: by the pitches of a mesh, over speed and torque of
         its driving gear.
@@ -316,7 +319,7 @@ def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
 
 
 def sentence(complaint: Complaint) -> str:
-    """Say what is heard and what it is."""
+    """Return a sentence on the sound and its likely cause."""
     first = grouped(complaint.within)[0]
     subject = f"order {engineering(complaint.order, 4)} of {complaint.shaft}"
     if complaint.speed is not None and complaint.frequency is not None:
@@ -326,7 +329,7 @@ def sentence(complaint: Complaint) -> str:
 
 
 def grouped(every: Iterable[Passing]) -> list[tuple[Passing, ...]]:
-    """Return what passes, that of parts of a kind that pass alike at every speed together."""
+    """Return the excitations, grouped by parts of a kind that excite alike at every speed."""
     groups: dict[tuple[str, str, int, str], list[Passing]] = {}
     for line in every:
         of = line.excitation
@@ -349,7 +352,7 @@ def harmonic_label(alike: Sequence[Passing]) -> str:
 
 
 def offset_text(complaint: Complaint, line: Passing) -> str:
-    """Say where a harmonic passes, and how far from the complaint."""
+    """Return the order of a harmonic and its distance from the complaint, as text."""
     hertz = complaint.hertz(line.order)
     if hertz is None or complaint.frequency is None:
         at, offset = f"order {engineering(line.order, 4)} of {complaint.shaft}", ""

@@ -1,4 +1,4 @@
-"""The effect ledger of a table or a run, its influences, and what was checked, in lines for people."""
+"""The effect ledger of a table or a run, its influences and its checks, in lines for people."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ def by_size(ledger: Iterable[Entry]) -> tuple[list[Entry], list[Entry]]:
 
 
 def trifles_title(trifles: Sized) -> str:
-    """Say how many effects are folded away, and below which size."""
+    """Return a title with the number of omitted effects and the size below which they are omitted."""
     effects = "effect" if len(trifles) == 1 else "effects"
     return f"{len(trifles)} {effects} below {100 * TRIFLE:g} %"
 
 
 def influence_text(entry: Entry) -> str:
-    """Say what leaving an effect out is estimated to change; tables of older versions hold no estimate."""
+    """Return the estimated influence of an effect as text; tables of older versions have no estimate."""
     influence = entry.get("influence")
     return "not estimated" if influence is None else str(influence["words"])
 
@@ -68,7 +68,7 @@ def _row(entry: Entry) -> list[str]:
 
 
 def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what was repeated and why, and the assumptions that do not hold."""
+    """Yield lines on repeated passes with reasons, and on assumptions that do not hold."""
     for run in receipt.get("repeated", ()):
         for name, reason in run["turned_on"].items():
             yield f"repeated with {name}: {reason} ({engineering(run['cpu_seconds'], 2)} CPU s)"
@@ -78,7 +78,7 @@ def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
 
 
 def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
-    """Yield what a dynamic run was repeated for, and what it took for granted that does not hold."""
+    """Yield lines on the reasons why a run was repeated, and on its assumptions that do not hold."""
     earlier = attributes.get("receipt", {}).get("repeated")
     if earlier:
         for name, reason in earlier["turned_on"].items():

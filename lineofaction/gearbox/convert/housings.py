@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 
 STEP_BEGINS = b"ISO-10303-21"
 FOLDER = "housings"
-"""Of the cache: meshes and reductions."""
+"""Folder of the cache that holds meshes and reductions of housings."""
 _MOTIONS = 5
-"""Of a seat that a bearing holds."""
+"""Motions of a seat that a bearing couples to the shaft: three displacements and two tilts."""
 ANY_STIFFNESS, _ANY_MASS = 1e8, 1.0
-"""N/m, kg; checks that need no reduction and no table do not read them."""
+"""Stiffness and mass, N/m and kg, for checks that need no reduction and no table and do not read them."""
 _NUMBERED = re.compile(r"^housings\[(\d+)\]")
 
 
@@ -64,7 +64,7 @@ def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
 
 
 def response_content(housing: HousingInput) -> tuple[str, bytes]:
-    """Return how the name of the file of a measured housing ends, and what is in it.
+    """Return the ending of a measured housing's file name, and the content of the file.
 
     Raises `BadInput`: another kind of file, or damaged content.
     """

@@ -95,7 +95,7 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
 
 
 def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
-    """Return what one pair of teeth meets on its way through the mesh; `separation` (P, N, K) in m.
+    """Return load and separation of a pair of teeth through the mesh; `separation` (P, N, K) in m.
 
     The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
     where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
@@ -129,7 +129,7 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
 
 
 def interpolated_columns(x: FloatArray, knots: FloatArray, values: FloatArray) -> FloatArray:
-    """Return what `numpy.interp` does of every column of `values`, (knots, ...), at once: (x, ...)."""
+    """Return `numpy.interp` of every column of `values`, (knots, ...), at once: (x, ...)."""
     if knots.size == 1:
         return np.repeat(values, x.size, axis=0)
     left = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 2)
@@ -148,11 +148,11 @@ def _short(values: FloatArray) -> Any:
 
 @dataclass(frozen=True)
 class CondensedCase:
-    """A case whose gears have their compliance, and what its questions have in common."""
+    """A case with condensed gears, and state that its questions share."""
 
     case: Case
     pair: ParallelAxes
-    """As the case states it."""
+    """Gear pair with the flanks that the case states."""
     bodies: CondensedPair
     drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
     """Pairs solved within tolerances, by question: every answer adds some."""

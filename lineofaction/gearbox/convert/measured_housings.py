@@ -36,7 +36,7 @@ _PLAIN = re.compile(r"\w[\w .+-]{0,99}")
 """Names that a copy of a file may have on any system."""
 
 _PLACES = {"response": 0, "reference": 2}
-"""Where the nodes of a function have those of a kind."""
+"""Index of the node of each kind among the `nodes` of a measured channel."""
 
 
 def read_responses(scene: SceneInput) -> None:

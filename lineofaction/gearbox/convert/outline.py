@@ -27,7 +27,7 @@ def outline_json(case: Case) -> Json:
 
 
 def pair_outline(pair: ParallelAxes) -> Json:
-    """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z; mm.
+    """Return the outline of the pair at position 0; x to the right, y upwards, seen from +z; mm.
 
     Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
     on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring

@@ -1,4 +1,4 @@
-"""Where the file of a housing stands in its scene, as the fields of the housing say it."""
+"""Placement of the file of a housing in its scene, as the fields of the housing state it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Placement:
         return cls(np.stack([x, np.cross(z, x), z], axis=1), MM * np.array(origin_mm))
 
     def points(self, of_file: Sequence[float] | FloatArray) -> FloatArray:
-        """Return where points (..., 3) of the file are in the scene."""
+        """Return the positions in the scene of points (..., 3) of the file."""
         return np.asarray(np.asarray(of_file) @ self.axes.T + self.origin)
 
     @property

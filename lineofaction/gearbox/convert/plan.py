@@ -1,4 +1,4 @@
-"""The plan of a run before it: what it will compute, and what it will cost."""
+"""The plan of a run before it starts: discretization and predicted cost."""
 
 from __future__ import annotations
 

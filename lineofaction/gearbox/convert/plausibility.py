@@ -22,7 +22,7 @@ from lineofaction.gearbox.units import factor, unit_name
 
 
 def case_warnings(checked: CheckedCase) -> list[Json]:
-    """Return what is implausible about a case, before anything is computed.
+    """Return warnings about implausible values of a case, before anything is computed.
 
     Raises `BadInput`: no such pair, or nothing passes where it complains.
     """
@@ -37,7 +37,7 @@ def case_warnings(checked: CheckedCase) -> list[Json]:
 def scene_warnings(
     inputs: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
 ) -> list[Json]:
-    """Return what is implausible about a scene, and about the tables of its meshes.
+    """Return warnings about implausible values of a scene and of the tables of its meshes.
 
     Raises `BadInput`: the parts of the scene do not fit each other.
 
@@ -115,7 +115,7 @@ def _phrased(content: Json, name: Callable[[str], str]) -> Json:
 
 
 def _field_in(case: Case) -> Callable[[str], str]:
-    """Return what names fields as this case has them: a material may be that of both gears."""
+    """Return a function to the field as the case has it: a material may be that of both gears."""
 
     def field(name: str) -> str:
         boundary = case_field(name)

@@ -1,4 +1,4 @@
-"""From a scene file and its STE databases to the scene of dynamics."""
+"""Conversion of a scene file and its STE databases to the scene of dynamics."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Scene
-from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste import PairGeometry, SteDatabase
 from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.closed_form_meshes import _closed_forms
 from lineofaction.gearbox.convert.complaint import complaint_of
@@ -44,7 +44,7 @@ _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
-def _teeth_of(scene: SceneInput, geometry: Mapping[str, PairFacts]) -> dict[str, GearTeeth]:
+def _teeth_of(scene: SceneInput, geometry: Mapping[str, PairGeometry]) -> dict[str, GearTeeth]:
     """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
     by_name: dict[str, GearTeeth] = {}
     for index, mesh in enumerate(scene.meshes):
@@ -68,7 +68,7 @@ def _teeth_of(scene: SceneInput, geometry: Mapping[str, PairFacts]) -> dict[str,
     return by_name
 
 
-def _side(geometry: PairFacts, side: int) -> GearTeeth:
+def _side(geometry: PairGeometry, side: int) -> GearTeeth:
     """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
     radius = geometry.base_radius[side]
     hand = geometry.helix_hand if side == 0 or geometry.internal else -geometry.helix_hand
@@ -78,7 +78,7 @@ def _side(geometry: PairFacts, side: int) -> GearTeeth:
     return GearTeeth(geometry.teeth[side], radius, helix, diameter, geometry.face_width, ring, thickness)
 
 
-def _check_center_distances(scene: SceneInput, geometry: Mapping[str, PairFacts]) -> None:
+def _check_center_distances(scene: SceneInput, geometry: Mapping[str, PairGeometry]) -> None:
     """Refuse axes of meshing gears that are not as far apart as their database says."""
     origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
     carrier = {gear.name: gear.shaft for gear in scene.gears}
@@ -108,15 +108,15 @@ class TabledScene:
     """A scene with its tables."""
 
     inputs: SceneInput
-    """As it was written, the cases of its meshes written out."""
+    """Scene as its author wrote it, with the cases of its meshes written out."""
     databases: Mapping[str, SteDatabase]
-    """By name of the mesh."""
+    """STE databases by name of their mesh."""
     scene: Scene
-    """What they make, in SI."""
+    """Scene of dynamics that inputs and databases make, in SI."""
     housings: Mapping[str, ReducedHousing] = field(default_factory=dict)
-    """By name of the housing: of those that have a solid, or a file of modes on the caller's disk."""
+    """Reduced housings by name, of housings with a solid or with a file of modes on the caller's disk."""
     seconds: float = 0.0
-    """CPU seconds of tables and housings that were made for it."""
+    """CPU seconds of tables and housings that were made for the scene."""
 
     @property
     def steady(self) -> TabledScene:
@@ -145,7 +145,7 @@ def dynamic_scene(
     JobFailed
         A database has failed points.
     """
-    geometry = {name: database.facts for name, database in databases.items()}
+    geometry = {name: database.geometry for name, database in databases.items()}
     with boundary_errors():
         tables: dict[str, MeshTable] = {name: table.force_table() for name, table in databases.items()}
     housings = housings_of(tuple((part, reduced.get(part.name)) for part in scene.housings))
@@ -154,7 +154,7 @@ def dynamic_scene(
 
 
 def check_scene(
-    scene: SceneInput, geometry: Mapping[str, PairFacts], tables: Mapping[str, MeshTable] | None = None
+    scene: SceneInput, geometry: Mapping[str, PairGeometry], tables: Mapping[str, MeshTable] | None = None
 ) -> Scene:
     """Return the scene on placeholders for its tables and for the matrices of solids.
 
@@ -172,7 +172,7 @@ def check_scene(
 
 def _moving(
     scene: SceneInput,
-    geometry: Mapping[str, PairFacts],
+    geometry: Mapping[str, PairGeometry],
     tables: Mapping[str, MeshTable],
     housings: Sequence[Housing],
     bent: Set[str] = frozenset(),
@@ -201,7 +201,7 @@ def _moving(
 
 def _assembled(
     scene: SceneInput,
-    geometry: Mapping[str, PairFacts],
+    geometry: Mapping[str, PairGeometry],
     meshes: tuple[GearMesh, ...],
     housings: Sequence[Housing],
 ) -> Scene:

@@ -11,7 +11,7 @@ from model_studies.ablation import TRIFLE
 
 
 def effect_size(ledger: Json, effect: str) -> str:
-    """Return what a scene loses without an effect in all its parts, in words: the one size that is shown.
+    """Return the influence of an effect in all parts of a scene, in words: the one size that is shown.
 
     As the ledger of a run or a study estimates it; where it does not, how far flanks move at rest. Empty:
     nothing.
@@ -78,7 +78,7 @@ def beyond_lines(ledger: Json) -> Iterator[str]:
 
 
 def assumed_lines(ledger: Json) -> Iterator[str]:
-    """Yield what the phases of the meshes assume, part by part."""
+    """Yield lines on the assumed phases of the meshes, part by part."""
     for row in ledger.get("assumed", ()):
         yield f"Assumed of {row['part']}: {row['words']}"
 

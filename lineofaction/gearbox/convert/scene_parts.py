@@ -1,4 +1,4 @@
-"""Parts of a scene file in SI, each by its table; what a table shares with its part is not said here again.
+"""Conversion of the tables of a scene file to parts in SI, by the fields that both declare.
 
 Scenes that have the same tables of a kind share its parts: they are made once, and the same objects.
 """
@@ -55,7 +55,7 @@ class GearTeeth:
 
 
 def _parts_of_kind(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseModel, ...]], tuple[T, ...]]:
-    """Return what makes the parts of a kind; errors are named by the place in the list."""
+    """Return a function that makes the parts of a kind; errors name the place in the list."""
 
     @identity_cached
     def of(tables: tuple[BaseModel, ...]) -> tuple[T, ...]:
@@ -69,7 +69,7 @@ def _parts_of_kind(kind: str, made: Callable[[Any], T]) -> Callable[[tuple[BaseM
 
 
 def _plain(kind: type[T]) -> Callable[[BaseModel], T]:
-    """Return what makes parts that share all their fields with their tables."""
+    """Return a function that makes parts which share all their fields with their tables."""
     return lambda table: kind(**in_si(kind, table))
 
 
@@ -92,7 +92,7 @@ def rolling_bearing_of(table: RollingBearingInput) -> RollingBearing:
 
 @cached_by(lambda scene: (scene.bushings, scene.planet_bearings))
 def _laws(scene: SceneInput) -> dict[str, Any]:
-    """Return what all bearings do that is not linear, by the kinds of `BearingLawParts`."""
+    """Return the nonlinear laws of all bearings, by the kinds of `BearingLawParts`."""
     return {kind: tuple(_laws_of(kind, scene)) for kind in BEARING_PARTS}
 
 
@@ -271,7 +271,7 @@ _ALONE: Mapping[str, Callable[[Any], Any]] = {
     "forces": _force,
     "unbalances": _plain(Unbalance),
 }
-"""What makes a part of each kind that follows from its table alone."""
+"""Functions that make a part from its table alone, by kind of part."""
 _LISTS = {kind: _parts_of_kind(kind, made) for kind, made in _ALONE.items()}
 
 

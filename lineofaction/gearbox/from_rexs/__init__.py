@@ -1,5 +1,5 @@
-"""From a REXS model to cases and a scene.
+"""Conversion of a REXS model to cases and a scene.
 
-Whatever reads a value of a file raises `BadInput` that names component and attribute where it is none, is
-missing and nothing follows instead, or contradicts others; what a stage raises costs that stage alone.
+A reader of a value raises `BadInput` with component and attribute: the value is invalid, contradicts others,
+or is missing and follows from nothing else. An error in one stage leaves the other stages computable.
 """

@@ -1,4 +1,4 @@
-"""The account of an import: what became of every component and attribute of a file."""
+"""The account of an import: the fate of every component and attribute of a file."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from lineofaction.gearbox.from_rexs.assumptions import ASSUMED, FORMER, attribut
 from lineofaction.gearbox.rexs.model import Attribute, Component, Model
 
 Fate = Literal["taken", "assumed", "derived", "defaulted", "ignored", "refused"]
-"""Taken as it is; assumed by the caller over the file; derived from other values; defaulted for want of a
-usable one; ignored, since nothing here uses it; refused with a reason: the unit has it, the scene has not."""
+"""Fates of a component or value: taken as it is; assumed by the caller over the file; derived from other
+values; defaulted, because no usable value is stated; ignored, because no analysis uses it; refused with a
+reason, because the unit has it and the scene cannot."""
 FATES: tuple[Fate, ...] = get_args(Fate)
 
 UNUSED = "no analysis uses it"
@@ -19,7 +20,7 @@ UNUSED = "no analysis uses it"
 
 @dataclass(frozen=True)
 class Line:
-    """What became of a component, an attribute of it, or a value that it lacks."""
+    """Fate of a component, of an attribute of it, or of a value that it lacks."""
 
     place: str
     """The component, with its load case."""
@@ -32,15 +33,15 @@ class Line:
     """The attribute; empty for the component itself."""
     fate: Fate
     words: str
-    """Its name here, the formula it follows from, or the reason."""
+    """Name of the field in the case or scene, the formula that the value follows from, or the reason."""
     line: int | None = None
-    """Of the component in an XML file, from 1."""
+    """Line of the component in an XML file, counted from 1."""
 
 
 class Account:
-    """The account of one model. Whoever reads a value states what becomes of it; the last word counts.
+    """The account of one model. A reader of a value states the fate of the value; the last statement counts.
 
-    `model`: of the newest version.
+    `model` has the newest version of REXS.
     """
 
     def __init__(self, model: Model) -> None:
@@ -49,7 +50,7 @@ class Account:
         self._said: dict[int, dict[str, tuple[Fate, str]]] = {number: {} for number in self._parts}
 
     def location(self, component: Component) -> str:
-        """Return where a component stands: its id, and its load case."""
+        """Return the location of a component: its id, and its load case."""
         return self._places[id(component)]
 
     def say(self, component: Component, item: str, fate: Fate, text: str) -> None:
@@ -57,7 +58,7 @@ class Account:
         self._said[id(component)][item] = (fate, text)
 
     def has_entry(self, component: Component) -> bool:
-        """Return whether something was said of the component itself."""
+        """Return whether the account has a line on the component itself."""
         return "" in self._said[id(component)]
 
     def lines(self) -> tuple[Line, ...]:
@@ -83,7 +84,7 @@ class Account:
 
 
 def _assumed(attribute: Attribute, fate: Fate, text: str) -> tuple[Fate, str]:
-    """Return what became of an assumed value: one that nothing reads is refused."""
+    """Return the fate of an assumed value; a value that nothing reads is refused."""
     if fate == "ignored":
         return "refused", f"assumed to be {attribute_text(attribute)}, and {text}"
     return "assumed", f"{attribute_text(attribute)} instead of {dict(attribute.extra)[FORMER]}: {text}"

@@ -1,4 +1,4 @@
-"""Assumptions of a caller about a REXS file: values of attributes over those of the file."""
+"""Assumptions of a caller about a REXS file: values of attributes that replace values of the file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from lineofaction.gearbox.rexs.values import entry_kind, kind_of, scalar_of, tex
 from lineofaction.gearbox.rexs.vocabulary import listed_unit
 
 ASSUMED, FORMER = "assumed", "former"
-"""Origin of an attribute that is assumed, and the field in which it keeps what the file says."""
+"""Origin of an assumed attribute, and name of the field that stores the value of the file."""
 
 _FORM = re.compile(r"(\d{1,18})\.([A-Za-z]\w*)=(.+)")
 
@@ -31,14 +31,15 @@ class Assumption:
     component: int
     """Id of the component."""
     attribute: str
-    """Its name in the newest version of REXS."""
+    """Name of the attribute in the newest version of REXS."""
     value: str
-    """As XML writes it, in the unit of the file, else in that of REXS; numbers of an array apart by commas.
+    """Value as XML writes it, in the unit of the file, else in the unit of REXS; commas separate numbers of
+    an array.
     """
 
     @classmethod
     def of(cls, text: str) -> Assumption:
-        """Return what ``COMPONENT.ATTRIBUTE=VALUE`` says.
+        """Return the assumption of the text ``COMPONENT.ATTRIBUTE=VALUE``.
 
         Raises `BadInput`: it has another form.
         """

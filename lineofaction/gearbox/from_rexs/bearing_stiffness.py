@@ -14,16 +14,19 @@ from lineofaction.gearbox.from_rexs.bearings import BearingGeometry, Row
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 
 RIGID_FROM = 1e13
-"""N/m; no bearing is as stiff: files write 1e20 or 1e23 for one that does not yield."""
+"""Stiffness in N/m from which a bearing counts as rigid. No bearing is as stiff: files write 1e20 or 1e23 for
+a bearing that does not yield."""
 
 RIGID_TILT_FROM = 1e9
-"""N m/rad; likewise: files write 1e12."""
+"""Tilting stiffness in N m/rad from which a bearing counts as rigid: files write 1e12."""
 
 RIGID, RIGID_TILT = 1e10, 1e7
-"""N/m and N m/rad of a rigid seat: ten times the stiffest rolling bearings of gear units."""
+"""Stiffness and tilting stiffness of a rigid seat, N/m and N m/rad: ten times the stiffest rolling bearings
+of gear units."""
 
 USUAL = {"ball": 2e8, "roller": 1e9}
-"""N/m, radial, of bearings of about 50 mm bore; of concepts without a value, as of balls."""
+"""Radial stiffness of bearings of about 50 mm bore, N/m, by kind of rolling element. A bearing whose kind has
+no value counts as a ball bearing."""
 
 AXIAL_SHARE = 0.5
 """Axial over radial stiffness where the file has neither a value nor the geometry."""
@@ -38,7 +41,7 @@ induces, Y = 0.4 cot(alpha) (ISO 281). Half of its elements carry; with much les
 _TILTS = (3, 4)
 
 COPIES = 8
-"""Of each element: stiffness as the average over the passing of an element."""
+"""Number of positions of a rolling element, spread over one pitch, over which the stiffness is averaged."""
 
 _FIXED = ("both_directions", "positive", "negative")
 
@@ -49,15 +52,16 @@ _ROWS = ("f_u", "f_v", "f_w", "m_v", "m_w")
 
 @dataclass(frozen=True)
 class BearingStiffness:
-    """Stiffness of a bearing along its own axis and across."""
+    """Stiffness of a bearing along and across its axis."""
 
     radial: float
     axial: float
-    """`radial`, `axial`: N/m."""
+    """`radial`, `axial`: Radial and axial stiffness, N/m."""
     tilt: float
-    """N m/rad."""
+    """Tilting stiffness, N m/rad."""
     matrix: FloatArray | None = None
-    """In u, v, w, rotation about v, about w; N, m, rad; instead of the others. Shape (5, 5)."""
+    """Stiffness matrix in u, v, w, rotation about v, about w; N, m, rad. It replaces the other fields. Shape
+    (5, 5)."""
 
     @classmethod
     def of(cls, part: Part) -> BearingStiffness:

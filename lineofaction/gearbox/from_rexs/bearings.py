@@ -24,7 +24,8 @@ class BearingGeometry:
     """A bearing of one row whose geometry is known."""
 
     row: Row
-    """Its contact angle is not negative: which direction it holds is not in it."""
+    """Row of rolling elements. Its contact angle is not negative: the row does not say which direction it
+    supports."""
     rating: float
     """Static load rating C_0, N."""
     line: CatalogLine | None = None

@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.units import MM
 
 DISC = 0.02
-"""m, the length of a carrier without sizes."""
+"""Length of a carrier without sizes, m."""
 
 _SIZES = ("outer_diameter", "inner_diameter", "length")
 

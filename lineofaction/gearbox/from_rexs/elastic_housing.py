@@ -20,7 +20,8 @@ _MATRIX = "reduced_static_stiffness_matrix"
 _PER_POINT = 6
 
 _SYMMETRIC = 1e-6
-"""Relative; a finite-element program writes its matrices with that many digits."""
+"""Relative asymmetry up to which a matrix counts as symmetric: finite-element programs write matrices with
+that many digits."""
 
 
 def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:

@@ -1,4 +1,4 @@
-"""A modification of a flank: what it removes, and the flank that it is on."""
+"""A modification of a flank: the removed material, and the flank that is modified."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ _SAME = 1e-6  # of the flank: places that a writer's rounding sets apart are one
 
 @dataclass(frozen=True)
 class Modification:
-    """A modification of a flank: what it removes, and fields of the case that say the same."""
+    """A modification of a flank: the removed material, and equivalent fields of the case."""
 
     part: Part
     removed: Removed
     fields: Mapping[str, Any] = field(default_factory=dict)
-    """Empty where the case has none for it."""
+    """Fields of the case that state the modification; empty if no field does."""
     rolls: tuple[float, ...] = ()
     faces: tuple[float, ...] = ()
-    """`rolls`, `faces`: Where it has kinks: roll lengths, coordinates from the datum face, m."""
+    """`rolls`, `faces`: Kinks of the modification: roll lengths, and coordinates from the datum face, m."""
 
 
 @dataclass(frozen=True)

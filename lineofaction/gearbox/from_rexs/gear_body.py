@@ -1,4 +1,4 @@
-"""What carries the teeth: bore or rim, rim and web of the gear body, and the material."""
+"""The body that carries the teeth: bore or rim, rim and web, and the material."""
 
 from __future__ import annotations
 

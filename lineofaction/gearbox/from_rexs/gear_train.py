@@ -13,22 +13,22 @@ from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.problems import BadInput
 
 EQUAL = 1e-9
-"""Relative; ratios of whole numbers, solved in floating point."""
+"""Relative tolerance of ratios: they are ratios of whole numbers, solved in floating point."""
 
 _MAX_ROTORS = 300
-"""The largest trains that are solved have fewer; so many take 0.1 s."""
+"""Number of rotors from which a train is not solved: 300 rotors take 0.1 s."""
 
 
 @dataclass(frozen=True)
 class Train:
-    """The rotors of a train and what their ratios are."""
+    """The rotors of a train, and the equations between their speeds."""
 
     rotors: tuple[int, ...]
-    """Their ids, the columns."""
+    """Ids of the rotors, in the sequence of the columns of `rows`."""
     stages: tuple[GearStage, ...]
-    """The first rows."""
+    """Stages of the train, in the sequence of the first rows of `rows`."""
     rows: FloatArray
-    """Stages, then couplings. Shape (n, m)."""
+    """Kinematic equations of stages, then of couplings. Shape (n, m)."""
     grounded: tuple[int, ...]
     """Columns of rotors at rest."""
 

@@ -48,7 +48,7 @@ class Part:
 
     @property
     def location(self) -> str:
-        """Where the component stands in the file."""
+        """The place of the component in the file."""
         return self.unit.account.location(self.component)
 
     @property
@@ -209,7 +209,7 @@ class GearUnit:
         return (relation for relation in self.model.relations if relation.type in types)
 
     def load_cases(self) -> tuple[tuple[Part, ...], ...]:
-        """Return what each load case of the first spectrum sets, empty without a spectrum."""
+        """Return the components of each load case of the first spectrum, empty without a spectrum."""
         spectra = self.model.spectra[:1]
         return tuple(
             tuple(Part(part, self) for part in case.components)
@@ -313,11 +313,12 @@ class GearStage:
     stage: Part
     gears: tuple[Part, Part]
     shafts: tuple[Part, Part]
-    """`gears`, `shafts`: Gear 1 and gear 2 of the file, and what carries them. Shape (Part, Part) each."""
+    """`gears`, `shafts`: Gear 1 and gear 2 of the file, and the shaft or carrier of each. Shape (Part, Part)
+    each."""
     teeth: tuple[int, int]
-    """Their numbers of teeth, positive."""
+    """Numbers of teeth of both gears, positive."""
     internal: bool
-    """One of them is a ring gear."""
+    """Whether one of the gears is a ring gear."""
 
     @property
     def is_cylindrical(self) -> bool:

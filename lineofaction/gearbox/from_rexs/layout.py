@@ -1,4 +1,4 @@
-"""The layout of a gear unit: where its shafts stand, as the file says, else by its stages and couplings."""
+"""The layout of a gear unit: positions of its shafts by the file, else by its stages and couplings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ANGLE = "rotating_angle_around_neg_u_axis"
 
 @dataclass(frozen=True)
 class Layout:
-    """Where everything is."""
+    """Axes, shafts, rotors and stages of a gear unit in the frame of its scene."""
 
     unit: GearUnit
     axes: SceneAxes
@@ -28,7 +28,7 @@ class Layout:
     shafts: Mapping[int, PlacedShaft]
     """The shafts parallel to z, by id."""
     rotors: Rotors
-    """What turns together."""
+    """Bodies that turn as one."""
     stages: tuple[GearStage, ...]
     """All stages with two gears."""
 

@@ -16,7 +16,7 @@ from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import RPM
 
 _REACTION_TORQUE = 1e-9
-"""Of the largest torque; less is rounding."""
+"""Share of the largest torque below which a reaction is rounding."""
 
 
 @dataclass(frozen=True)
@@ -26,21 +26,21 @@ class AppliedTorque:
     part: Part
     """The load, or the gear of a stage that is cut off."""
     rotor: int
-    """What it acts on."""
+    """Rotor that the torque acts on."""
     z: float
-    """Where along z, m."""
+    """Place of the torque along z, m."""
     torque: float
-    """N m about z."""
+    """Torque about z, N m."""
 
 
 class SceneMotion:
-    """What acts on the shafts of a scene about their axes: external loads, and stages that are cut off.
+    """Torques on the shafts of a scene about their axes: external loads, and stages that are cut off.
 
     Attributes
     ----------
     torques : tuple of AppliedTorque
     drivers : list of AppliedTorque
-        What drives each train: the torque of the most power into it; none acts on one without.
+        Torque of the most power into each train; a train that takes in no power has none.
     """
 
     def __init__(self, flow: PowerFlow, shafts: SceneShafts, cut: Sequence[GearStage]) -> None:
@@ -72,7 +72,7 @@ class SceneMotion:
             yield AppliedTorque(part, layout.rotor(shaft.id), z, torque)
 
     def _of_stages(self, cut: Sequence[GearStage]) -> Iterator[AppliedTorque]:
-        """Yield what stages that are not computed do to shafts of the scene."""
+        """Yield the torques of stages without a case on shafts of the scene."""
         layout = self._layout
         meshed = {gear.id for stage in self._shafts.stages for gear in stage.gears}
         for stage in cut:
@@ -149,15 +149,15 @@ class LoadCase:
 
     name: str
     number: int
-    """Its place in the spectrum of the file, from 1."""
+    """Number of the load case in the spectrum of the file, counted from 1."""
     share: float
-    """Of the time, 0 to 1."""
+    """Share of the time, 0 to 1."""
     torque_n_m: float
     """Torque on the shaft of the scene's first drive, positive."""
     speed_rpm: float
     """Speed of that shaft, positive."""
     direction: Literal["drive", "coast"]
-    """Whether the flanks that carry are those of the scene."""
+    """"drive" if the loaded flanks are the loaded flanks of the scene, else "coast"."""
     forces: tuple[Mapping[str, Any], ...] = ()
     """Tables of the scene's forces that differ under it."""
 

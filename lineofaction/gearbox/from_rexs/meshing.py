@@ -1,4 +1,4 @@
-"""How two gears of a stage turn and mesh, and which of them drives."""
+"""Senses of rotation and hands of two gears in mesh, and which gear drives."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ OTHER_STAGES = ("bevel_stage", "worm_stage", "hypoid_stage", "beveloid_stage")
 _DATA = ("cylindrical_stage_gear_data", "stage_gear_data")
 
 _Sense = tuple[float, str]
-"""Sense of a gear or shaft about its own u axis, 1 or -1, and the shaft whose speed it follows from."""
+"""Sense of a gear or shaft about its u axis, 1 or -1, and the shaft whose speed determines it."""
 
 
 @dataclass(frozen=True)

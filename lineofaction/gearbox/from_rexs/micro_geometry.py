@@ -1,4 +1,4 @@
-"""The modified flank of a gear: fields of a case, and a grid of what has no field."""
+"""The modified flank of a gear: fields of a case, and a grid of modifications without a field."""
 
 from __future__ import annotations
 

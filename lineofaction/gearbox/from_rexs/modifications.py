@@ -32,8 +32,8 @@ READERS: dict[str, Callable[[PlainFlank, Part], Modification]] = {
     "profile_twist": profile_twist,
     "topographical_modification": topographical_modification,
 }
-"""What reads each component that modifies a flank; it raises `BadInput` where an amount is missing, or stated
-at a place that the flank does not have."""
+"""Readers of the components that modify a flank, by type. A reader raises `BadInput` where an amount is
+missing, or where it is stated at a place that the flank does not have."""
 
 _WITHOUT_EXTENT: tuple[Fate, str] = ("refused", "REXS states no extent of it along the face")
 _MEASURED: tuple[Fate, str] = ("ignored", "measured deviations are no part of the nominal flank")
@@ -43,4 +43,4 @@ UNREAD = {
     "profile_deviation": _MEASURED,
     "helix_deviation": _MEASURED,
 }
-"""What becomes of the components of a flank that nothing here reads."""
+"""Fates, with their reasons, of the components of a flank that no reader here takes."""

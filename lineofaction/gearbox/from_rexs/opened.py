@@ -41,7 +41,8 @@ from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_text
 
 _DIGITS = 9
-"""Of torques: those of equal planets agree to the rounding of the statics."""
+"""Significant digits to which torques are compared: the torques of equal planets differ by rounding of the
+statics."""
 
 
 @brief
@@ -50,23 +51,23 @@ class OpenedUnit:
     """A gear unit as cases and a scene."""
 
     cases: tuple[StageCase, ...]
-    """The cylindrical stages; of equal ones the first."""
+    """Cases of the cylindrical stages, of equal stages the first."""
     scene: SceneInput | None
-    """The whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None where the file has not
-    what a scene needs: the account says why.
+    """Scene of the whole unit; its meshes name the case files ``NAME.toml`` of `cases`. None: the file lacks
+    what a scene needs, and the account says why.
     """
     load_cases: tuple[LoadCase, ...]
-    """Of the scene's driving shaft; one without a spectrum."""
+    """Load cases, with torque and speed of the scene's driving shaft; one if the file has no spectrum."""
     lines: tuple[Line, ...]
-    """What became of each component and value."""
+    """Fate of each component and value."""
     changes: tuple[Change, ...]
-    """What the upgrade to the newest version of REXS changed."""
+    """Changes by the upgrade to the newest version of REXS."""
     parts: SceneParts = field(default_factory=SceneParts)
     """The components that the parts of the scene are; none without a scene."""
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """What the file has and the scene has not, a sentence for each reason; as the scene states it."""
+        """The parts of the file that the scene lacks, one sentence for each reason."""
         return refusal_texts(self.lines)
 
     @property

@@ -10,7 +10,7 @@ from lineofaction.gearbox.from_rexs.gear_unit import GearUnit, Part
 _SPEED, _TORQUE, _POWER = "rotational_speed", "torque_around_u_axis", "power"
 
 _SHARES = ("operating_time_fraction", "load_duration_fraction")
-"""As REXS has it, and as one writer names it."""
+"""Attributes of the share of time: the name of REXS, and the name that one writer uses."""
 
 FORCES: Mapping[str, str] = {
     "force_u_direction": "force along u of the shaft, N",
@@ -23,24 +23,24 @@ FORCES: Mapping[str, str] = {
 """Force and moment of an external load, in words; the torque about u is none of them, and stays 0."""
 
 LARGEST = 1e9
-"""N or N m, of a force in a scene."""
+"""Largest force or moment of a scene, N or N m."""
 
 
 @dataclass(frozen=True)
 class OperatingPoint:
-    """What a load case states."""
+    """Speeds, torques, powers and forces that a load case states."""
 
     name: str
     number: int
-    """Its place in the spectrum, from 1."""
+    """Number of the operating point in the spectrum, counted from 1."""
     share: float
-    """Of the time, 0 to 1."""
+    """Share of the time, 0 to 1."""
     speeds: Mapping[int, float]
-    """rad/s about u, by shaft."""
+    """Speeds about u, rad/s, by shaft."""
     torques: Mapping[int, float | None]
-    """N m about u from outside, by external load; None where it follows from the others."""
+    """Torques about u from outside, N m, by external load; None: the torque follows from the others."""
     powers: Mapping[int, float]
-    """W into the unit, by external load whose torque is not stated."""
+    """Powers into the unit, W, by external load whose torque is not stated."""
     forces: Mapping[int, tuple[float, ...]]
     """Force along and moment about u, v, w of its shaft, N and N m, by external load that states any; the
     moment about u is 0.

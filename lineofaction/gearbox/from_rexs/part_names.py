@@ -9,7 +9,7 @@ LONGEST = 64
 
 
 class Names:
-    """Gives each part of one kind its name.
+    """Namer of parts: each part of one kind gets a name of its own.
 
     A name that is too long, or that another part has, ends in the component's id.
     """

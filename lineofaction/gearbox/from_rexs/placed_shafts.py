@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_axes import SceneAxes
 
 SAME_POSITION = 1e-6
-"""m; file and sum of lengths agree to rounding."""
+"""Length in m up to which the length in the file and the sum of the sections are equal."""
 
 _LENGTHS = ("length", "outer_diameter_begin", "outer_diameter_end")
 
@@ -26,16 +26,16 @@ class PlacedShaft:
 
     part: Part
     placement: Placement
-    """In the frame of the model; its origin is u = 0."""
+    """Placement in the frame of the model; the origin is at u = 0."""
     start: FloatArray
-    """Of u = 0 in the scene, m. Shape (3,)."""
+    """Point of u = 0 in the scene, m. Shape (3,)."""
     sense: int
     """+1 where u is along z, -1 where it is against it."""
     begin: float
     end: float
     """`begin`, `end`: u of both ends, m."""
     sections: tuple[BeamSection, ...] = ()
-    """From the left end, the lower z; none where the file has none."""
+    """Sections from the left end, the end of lower z; empty if the file has none."""
 
     @classmethod
     def of(cls, part: Part, placement: Placement, axes: SceneAxes) -> PlacedShaft:

@@ -1,4 +1,4 @@
-"""Where components stand: points and axes u, v, w, composed over the components they refer to."""
+"""Placement of components: points and axes u, v, w, composed over the components they refer to."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _REFERENCE = "reference_component_for_position"
 
 @dataclass(frozen=True)
 class Placement:
-    """A place in the model's own frame."""
+    """A point with axes u, v, w in the frame of the model."""
 
     origin: FloatArray
-    """m. Shape (3,)."""
+    """Origin in the frame of the model, m. Shape (3,)."""
     axes: FloatArray
     """Unit vectors u, v, w by rows, a right-handed system. Shape (3, 3)."""
 
@@ -40,7 +40,7 @@ class Placement:
 
     @staticmethod
     def of(part: Part, inner: tuple[int, ...] = ()) -> Placement | None:
-        """Return where a component stands, None where the file does not say; `inner` as of `frame_of`."""
+        """Return the placement of a component, None: the file states none; `inner` as of `frame_of`."""
         origin = _vector(part, "support_vector", "place")
         return None if origin is None else _in_reference(part, origin, inner)
 
@@ -49,7 +49,7 @@ FIXED = Placement(np.zeros(3), np.eye(3))
 
 
 def frame_of(part: Part, inner: tuple[int, ...] = ()) -> Placement:
-    """Return where a component stands: as the file says, else by what carries it.
+    """Return the placement of a component by the file, else by the component that carries it.
 
     On a shaft it stands at its u coordinate, along the shaft's axes; without one it has the origin of the
     component that its place refers to.

@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.layout import Layout
 from lineofaction.gearbox.from_rexs.operating_points import OperatingPoint
 
 DEFAULT_SPEED = 1000.0 * math.pi / 30.0
-"""rad/s, where the file states none."""
+"""Speed of the first loaded shaft if the file states no speed, rad/s."""
 NO_SPEED = "no speed is stated: the first loaded shaft turns at 1000/min"
 UNBALANCED = "the torques stated do not balance: the first is taken, the others follow from it"
 REPLACED = "it does not balance the first torque stated, from which the scene's follows"
@@ -30,7 +30,7 @@ class PowerFlow:
     layout: Layout
     train: Train
     speeds: FloatArray
-    """rad/s. Shape (rotors,)."""
+    """Speeds of the rotors, rad/s. Shape (rotors,)."""
     loads: Mapping[int, float]
     """Torque from outside by external load, N m; by shaft where the train's open end has no load that states
     or leaves open its torque.
@@ -38,11 +38,12 @@ class PowerFlow:
     flow: Flow
     """Torques of the stages on the rotors."""
     remarks: tuple[str, ...]
-    """What was assumed."""
+    """Sentences about assumed values."""
     joined: frozenset[int]
     """The rotors that the train joins to a speed that is known."""
     replaced: tuple[int, ...] = ()
-    """The loads whose stated torques do not balance the first; theirs follow from it."""
+    """Loads whose stated torques do not balance the first load. The torques used for them follow from the
+    balance."""
 
     def moves(self, stage: GearStage) -> bool:
         """Return whether the train joins a stage to a speed that is known."""

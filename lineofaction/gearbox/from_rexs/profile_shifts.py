@@ -15,17 +15,17 @@ from lineofaction.gearbox.units import MM, as_typed
 
 @dataclass(frozen=True)
 class ToothedPair:
-    """What the file says of a stage's two gears; the second may be a ring gear."""
+    """Two gears of a stage as the file states them; the second may be a ring gear."""
 
     meshing: Meshing
     pinion: ToothingData
     wheel: ToothingData
     center_distance: float
-    """m."""
+    """Center distance, m."""
     axial_offset: float
-    """Of the wheel's mid-face from the pinion's towards +z, m."""
+    """Offset of the wheel's mid-face from the pinion's towards +z, m."""
     torques: tuple[float, ...]
-    """On the driving gear, N m; of one sign."""
+    """Torques on the driving gear, N m, all of one sign."""
 
     @property
     def stage(self) -> Part:

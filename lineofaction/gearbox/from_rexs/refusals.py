@@ -1,4 +1,4 @@
-"""Refusals of an import: what a file has and its scene has not, by the reason."""
+"""Refusals of an import: parts of a file that its scene lacks, by the reason."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ REASONS = {
 
 
 def refusal_texts(lines: Iterable[Line]) -> tuple[str, ...]:
-    """Return what is left out with lines of the file and the reason, a sentence for each reason.
+    """Return sentences on omitted parts with lines of the file, one sentence for each reason.
 
     Stages come first, for what stands behind them is left out with them; then other parts, then values of
     parts, each in the order of the file.

@@ -11,7 +11,7 @@ from fe_contact.types import FloatArray
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 
 Law = Callable[[FloatArray], FloatArray]
-"""Relative depth over the fraction of the length; 0 up to 0, 1 at 1."""
+"""Function from the fraction of a relief's length to the fraction of its depth; 0 up to 0, 1 at 1."""
 
 _GROWTH = math.e - 1.0
 

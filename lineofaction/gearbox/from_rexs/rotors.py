@@ -1,4 +1,4 @@
-"""Rotors: what turns as one body, a shaft by itself or all parts of a planet carrier."""
+"""Rotors: bodies that turn as one, a single shaft or all parts of a planet carrier."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from lineofaction.gearbox.from_rexs.gear_unit import Connection, GearUnit, PlanetarySet
 
 _RIGID_ROTATION = 1e12
-"""N m/rad; no coupling of a gear unit is as stiff: files write 1e17 and more for one that does not yield."""
+"""Torsional stiffness in N m/rad from which a coupling counts as rigid. No coupling of a gear unit is as
+stiff: files write 1e17 and more for a coupling that does not yield."""
 
 
 @dataclass(frozen=True)

@@ -23,19 +23,19 @@ from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 
 STANDARD_GRAVITY = 9.80665
-"""m/s^2."""
+"""Standard gravity, m/s^2."""
 PERIODS = 10
-"""Of the slowest mesh in the run of the scene."""
+"""Number of periods of the slowest mesh in the run of the scene."""
 
 
 @dataclass(frozen=True)
 class SceneTable:
-    """A scene as its file says it."""
+    """A scene as the tables of its file."""
 
     table: dict[str, Any]
     """Tables of a scene file; meshes name their case files."""
     leader: AppliedTorque | None
-    """What drives it first."""
+    """Torque that drives the scene and is named first."""
     forces: tuple[SceneForce, ...]
     """The external loads that its forces are."""
     parts: SceneParts
@@ -132,7 +132,7 @@ def _gravity(layout: Layout) -> list[float]:
 
 
 def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
-    """Return how often the first planet of each set is there, and at which angles."""
+    """Return the number of planets of each set, which copy the first, and their angles."""
     tables = []
     for planets in layout.rotors.sets:
         first = planets.planets[0]

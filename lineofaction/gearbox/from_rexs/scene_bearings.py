@@ -1,4 +1,4 @@
-"""What holds the shafts of the scene: bearings, and couplings between shafts."""
+"""Supports of the scene's shafts: bearings, and couplings between shafts."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
-"""N/m, and N m/rad, of a coupling that does not yield."""
+"""Stiffness, N/m and N m/rad, of a coupling that does not yield."""
 _CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
 
 
 class SceneBearings:
-    """Tables of what holds the shafts, as a scene file has them; the account says what is left out and why.
+    """Tables of bearings and couplings as a scene file has them; the account says what is left out and why.
 
     `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
     """
@@ -92,7 +92,7 @@ class SceneBearings:
         return rotor if rotor in self._shafts.by_rotor else None
 
     def _rolling_bearing(self, entry: Connection) -> Table | str:
-        """Return what a scene file states of a bearing by its geometry, or why it is a bushing."""
+        """Return the table of a bearing by its geometry, or the reason why the bearing is a bushing."""
         part = entry.part
         if part.id in self._loose:
             return "the matrix of the casing is singular, and only linear bearings sit in it"

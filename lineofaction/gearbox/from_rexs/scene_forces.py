@@ -1,4 +1,4 @@
-"""Forces of the scene: what acts on shafts from outside across and along their axes, by load case."""
+"""Forces and moments on shafts from outside, across and along the shafts' axes, by load case."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 from lineofaction.gearbox.units import MM
 
 ROUNDING = 1e-12
-"""Of the largest component of a vector: less is that of the turn of its axes."""
+"""Share of a vector's largest component below which a component is rounding of the rotation of its axes."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +29,17 @@ class SceneForce:
     shaft: str
     """`name`, `shaft`: Its own and its shaft's name in the scene."""
     position_mm: float
-    """Where it acts, from the left end of that shaft."""
+    """Position of the force from the left end of that shaft."""
     load: int
-    """The external load that it is."""
+    """Id of the external load of the file."""
     turn: FloatArray
-    """Takes components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
+    """Rotation from components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
     lever: float
-    """Along z from where it acts in the scene to the load's place, m; 0 but beyond the end of its shaft."""
+    """Distance along z from the force in the scene to the load in the file, m; 0 unless the load is beyond
+    the shaft's end."""
 
     def entry(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return what an entry of a load case's forces says at an operating point.
+        """Return the entry of a load case's forces at an operating point.
 
         The moment about the axis is not in it: torques drive and load the train.
         """
@@ -49,7 +50,7 @@ class SceneForce:
         return {"name": self.name, "force_n": _digits(force), "moment_n_m": _digits(moment)}
 
     def table(self, point: OperatingPoint) -> dict[str, Any]:
-        """Return its table in a scene that runs at an operating point."""
+        """Return the table of the force in a scene that runs at an operating point."""
         return {**self.entry(point), "shaft": self.shaft, "position_mm": self.position_mm}
 
 

@@ -17,7 +17,8 @@ from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.units import MM
 
 SAME = 1e-6
-"""Relative; axes of a scene that differ more from the center distance of their mesh are refused."""
+"""Relative difference between the distance of two axes and the center distance of their mesh from which a
+scene is refused."""
 
 INTEGRAL = 0.95
 """Share of the pitch diameter from which a shaft's section is the gear's own body."""

@@ -21,7 +21,7 @@ class ShaftPart:
 
     component: int
     turn: FloatArray
-    """Takes components along u, v, w to x, y, z. Shape (3, 3)."""
+    """Rotation from components along u, v, w to x, y, z. Shape (3, 3)."""
     sense: int
     """+1 where u is along z, -1 where it is against it."""
     zero: float
@@ -34,7 +34,7 @@ class BearingPart:
 
     component: int
     turn: FloatArray
-    """Takes components along its u, v, w to x, y, z. Shape (3, 3)."""
+    """Rotation from components along the bearing's u, v, w to x, y, z. Shape (3, 3)."""
     shaft_inside: bool
     """Whether the shaft is on the inner side."""
 
@@ -93,7 +93,7 @@ def scene_parts(
 
 
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
-    """Return how the face positions of the case count along u of gear 1's shaft.
+    """Return the sense of the case's face positions along u of gear 1's shaft, 1 or -1.
 
     They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
     pushed back by it.

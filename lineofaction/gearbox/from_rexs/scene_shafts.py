@@ -1,4 +1,4 @@
-"""The shafts of the scene: those of the file, planet carriers, stubs of planetary sets."""
+"""The shafts of the scene: shafts of the file, planet carriers, stubs of planetary sets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from lineofaction.gearbox.from_rexs.placed_shafts import PlacedShaft
 from lineofaction.gearbox.units import MM
 
 STUB = 1e-3
-"""m; a stub has neither mass nor an elastic part, so its length is of no account."""
+"""Length of a stub, m. A stub has neither mass nor an elastic part, so its length has no effect."""
 
 
 @dataclass(frozen=True)
@@ -23,11 +23,11 @@ class SceneShaft:
     """A shaft of the scene."""
 
     name: str
-    """Its name there."""
+    """Name of the shaft in the scene."""
     rotor: int
-    """The rotor that it is, or belongs to."""
+    """Rotor that the shaft is, or belongs to."""
     table: dict[str, Any]
-    """Its table in a scene file."""
+    """Table of the shaft in a scene file."""
 
     @property
     def begin(self) -> float:
@@ -50,9 +50,10 @@ class SceneShafts:
     by_rotor: dict[int, SceneShaft]
     """The shaft of each rotor."""
     stages: tuple[GearStage, ...]
-    """The stages that the scene has: of equal planets those of the first."""
+    """Stages of the scene: of equal planets only the stages of the first."""
     stubs: dict[int, SceneShaft] = field(default_factory=dict)
-    """By gear: the stub on which a gear of a set stands whose shaft also meshes outside of the set."""
+    """Stubs by gear: a gear of a planetary set whose shaft also meshes outside of the set stands on a stub.
+    """
 
     @classmethod
     def of(cls, layout: Layout, stages: Sequence[GearStage], names: Names) -> SceneShafts:

@@ -37,16 +37,16 @@ class StageCase:
     name: str
     """Name for a file: small letters, digits and underscores, unlike those of the unit's other cases."""
     case: Case
-    """Its pinion is the driver, unless the ring gear drives."""
+    """Case of the stage. Its pinion is the driver, unless the ring gear drives."""
     driver: int
     driven: int
     """`driver`, `driven`: Ids of the gears."""
     wheel_drives: bool
     """Whether the case's wheel, a ring gear, drives."""
     center_distance: float
-    """m."""
+    """Center distance, m."""
     equal: tuple[int, ...] = ()
-    """Ids of further stages with the same case: those of the other planets."""
+    """Ids of further stages with the same case, the stages of the other planets."""
 
     def driving(self, stage: GearStage) -> tuple[Part, Part]:
         """Return driver and driven gear of a stage, which may be that of an equal planet."""
@@ -89,7 +89,7 @@ class StageCase:
 
 
 def _attempt(stage: Part, make: Callable[[], T]) -> T | None:
-    """Return what is made of a stage, None if it is refused, which the account says."""
+    """Return the value of `make` for a stage, None: it is refused, with a line in the account."""
     try:
         return make()
     except BadInput as error:

@@ -19,7 +19,7 @@ _ADDENDUM_BOUND, _DEDENDUM_BOUND = (0.1, 3.0), (0.1, 4.0)
 _TOOLS = ("rack_shaped_tool", "cutter_wheel_tool", "profile_tool")
 
 _DIGIT = 1e-3 * MM
-"""Last digit of root diameters, m: those of one tool at one place differ by half of it at most."""
+"""Last digit of root diameters, m: root diameters by one tool at one place differ by half of it at most."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class ToothDepth:
     thickness_allowance: float
     """Normal tooth thickness removed at the reference circle, m."""
     tooth_thinning: str
-    """What removes it: the cutter, or grinding of the flanks."""
+    """Way in which the allowance is removed: by the cutter, or by grinding of the flanks."""
     cutter: Mapping[str, int | float] = field(default_factory=dict)
     """Fields of the pinion cutter of a ring gear; none where the file has none."""
 
@@ -55,7 +55,7 @@ class ToothDepth:
         )
 
     def infeed(self, pressure_angle: float) -> float:
-        """Return how much deeper in m the cutter stands for the allowance."""
+        """Return the infeed of the cutter for the allowance, m."""
         return (
             0.0 if self.tooth_thinning == FLANK else cutter_infeed(self.thickness_allowance, pressure_angle)
         )
@@ -94,7 +94,7 @@ def _computed_tip(gear: ToothingData, shift: float, alteration: float) -> float:
 
 @dataclass(frozen=True)
 class _GeneratedRoot:
-    """Depth h_fP of the root in normal modules, and what removes the thickness allowance."""
+    """Depth h_fP of the root in normal modules, and the tool that removes the thickness allowance."""
 
     dedendum_coefficient: float
     tooth_thinning: str = GENERATING
@@ -135,7 +135,7 @@ def _root_at(
 
 
 def _text_of_root(root: _GeneratedRoot, allowance: float) -> str:
-    """Return how h_fP follows from the root diameter."""
+    """Return the formula by which h_fP follows from the root diameter, as text."""
     text = f"dedendum_coefficient {root.dedendum_coefficient:.6g} = (d - d_f) / (2 m_n) + "
     if root.tooth_thinning == FLANK:
         return f"{text}x: the tool reaches it before the flanks are ground, tooth_thinning {FLANK}"

@@ -26,7 +26,7 @@ class ToothingData:
     """> 0: right hand."""
     face_width: float
     profile_shift_coefficient: float | None
-    """None where the file gives none."""
+    """Profile shift coefficient; None: the file states none."""
 
     @classmethod
     def of(cls, loaded: LoadedFlank) -> ToothingData:

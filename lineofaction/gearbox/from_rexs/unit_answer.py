@@ -1,4 +1,4 @@
-"""An opened gear unit as the answer of the service; a process of its own reads the file."""
+"""An opened gear unit as the answer of the service; a confined process reads the file."""
 
 from __future__ import annotations
 

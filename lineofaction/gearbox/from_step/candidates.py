@@ -12,13 +12,13 @@ from dynamics.types import FloatArray
 from lineofaction.gearbox.convert.placement import Placement
 
 NEAR = 1e-4
-"""Distance from the axis of a bearing to that of its bore, m."""
+"""Largest distance from the axis of a bearing to the axis of its bore, m."""
 
 PARALLEL = 1e-4
 """Sine of the angle between axes that are parallel."""
 
 Bearings = Mapping[str, FloatArray]
-"""By name where they are in the scene."""
+"""Positions of the bearings in the scene, m, by name of the bearing. Shape (3,) each."""
 
 
 def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]:
@@ -80,7 +80,7 @@ def _turned(
 
 
 def _offsets(middles: FloatArray, across: FloatArray, bearings: Bearings) -> list[float]:
-    """Return how far along z turned bores are moved so that a bearing is in the middle of one."""
+    """Return the offsets along z of turned bores that put a bearing in the middle of one, m."""
     at = np.array(list(bearings.values()))
     off = at[:, None, :2] - across - middles[None, :, :2]
     offsets = (at[:, None, 2] - middles[None, :, 2])[np.hypot(off[..., 0], off[..., 1]) < NEAR]

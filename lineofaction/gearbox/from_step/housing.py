@@ -1,4 +1,4 @@
-"""The fields of a housing of a scene from the STEP file of its solid, and what was found in it."""
+"""The fields of a housing of a scene from the STEP file of its solid, and its detected bores."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ class Stand:
 
 @dataclass(frozen=True)
 class StepHousing:
-    """A housing as a scene has it, and what it was found by."""
+    """A housing as a table of a scene, with the bores that its bearings sit in."""
 
     fields: Mapping[str, Any]
-    """Of `[[housings]]`, but for its name and its file."""
+    """Fields of the table `[[housings]]` except name and file."""
     seated: Seated
     """Bores by bearing."""
     left_out: tuple[str, ...]

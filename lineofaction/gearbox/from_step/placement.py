@@ -1,7 +1,8 @@
-"""Where the solid of a STEP file stands in a scene: its bores are about the bearings.
+"""Placement of the solid of a STEP file in a scene, by bores that fit the scene's bearings.
 
-Shafts of a scene are parallel to z. A placement is found from two bores as far apart as two shafts, turned
-about z and moved along it until as many bearings as possible are in a bore; lengths in m.
+Shafts of a scene are parallel to z. A candidate puts the axes of two bores on two shafts that are equally far
+apart. The solid is then turned about z and moved along z until as many bearings as possible sit in bores;
+lengths in m.
 """
 
 from __future__ import annotations
@@ -19,16 +20,18 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, as_typed
 
 _ALIKE = 1e-3
-"""Placements whose bearings are off the middles of their bores by as much more, m, are equally good."""
+"""Placements are equally good if the largest distances between bearings and middles of their bores differ by
+less, m."""
 _FEWEST = 3
-"""Bearings in bores by which a placement is known; those of one shaft leave the angle about it open."""
+"""Least number of bearings in bores that determines a placement. The bearings of one shaft leave the angle
+about that shaft open."""
 
 _WHERE = "Say where the file stands: --origin-mm, and --x-axis and --z-axis where it is turned."
 
 
 @dataclass(frozen=True)
 class Seated:
-    """By name of a bearing the bore it is in, as placed."""
+    """A placement, with the bore of every bearing that sits in one by the bearing's name."""
 
     bores: Mapping[str, Bore]
     placement: Placement
@@ -36,7 +39,7 @@ class Seated:
 
     @property
     def order(self) -> tuple[int, float]:
-        """What is less for the better placement: minus the bearings in bores, how far off the middle, m."""
+        """Minus the number of bearings in bores, and the largest offset along z, m; least for the best."""
         off = [abs(bore.position[2] - self.bearings[name][2]) for name, bore in self.bores.items()]
         return -len(self.bores), max(off, default=0.0)
 

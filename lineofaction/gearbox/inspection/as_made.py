@@ -28,19 +28,19 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 GEARS = ("pinion", "wheel")
 _PITCHES = ("pitch_deviation_um", "single_pitch_deviation_um")
 _IN_TOLERANCE = 3.0
-"""Standard deviations of a drawn figure in its tolerance, beyond which it is cut."""
+"""Standard deviations of a drawn figure at its tolerance, where the distribution is cut."""
 
 
 @dataclass(frozen=True)
 class Inspected:
-    """Which gear of the case was inspected, and which of its flanks carry the load."""
+    """The inspected gear of the case, and the loaded flanks of that gear."""
 
     gear: str
     loaded: Flank
     cutoff_mm: float | None
 
     def chart(self, case: Case) -> Chart:
-        """Return how the teeth of its sheet follow each other."""
+        """Return the chart from the sheet's teeth to their sequence in mesh."""
         return Chart(_gear(case, self.gear), self.loaded, self.gear == "pinion")
 
 

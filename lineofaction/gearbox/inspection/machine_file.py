@@ -33,7 +33,7 @@ _TRACE = re.compile(
 _PITCHES = re.compile(r"(?P<flank>linke|rechte) Zahnflanke")
 _ROW = re.compile(r"\s*(?P<tooth>\d{1,4})((?:\s+[-+]?\d*\.?\d+){3})\s*")
 _UNDEFINED = -2e6
-"""What is below is a point that the machine did not measure."""
+"""Value below which the machine marks a point as not measured."""
 _FLANKS: dict[str, Flank] = {"links": "left", "rechts": "right", "linke": "left", "rechte": "right"}
 _KINDS = {"Profil": "profile", "Flankenlinie": "helix"}
 _ENDS = {"profile": ("da", "de"), "helix": ("ba", "be")}

@@ -1,4 +1,4 @@
-"""From the sheet of an inspection to the deviations of a gear in a case, and back."""
+"""Deviations of a gear in a case from the sheet of an inspection, and a sheet from deviations."""
 
 from __future__ import annotations
 
@@ -19,16 +19,17 @@ from lineofaction.gearbox.units import MM, UM
 
 OTHER_FLANK = f"{LEFT_OUT}not the loaded flank"
 _LISTED = 61
-"""Points of a trace that is written."""
+"""Number of points of a trace that is written."""
 
 
 @dataclass(frozen=True)
 class Chart:
-    """How teeth on an inspection sheet follow each other in mesh.
+    """Map from the numbers of teeth on an inspection sheet to their sequence in mesh.
 
-    A sheet numbers teeth clockwise as the datum face is seen, the right flank on the right of a tooth whose
-    tip points up. The loaded flank of an external gear faces clockwise if it is the right one. The driving
-    gear turns to where it faces, the driven one back, and from behind come the next teeth.
+    A sheet numbers teeth clockwise as seen on the datum face. The right flank is on the right of a tooth
+    whose tip points up. The right flank of an external gear faces clockwise. A driving gear turns towards the
+    side that its loaded flank faces, a driven gear away from that side. The next teeth in mesh come from
+    behind.
     """
 
     gear: Toothing
@@ -72,7 +73,7 @@ class MeasuredGear:
 
 
 def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None) -> MeasuredGear:
-    """Return what a sheet says of the loaded flanks of a gear; `cutoff` in m as of `split`.
+    """Return the deviations of the loaded flanks of a gear by a sheet; `cutoff` in m as of `split`.
 
     Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
     """

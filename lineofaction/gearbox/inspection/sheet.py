@@ -22,7 +22,7 @@ PROFILE = ("roll_length_mm", "roll_angle_deg", "diameter_mm")
 FACE = ("face_position_mm", "face_distance_mm")
 _TOOTH = re.compile(r"[0-9]{1,4}")
 LARGEST_UM = 1000.0
-"""um; larger deviations are in another unit."""
+"""Largest deviation, um; a larger one is in another unit."""
 MAX_POINTS = 200_000
 
 
@@ -31,21 +31,21 @@ class Point:
     """A point of a trace in SI; `roll` and `face` are None where the trace has no such place."""
 
     line: int
-    """Its line in the file, from 1."""
+    """Number of the line in the file, from 1."""
     tooth: int
-    """From 1, clockwise as the datum face is seen."""
+    """Number of the tooth, from 1, clockwise as seen on the datum face."""
     flank: Flank
     trace: str
     roll: float | None
     face: float | None
     """`roll`, `face`: Roll length, and distance from mid-face, m."""
     deviation: float
-    """m; of profile, helix and topography > 0 in excess, of pitches > 0 clockwise."""
+    """Deviation, m: > 0 in excess for profile, helix and topography; > 0 clockwise for pitches."""
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a file holds: points, and the number of its other lines or points by what became of them."""
+    """Points of a file, and the numbers of its other lines or points by what they were taken for."""
 
     points: tuple[Point, ...]
     account: Mapping[str, int]

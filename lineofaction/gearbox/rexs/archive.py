@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from lineofaction.gearbox.problems import BadInput
 
 MAX_BYTES = 64_000_000
-"""Of a file, and of an archive's files together."""
+"""Largest size in bytes of a file, and of all files of an archive together."""
 
 _MAX_FILES = 1_000
 
 _MAX_RATIO = 200
-"""Bytes of an archive's files by bytes of the archive; models compress 20 to 50 times."""
+"""Largest ratio of the bytes of an archive's files to the bytes of the archive; models compress 20 to 50
+times."""
 
 _MODEL_NAME = "rexs-model.rexs"
 
@@ -25,7 +26,7 @@ _MODEL_ENDINGS = (".rexs", ".rexsj")
 _FIRST_DAY = (1980, 1, 1, 0, 0, 0)
 
 _UNREADABLE = (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError, ValueError, OSError)
-"""What the reader of archives raises for one that is damaged or locked, or for what it does not know."""
+"""Errors of the ZIP reader for an archive that is damaged, locked or of an unknown kind."""
 
 
 def read_archive(data: bytes) -> tuple[bytes, dict[str, bytes]]:

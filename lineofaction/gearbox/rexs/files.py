@@ -28,7 +28,7 @@ ENDINGS = (".rexs", ".rexsj", ".rexsz", ".rexs.zip")
 
 
 def read_rexs(path: Path) -> Document:
-    """Return what a REXS file holds: XML, JSON or ZIP by its content. No other file is opened.
+    """Return the content of a REXS file: XML, JSON or ZIP by its bytes. No other file is opened.
 
     Raises `BadInput` if the file is missing, too large or damaged, or if its model is unsound: an id is given
     twice, a reference has no component, or a component is part of itself. The message names the place.

@@ -1,4 +1,4 @@
-"""A REXS model as its file says it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
+"""A REXS model as its file has it: names, values, units and order of REXS (FVA, versions 1.0 to 2.0.0)."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ class Attribute:
     """A value of a component."""
 
     id: str
-    """Name in REXS, e.g. ``"normal_module"``; own ones begin with ``custom_``."""
+    """Name in REXS, e.g. ``"normal_module"``; names that a program adds begin with ``custom_``."""
     kind: str
     """Type of the value as the JSON form writes it: ``floating_point``, ``integer``, ``boolean``, ``enum``,
     ``string``, ``reference_component``, ``file_reference``; with ``_array`` or ``_matrix``;
     ``array_of_integer_arrays``.
     """
     value: Value
-    """In `unit`; None where the file gives none, or a blank text."""
+    """Value in `unit`; None if the file has none, or a blank text."""
     unit: str | None = None
-    """As written; None where the file says none."""
+    """Unit as the file writes it; None if the file states none."""
     code: str | None = None
-    """``float32``, ``float64`` or ``int32`` of an array that the file codes in base64."""
+    """Number type of an array that the file codes in base64: ``float32``, ``float64`` or ``int32``."""
     origin: str | None = None
-    """Where the value comes from (since 1.5), e.g. ``"calculated"``."""
+    """Origin of the value (since version 1.5), e.g. ``"calculated"``."""
     extra: Extra = ()
 
 
 @dataclass(frozen=True)
 class Component:
-    """A part of the gear unit, or what a load case sets of it.
+    """A part of the gear unit, or the values of a part under a load case.
 
     `line` is that of its element in an XML file, from 1; None in other forms. Components that differ in it
     alone are equal.
@@ -68,7 +68,7 @@ class Reference:
 
 @dataclass(frozen=True)
 class Relation:
-    """How components belong together; `order` counts parts of an ordered assembly from 1."""
+    """A relation of components by their roles; `order` counts parts of an ordered assembly from 1."""
 
     id: int
     type: str
@@ -83,7 +83,7 @@ class Relation:
 
 @dataclass(frozen=True)
 class LoadCase:
-    """What the components are set to in a load case."""
+    """Values of components under one load case."""
 
     id: int
     components: tuple[Component, ...] = ()
@@ -105,7 +105,7 @@ class Model:
     """A gear unit."""
 
     version: str
-    """Of REXS, as written: ``"1.4"``, ``"2.0.0"``."""
+    """Version of REXS as the file writes it: ``"1.4"``, ``"2.0.0"``."""
     application: str
     application_version: str
     date: str
@@ -147,7 +147,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Document:
-    """A model and the files that lie beside it in its archive, by their names."""
+    """A model and the other files of its archive, by their names."""
 
     model: Model
     files: Mapping[str, bytes] = field(default_factory=dict)

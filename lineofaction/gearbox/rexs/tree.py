@@ -24,7 +24,7 @@ MAX_ENTRIES = 300_000
 
 
 class Element(ABC):
-    """An element as read. What is taken of its fields leaves them; what stays is none of REXS, and kept.
+    """An element as read. Taking a field removes it; fields that remain are none of REXS and are kept.
 
     Every method raises `BadInput` with the place in the file where a field or a part is missing or is of
     another type.
@@ -33,7 +33,7 @@ class Element(ABC):
     __slots__ = ()
     fields: dict[str, Any]
     line: int | None
-    """In the file, from 1; None in forms without."""
+    """Line of the element in the file, from 1; None in forms without lines."""
 
     @abstractmethod
     def text(self, name: str) -> str:
@@ -81,7 +81,7 @@ class Element(ABC):
         )
 
     def load_case(self, types: Mapping[int, str]) -> LoadCase:
-        """Return what a load case sets."""
+        """Return the values of a load case."""
         number = self.number("id")
         parts = tuple(part.component(types) for part in self.parts("component"))
         return LoadCase(number, parts, self.extra())
@@ -121,7 +121,7 @@ class Element(ABC):
 
 @dataclass(frozen=True)
 class Written:
-    """An element to write: fields with a value in their order, and groups of what is inside."""
+    """An element to write: fields with a value in their order, and groups of inner elements."""
 
     name: str
     fields: dict[str, str | int]

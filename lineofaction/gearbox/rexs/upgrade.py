@@ -1,4 +1,4 @@
-"""Upgrades of REXS: what a version renamed is renamed, what it removed is kept and reported."""
+"""Upgrades of REXS: renamed items get their new names, removed items stay and are reported."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ VERSIONS = ("1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6", "1.7", "2.0.0")
 NEWEST = VERSIONS[-1]
 _SHORT = {"2.0": "2.0.0"}
 _Step = dict[str, Any]
-"""What a version renamed, moved, retyped and removed: a file of `steps`."""
+"""Changes by one version, as a file of `steps` lists them: renamed, moved, retyped and removed."""
 _Changed = tuple[Attribute, str, bool]
 _UNWRAPPED = ("floating_point_array", "floating_point_matrix")
 
 
 @dataclass(frozen=True)
 class Change:
-    """What a version changed of a model."""
+    """A change that an upgrade to a version makes in a model, or cannot make."""
 
     version: str
     """The version that changed it."""
@@ -30,9 +30,9 @@ class Change:
     item: str
     """Name of the attribute, or type of the component, before."""
     unchanged: bool
-    """Whether it stays as it was, since the newer version has nothing that says the same."""
+    """Whether the item stays as it was, since the newer version has no equivalent."""
     text: str
-    """What became of it, or why it is kept."""
+    """New name, place or type of the item, or the reason why it stays."""
 
 
 def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, ...]]:

@@ -1,4 +1,4 @@
-"""Words, units and quantities of REXS, from the tables beside this file."""
+"""Words, units and quantities of REXS, from the tables in this folder."""
 
 from __future__ import annotations
 

@@ -27,10 +27,10 @@ from lineofaction.gearbox.rexs.values import (
 
 _MAX_DEPTH = 32
 _PREVIEW = 60
-"""Characters of a line that is not well-formed."""
+"""Number of characters quoted of a line that is not well-formed."""
 
 _ENCODINGS = ("utf-8", "utf-16", "utf-16le", "utf-16be", "us-ascii", "iso-8859-1", "windows-1252")
-"""What expat decodes itself, and what writers on Windows use."""
+"""Encodings of XML files: those that expat decodes itself, and those of writers on Windows."""
 
 _KIND_FIELD = "valueType"
 """Our field of XML's attributes, with the kind of a value whose text shows another; REXS allows it."""
@@ -38,7 +38,7 @@ _KIND_FIELD = "valueType"
 _STEP = "  "
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _WRAPPED = {"model": ("relations", "components"), "load_spectrum": ("accumulation",)}
-"""Groups that are elements of their own."""
+"""Groups of parts that XML wraps in an element, by the outer element."""
 
 
 @dataclass(slots=True)

@@ -51,17 +51,17 @@ class RollingBearingInput(BoundaryModel):
     position_mm: float
     ball: BallRowInput | None = Field(
         default=None,
-        description="Its balls and grooves",
+        description="Balls and grooves of the bearing",
         examples=[{"count": 8, "diameter_mm": 11.5, "pitch_diameter_mm": 43.5}],
     )
     roller: RollerRowInput | None = Field(
         default=None,
-        description="Its rollers",
+        description="Rollers of the bearing",
         examples=[{"count": 14, "diameter_mm": 9.0, "length_mm": 13.6, "pitch_diameter_mm": 53.5}],
     )
     catalog: CatalogLineInput | None = Field(
         default=None,
-        description="Its line in a catalog, a deep groove ball bearing",
+        description="Line of the bearing, a deep groove ball bearing, in a catalog",
         examples=[{"bore_mm": 25.0, "outside_diameter_mm": 62.0, "static_rating_n": 11600.0}],
     )
 
@@ -74,10 +74,10 @@ class RollingBearingInput(BoundaryModel):
 
 
 class BearingInput(BoundaryModel):
-    """Springs and dampers of a bearing, and what it does that is not linear."""
+    """Springs and dampers of a bearing, and its nonlinear laws."""
 
     class BearingLawInput(BoundaryModel):
-        """What a bearing does that is not linear."""
+        """A nonlinear law of a bearing."""
 
         @property
         def renamed(self) -> dict[str, Any]:
@@ -214,7 +214,7 @@ class BearingInput(BoundaryModel):
 
     @property
     def laws(self) -> Mapping[str, Mapping[str, BearingLawInput]]:
-        """What it does that is not linear, by kind and by field."""
+        """The nonlinear laws of the bearing, by kind and by field."""
         contact = {} if self.rolling_contact is None else {"rolling_contact": self.rolling_contact}
         curves = {f"spring_curves[{index}]": curve for index, curve in enumerate(self.spring_curves)}
         return {"rolling_contacts": contact, "spring_curves": curves}

@@ -1,4 +1,4 @@
-"""The bodies of a scene beside its shafts, and what joins them: gears, discs, couplings, planets."""
+"""The bodies of a scene except its shafts, and their joints: gears, discs, couplings, planets."""
 
 from __future__ import annotations
 

@@ -92,8 +92,8 @@ class ErrorsInput(BoundaryModel):
         default=None,
         ge=1,
         le=11,
-        description="In place of misalignment_um: five misalignments over what gears and axes of this class "
-        "allow (ISO 1328-1:2013, ISO/TR 10064-3), to both sides",
+        description="Accuracy class in place of misalignment_um: five misalignments, to both sides, over "
+        "the range that gears and axes of this class allow (ISO 1328-1:2013, ISO/TR 10064-3)",
         examples=[7],
         exclude_if=_left_out,
     )
@@ -101,8 +101,8 @@ class ErrorsInput(BoundaryModel):
         default=None,
         min_length=2,
         max_length=2,
-        description="With misalignment_class: radial internal clearance of the bearings of both shafts in "
-        "µm, by which they tilt",
+        description="Radial internal clearance in µm of the bearings of both shafts, by which the shafts "
+        "tilt; needs misalignment_class",
         examples=[[20.0, 25.0]],
         exclude_if=_left_out,
     )
@@ -124,7 +124,7 @@ class ErrorsInput(BoundaryModel):
 
 @in_brief
 class Case(BoundaryModel):
-    """A gear pair and what is to be computed for it."""
+    """A gear pair, its loads and alignment, and the requested accuracy."""
 
     class AccuracyInput(BoundaryModel):
         """The request to the planner: an accuracy, a time or a level; by default tolerance 0.01."""
@@ -220,7 +220,8 @@ class Case(BoundaryModel):
     )
     complaint: ComplaintInput | None = Field(
         default=None,
-        description="What is complained of: plots of the table mark it, loa complaint says what it is",
+        description="Complaint about a sound: plots of the table mark its order, loa complaint lists its "
+        "causes",
         examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
         exclude_if=_left_out,
     )

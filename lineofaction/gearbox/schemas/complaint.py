@@ -1,4 +1,4 @@
-"""A complaint: which frequency, or order, is heard at which speed, and where."""
+"""A complaint about a sound: its frequency or order, the speed, and the place."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from lineofaction.gearbox.schemas.model import BoundaryModel, Point, refuse
 from lineofaction.gearbox.schemas.rules import all_of, at_most_one_of, exactly_one_of
 
 WHATS, SPEEDS = ("frequency_hz", "order"), ("road_speed_km_h", "speed_rpm")
-"""What is heard, and at which speed: one of each."""
+"""Fields of the sound, a frequency or an order, and fields of the speed: at most one each."""
 OF_ROAD = ("tire_radius_mm", "final_shaft", "final_ratio")
-"""What a road speed alone needs."""
+"""Fields that a road speed needs and a shaft speed does not."""
 
 _MIN = (
     ("frequency_hz", 20.0, ("Hz", "Lower ones are not heard. In kHz? Then write {:g}.")),
     ("road_speed_km_h", 1.0, ("km/h", "Write kilometers per hour, such as 40.0.")),
     ("tire_radius_mm", 50.0, ("mm", "In meters? Then write {:g}.")),
 )
-"""Fields, the least value of each, and what is said of lower ones: they are in another unit."""
+"""Fields, the least value of each, and the message about a lower value, which is in another unit."""
 
 
 class ComplaintFields(BoundaryModel):
@@ -74,31 +74,33 @@ class ComplaintFields(BoundaryModel):
         default=None,
         ge=0.1,
         le=20.0,
-        description="How far the frequency and the speed may be off together, in percent; left out: 5",
+        description="Tolerance of frequency and speed together, in percent; left out: 5",
         examples=[5.0],
     )
     orders: int | None = Field(
         default=None,
         ge=1,
         le=100,
-        description="Harmonics of every mesh that are looked at; left out: 10",
+        description="Highest harmonic of every mesh that is compared; left out: 10",
         examples=[10],
     )
     bearing: str | None = Field(
         default=None,
         min_length=1,
         max_length=64,
-        description="Bearing where it is measured: bushing or rolling bearing; left out: the most loaded",
+        description="Bearing where the vibration is measured, a bushing or rolling bearing; left out: the "
+        "most loaded",
     )
     torque_n_m: float | None = Field(
         default=None,
         gt=0.0,
         le=1e9,
-        description="Of a case the torque on the driving gear at which it is heard; left out: its highest",
+        description="Torque on the driving gear of a case at which the complaint is made; left out: the "
+        "highest torque",
     )
     microphone_mm: Point | None = Field(
         default=None,
-        description="Where it is heard, x, y, z in mm: needs a housing with a surface",
+        description="Microphone, x, y, z in mm: needs a housing with a surface",
     )
 
 

@@ -1,4 +1,4 @@
-"""Rows of a CSV file from outside: a heading, then one row per point; what is wrong is named by its line.
+"""Rows of a CSV file from outside: a heading, then one row per point; a fault names its line.
 
 Every function raises `ValueError`, which says what the file must hold and which line does not.
 """
@@ -23,9 +23,10 @@ class CsvRows:
 
     heading: list[str]
     data_lines: list[tuple[int, str]]
-    """The others that are neither blank nor comments, which start with #, after their number from 1."""
+    """Number from 1 and text of each line after the heading that is neither blank nor a comment, which starts
+    with #."""
     lines: int
-    """All of them."""
+    """Number of all lines."""
 
     @property
     def silent(self) -> int:

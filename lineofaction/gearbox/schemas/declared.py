@@ -31,7 +31,7 @@ class Figure:
     """The field of the library."""
     what: Declared
     default: Any
-    """In SI; `MISSING` where one has to be given, None where it may be left out."""
+    """Default in SI; `MISSING`: a value is required; None: the field may be left out."""
     marked: bool = True
     """Whether its schema says kind and direction."""
 

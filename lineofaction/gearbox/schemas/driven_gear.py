@@ -16,7 +16,7 @@ from lineofaction.gearbox.schemas.model import refuse
 from lineofaction.gearbox.schemas.rules import all_of, both, left_out, required
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
-"""What is a ring gear's own, or otherwise than an external gear's."""
+"""Fields that only a ring gear has, or that differ from the fields of an external gear."""
 _DEFAULTS = {
     figure.field: figure.boundary_value(figure.default) for figure in RING if figure.default is not MISSING
 }
@@ -36,7 +36,7 @@ def _of_either_kind(schema: dict[str, Any]) -> None:
 
 @with_fields(as_fields(replace(figure, default=None) for figure in (*_GEAR_ONLY, *_RING_ONLY)))
 class WheelInput(ToothingInput):
-    """The driven gear. What only one kind has is left out by the other."""
+    """The driven gear, external or internal. Each kind leaves out the fields of the other."""
 
     model_config = ConfigDict(json_schema_extra=_of_either_kind)
 

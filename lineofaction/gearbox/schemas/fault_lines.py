@@ -1,4 +1,4 @@
-"""Where in its file a field stands: the line that a fault is about."""
+"""Lines of fields in TOML files, for messages about a fault."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From pydantic's errors to faults: field, value, bound, suggestion."""
+"""Conversion of pydantic's errors to faults: field, value, bound, suggestion."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
 def _suggestion(
     item: Mapping[str, Any], parent: type[BaseModel] | None, info: FieldInfo | None, loc: Loc
 ) -> str:
-    """Say what to try: the nearest known name, or the field's description with an example."""
+    """Return a suggestion: the nearest known name, or the field's description with an example."""
     if item["type"] != "extra_forbidden" or parent is None:
         return _described(info)
     known = list(parent.model_fields)
@@ -166,7 +166,7 @@ def _suggestion(
 
 
 def field_remedy(model: type[BaseModel], field: str) -> str:
-    """Return what the model says about a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if nothing."""
+    """Return the model's description of a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if none."""
     loc = [part for part in field.replace("[", ".").replace("]", "").split(".") if not part.isdigit()]
     return _described(_field_at(model, loc)[1])
 

@@ -21,10 +21,10 @@ LINEAR: Json = {"source": "linear response"}
 
 @dataclass(frozen=True)
 class Source:
-    """Where a figure of another name is in a result, in SI: members joined by dots, or what reads them.
+    """Source of a figure in a result, if the names differ: members joined by dots, or a function.
 
-    `missing` is the figure of results of versions that did not know it. A `document` is in the result as it
-    is shown, or as `turned` makes it.
+    Results are in SI. `missing` is the figure for results of versions that did not know it. A `document`
+    stands in the result in the shape in which it is shown, or `turned` brings it into that shape.
     """
 
     of: str | Callable[[Any], Any]
@@ -34,13 +34,13 @@ class Source:
 
 
 class Part(BaseModel):
-    """A part of figures. A service of a later version may add members, which are kept."""
+    """A part of figures. It keeps members that a service of a later version adds."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
 
 class Figures(Part):
-    """Figures of a result, and what is known of its file."""
+    """Figures of a result and of its file."""
 
     hash: str
     """Content hash of the input, the name of the result."""
@@ -49,7 +49,7 @@ class Figures(Part):
     size: int
     """Bytes of the file."""
     warnings: list[Json] = Field(default_factory=list)
-    """What is implausible: check, field, value, unit, message."""
+    """Warnings about implausible inputs: check, field, value, unit, message."""
 
     def __getitem__(self, name: str) -> Any:
         """Return a member of the document by its name there, as version 0.2 had it."""
@@ -71,7 +71,7 @@ class TableFigures(Figures):
         pressure_by_tooth_mpa: list[float] | None = None
 
     class InsertedNodes(Part):
-        """Values of the axes that were inserted between those requested, to meet the tolerance."""
+        """Values of the axes that were inserted between the requested values to meet the tolerance."""
 
         torque_n_m: list[float] = Field(default_factory=list)
         normal_force_n: list[float] = Field(default_factory=list)
@@ -96,22 +96,23 @@ class TableFigures(Figures):
 
 
 class Headline(BaseModel):
-    """What a list shows of a result: its cost, and of a table the transmission error at its middle load."""
+    """Figures of a result in a list: its cost, and the transmission error of a table at its middle load."""
 
     cpu_seconds: float | None = Field(
-        default=None, description="CPU time of the job that made it; null: it came along with another result"
+        default=None,
+        description="CPU time of the job that made the result; null: the result came along with another one",
     )
     torque_n_m: float | None = Field(default=None, description="The middle load of the table")
     peak_to_peak_um: float | None = None
     peak_to_peak_error_um: float | None = Field(default=None, description="null: not estimated")
     first_harmonic_um: float | None = Field(default=None, description="Amplitude of mesh harmonic 1")
     ripple_um: list[float] = Field(
-        default=[], description="Over two base pitches, both ends in it, less the mean"
+        default=[], description="Transmission error less its mean over two base pitches, both ends included"
     )
 
 
 class RunFigures(Figures):
-    """What the file of a run holds, without its data."""
+    """Names, sizes and attributes of the file of a run, without its data."""
 
     class RunVariable(Part):
         """A variable of the file of a run."""
@@ -161,7 +162,7 @@ class BearingForces(Part):
 
 
 Forces = Annotated[BearingForces, Source("forces", missing=LINEAR)]
-"""Where the bearing forces of a study of housings come from."""
+"""Source of the bearing forces in a study of housings."""
 
 
 class ExcitationFigures(Part):
@@ -183,10 +184,10 @@ class ExcitationFigures(Part):
 
 
 Excitations = Annotated[list[ExcitationFigures], Source("excitations", missing=[])]
-"""What excites a linear response; empty where forces are those of a run."""
+"""Excitations of a linear response; empty if the forces come from a run."""
 Ledger = Annotated[Json, Source("effect_ledger", document=True, turned=boundary_ledger)]
 """The effect ledger of a scene."""
 Seconds = Annotated[dict[str, float], Source("seconds")]
 """CPU time by stage."""
 ReductionCosts = Annotated[dict[str, HousingCost], Source("reduction_cost", missing={})]
-"""By housing."""
+"""Costs of reductions by the name of the housing."""

@@ -1,4 +1,4 @@
-"""A file inside a scene: its name, and what it holds, compressed."""
+"""A file inside a scene: its name, and its compressed content."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class FileContentInput(BoundaryModel):
     content: str = Field(
         min_length=1,
         max_length=_LARGEST_TEXT,
-        description="What it holds, compressed by zlib and written in Base64",
+        description="Content of the file, compressed by zlib and written in Base64",
         examples=["eJwDAAAAAAE="],
     )
 
@@ -43,7 +43,7 @@ class FileContentInput(BoundaryModel):
         return cls(name=name, content=base64.b64encode(zlib.compress(content, 9)).decode("ascii"))
 
     def unpacked(self, maximum: int = LARGEST) -> bytes:
-        """Return what the file holds; raises ValueError if it is damaged or has more than so many bytes."""
+        """Return the bytes of the file; raises ValueError: damaged, or more than `maximum` bytes."""
         reader = zlib.decompressobj()
         try:
             data = reader.decompress(base64.b64decode(self.content, validate=True), maximum + 1)

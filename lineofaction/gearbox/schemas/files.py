@@ -1,4 +1,4 @@
-"""Housings as files beside a scene file, and all files that a table names, read and written out in it."""
+"""Files that a scene's housings name, and all files that a table names: read and written out in it."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ ROWS = "stiffness_matrix"
 MATRIX_FILE, MODES_FILE = "stiffness_file", "modes_file"
 STEP_FILE, MESH_FILE, RESPONSE_FILE = "step_file", "mesh_file", "frf_file"
 _CONTENT_SUFFIXES = {STEP_FILE: STEP_SUFFIXES, MESH_FILE: MESH_SUFFIXES, RESPONSE_FILE: UNIVERSAL}
-"""How the files end whose content goes along with the scene, by the fields that name them."""
+"""Endings of the files whose content goes along with the scene, by the fields that name the files."""
 _BY_CLIENT = "Run the scene by loa or the Python client: they read the file and send its matrices."
 Content: TypeAlias = tuple[Table, Table]
-"""Fields of a file that those of its housing replace, and fields that replace those of the housing."""
+"""Fields from a file that the fields of its housing override, and fields that override those."""
 Contents: TypeAlias = dict[tuple[str, Path], Content]
 
 
@@ -159,9 +159,9 @@ READERS: dict[str, Callable[[Path, str], Content]] = {
     MODES_FILE: _modes,
     **dict.fromkeys(_CONTENT_SUFFIXES, _content),
 }
-"""What reads the files that a housing names, by the field that names them."""
+"""Readers of the files that a housing names, by the field that names the file."""
 SENT = READERS.keys() - {MODES_FILE}
-"""Fields whose files are read of whoever sends them: HDF5 opens more than it is given."""
+"""Fields whose files are read for any sender. The HDF5 of a file of modes can open further files."""
 
 
 def written_out(table: dict[str, Any], find: Find, housings: Collection[str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Free-form flanks as CSV files beside a case file: read and written out in the case."""
+"""Free-form flanks as CSV files that a case file names: read and written out in the case."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.spelling import Spelling
 
 
 class FlankPoint(BoundaryModel):
-    """One load and one alignment; what is left out is taken from the case."""
+    """One load and one alignment; the case supplies the fields that are left out."""
 
     model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of("torque_n_m", "normal_force_n")))
 

@@ -1,4 +1,4 @@
-"""A case or a scene in a dozen lines: what its tables state."""
+"""Summary of a case or a scene in a dozen lines."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def _figures_of(value: object, *, later: bool) -> object:
 
 
 MATERIAL: Any = Literal[tuple(MATERIALS)] | HousingMaterialInput
-"""What a scene may write for a material."""
+"""Type of a material in a scene: the name of a known material, or a table."""
 
 
 @with_fields(declared_in(Temperatures))
@@ -50,7 +50,7 @@ class TemperaturesInput(BoundaryModel):
     housing_material: Annotated[
         HousingMaterialInput, BeforeValidator(lambda value: _figures_of(value, later=True), MATERIAL)
     ] = Field(
-        description="Its material with thermal_expansion_per_k, or by its name",
+        description="Material of the housing with thermal_expansion_per_k, or the name of a material",
         examples=["cast_aluminum"],
     )
 
@@ -66,17 +66,17 @@ class HousingSeatInput(BoundaryModel):
 
 
 class SeatNodeInput(BoundaryModel):
-    """A reference node of measured responses: where and along what the seat of a bearing was pushed."""
+    """A reference node of measured responses: node and direction in which a bearing's seat was excited."""
 
     bearing: Name = Field(description="The bushing or rolling bearing in the seat", examples=["input left"])
-    node: Node = Field(description="Its reference node in the file", examples=[1])
+    node: Node = Field(description="Reference node of the seat in the file", examples=[1])
 
 
 class PointNodeInput(BoundaryModel):
     """A response node of measured responses: where the motion was measured."""
 
     name: Name = Field(description="Name of the point", examples=["cover"])
-    node: Node = Field(description="Its response node in the file", examples=[11])
+    node: Node = Field(description="Response node of the point in the file", examples=[11])
 
 
 class HousingFootInput(BoundaryModel):

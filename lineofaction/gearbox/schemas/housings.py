@@ -41,7 +41,7 @@ _FOREIGN = {
     _BY_SOLID: {_BY_MATRICES: _MATRICES, RESPONSES: _NODES},
     RESPONSES: {_BY_MATRICES: _MATRICES, _BY_SOLID: _OF_SOLID},
 }
-"""By what a housing is given by: the fields that belong to other kinds, by these."""
+"""Fields that a housing must leave out, by the kind of housing and by the kind that the fields belong to."""
 
 
 def _left_out(value: object) -> bool:
@@ -81,7 +81,7 @@ class _MatrixHousing(BoundaryModel):
         default=None,
         min_length=1,
         max_length=1000,
-        description="Where the seats are in the fixed frame, x, y, z in mm; checked against the bearings",
+        description="Positions of the seats in the fixed frame, x, y, z in mm; checked against the bearings",
         exclude_if=_left_out,
     )
 
@@ -98,7 +98,7 @@ class HousingInput(_MatrixHousing):
 
         name: Name = Field(description="Name of the point", examples=["cover"])
         position_mm: Point = Field(
-            description="Where it is, x, y, z in the scene, mm", examples=[[40.0, 120.0, 50.0]]
+            description="Position of the point in the scene, x, y, z in mm", examples=[[40.0, 120.0, 50.0]]
         )
 
     model_config = ConfigDict(
@@ -184,7 +184,8 @@ class HousingInput(_MatrixHousing):
     )
     origin_mm: Point | None = Field(
         default=None,
-        description="Where the origin of the file is in the scene, x, y, z in mm; left out: at its origin",
+        description="Position of the file's origin in the scene, x, y, z in mm; left out: at the scene's "
+        "origin",
         examples=[[0.0, 0.0, 60.0]],
         exclude_if=_left_out,
     )

@@ -11,7 +11,7 @@ from lineofaction.gearbox.schemas.plan import ModelBias
 
 
 class LiveCurve(BoundaryModel):
-    """Transmission error over one period at one load, with what it may be wrong by.
+    """Transmission error over one period at one load, with its errors.
 
     An error covers the discretization of the same model, all sources together; see docs/accuracy.md.
     """
@@ -81,8 +81,8 @@ class LiveCurve(BoundaryModel):
             description="Largest Hertz pressure in MPa away from edges", examples=[1093.0]
         )
         edge_pressure_mpa: float = Field(
-            description="At edges, as if the flank went on; the true one is singular. 0: no contact reaches "
-            "one",
+            description="Hertz pressure in MPa at edges, as if the flank continued beyond them; the true "
+            "pressure is singular. 0: no contact reaches an edge",
             examples=[0.0],
         )
         k_h_beta: float | None = Field(
@@ -107,12 +107,15 @@ class LiveCurve(BoundaryModel):
             examples=[[110.0, 160.0]],
         )
         worst_load_n_per_mm: list[float] = Field(
-            description="The same at the position where it is largest", examples=[[120.0, 190.0]]
+            description="Load of all pairs per face width in N/mm at the position of the largest load",
+            examples=[[120.0, 190.0]],
         )
-        worst_position: float = Field(description="That position in base pitches", examples=[0.25])
+        worst_position: float = Field(
+            description="Position of the largest load in base pitches", examples=[0.25]
+        )
 
     class LivePassage(BoundaryModel):
-        """What a pair of teeth meets on its way through the mesh; rows by place, columns over the face.
+        """Pressure and load of a pair of teeth through the mesh; rows by place, columns over the face.
 
         The place of a pair is the position plus the index of the pair. Its contact line is where the roll
         length of the driving gear is that of the pitch point, plus place times base pitch, less face
@@ -120,20 +123,20 @@ class LiveCurve(BoundaryModel):
         """
 
         first_place: float = Field(description="Place of the first row, base pitches", examples=[-1.5])
-        step: float = Field(description="Of the place between rows", examples=[0.03125])
+        step: float = Field(description="Step of the place between rows", examples=[0.03125])
         face_position_mm: list[float] = Field(
             description="Columns: distance from the driving gear's mid-face", examples=[[-5.0, 5.0]]
         )
         pressure_mpa: list[list[int]] = Field(description="Hertz pressure in MPa", examples=[[[0, 900]]])
         apart_um: list[list[float]] = Field(
-            description="How far the load moves the flanks of the pair apart, in µm", examples=[[[8.1, 9.2]]]
+            description="Separation of the pair's flanks under load in µm", examples=[[[8.1, 9.2]]]
         )
 
     class LiveBand(BoundaryModel):
-        """What nine of ten pairs have whose flanks deviate within a class, 5 % below and 5 % above."""
+        """The range of nine in ten pairs whose flanks deviate within a class: 5 % lie below, 5 % above."""
 
         class Spread(BoundaryModel):
-            """The ends of a figure, and what they may be wrong by."""
+            """The ends of the range of a figure, and the error of the ends."""
 
             low_um: float = Field(description="A twentieth of the pairs has less, in µm", examples=[0.26])
             high_um: float = Field(description="A twentieth of the pairs has more, in µm", examples=[1.31])
@@ -152,11 +155,13 @@ class LiveCurve(BoundaryModel):
         )
         low_um: list[float] = Field(
             default=[],
-            description="Transmission error less its mean: a twentieth has less, in µm",
+            description="Transmission error less its mean: a twentieth of the pairs has less, in µm",
             examples=[[-0.4, -0.2]],
         )
         high_um: list[float] = Field(
-            default=[], description="A twentieth has more, in µm", examples=[[0.3, 0.5]]
+            default=[],
+            description="Transmission error less its mean: a twentieth of the pairs has more, in µm",
+            examples=[[0.3, 0.5]],
         )
         peak_to_peak: Spread | None = Field(default=None, description="Peak to peak")
         first_harmonic: Spread | None = Field(default=None, description="First mesh harmonic")
@@ -168,7 +173,9 @@ class LiveCurve(BoundaryModel):
             description="Numbers of the teeth of the largest force; empty: all carry as much", examples=[[7]]
         )
         force_n: float = Field(description="The largest normal force on a tooth in N", examples=[2310.0])
-        over_mean: float = Field(description="The same over the mean of all teeth", examples=[1.08])
+        over_mean: float = Field(
+            description="Largest normal force on a tooth over the mean of all teeth", examples=[1.08]
+        )
         force_by_tooth_n: list[float] = Field(
             description="Largest normal force on each tooth in N", examples=[[2130.0, 2310.0]]
         )
@@ -180,7 +187,9 @@ class LiveCurve(BoundaryModel):
             default=None, description="Largest pressure on a tooth, off edges, in MPa", examples=[1710.0]
         )
         pressure_by_tooth_mpa: list[float] | None = Field(
-            default=None, description="That on each tooth in MPa", examples=[[1520.0, 1710.0]]
+            default=None,
+            description="Largest pressure on each tooth, off edges, in MPa",
+            examples=[[1520.0, 1710.0]],
         )
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
@@ -207,34 +216,43 @@ class LiveCurve(BoundaryModel):
         description="Share of each pair", examples=[[[0.5, 0.5], [0.0, 1.0]]]
     )
     mean_um: float = Field(description="Mean in µm", examples=[10.9])
-    mean_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.02])
+    mean_error_um: float | None = Field(default=None, description="Error of the mean in µm", examples=[0.02])
     peak_to_peak_um: float = Field(description="Peak to peak in µm", examples=[2.8])
-    peak_to_peak_error_um: float | None = Field(default=None, description="Its error in µm", examples=[0.03])
-    mean_over_face_um: float | None = Field(
-        default=None, description="Mean of the gears of finite width in µm: that of a plane, corrected"
+    peak_to_peak_error_um: float | None = Field(
+        default=None, description="Error of the peak to peak in µm", examples=[0.03]
     )
-    mean_over_face_error_um: float | None = Field(default=None, description="Its error in µm")
-    peak_to_peak_over_face_um: float | None = Field(default=None, description="Peak to peak, as that mean")
-    peak_to_peak_over_face_error_um: float | None = Field(default=None, description="Its error in µm")
+    mean_over_face_um: float | None = Field(
+        default=None,
+        description="Mean of the gears of finite width in µm: the mean of the plane model, corrected",
+    )
+    mean_over_face_error_um: float | None = Field(
+        default=None, description="Error of mean_over_face_um in µm"
+    )
+    peak_to_peak_over_face_um: float | None = Field(
+        default=None, description="Peak to peak of the gears of finite width in µm, corrected alike"
+    )
+    peak_to_peak_over_face_error_um: float | None = Field(
+        default=None, description="Error of peak_to_peak_over_face_um in µm"
+    )
     harmonics_um: list[float] = Field(
         description="Amplitudes of the mesh harmonics in µm", examples=[[1.1, 0.4]]
     )
     harmonics_error_um: list[float] | None = Field(
-        default=None, description="Their errors in µm", examples=[[0.02, 0.01]]
+        default=None, description="Errors of the amplitudes in µm", examples=[[0.02, 0.01]]
     )
     error_by_source_um: dict[str, SourceError] = Field(
         description="Errors by source; the total is the root of the sum of squares",
         examples=[{"discretisation": {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}}],
     )
     bias: ModelBias | None = Field(
-        default=None, description="What a plane model leaves out: a correction, in none of the errors"
+        default=None, description="Bias of a plane model: a correction, in none of the errors"
     )
     order: list[float] | None = Field(
-        default=None, description="Orders, if the period has several base pitches"
+        default=None, description="Orders of the amplitudes, if the period has several base pitches"
     )
-    order_name: list[str] | None = Field(default=None, description="What each order is")
-    amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in µm")
-    amplitude_error_um: list[float] | None = Field(default=None, description="Errors of these in µm")
+    order_name: list[str] | None = Field(default=None, description="Name of each order")
+    amplitude_um: list[float] | None = Field(default=None, description="Amplitude at each order in µm")
+    amplitude_error_um: list[float] | None = Field(default=None, description="Error of each amplitude in µm")
     tooth_loads: dict[str, LiveToothLoads] | None = Field(
         default=None,
         description="Loads of each tooth by gear, where teeth differ and the period tells them apart",
@@ -255,7 +273,7 @@ class LiveOutput(BoundaryModel):
     """Curves of other flanks."""
 
     class LiveAssumption(BoundaryModel):
-        """One thing that the answer took for granted."""
+        """An assumption of the answer."""
 
         effect: str = Field(description="Effect that removes the assumption; empty if there is none")
         assumption: str = Field(description="The assumption", examples=["coast flanks stay apart"])

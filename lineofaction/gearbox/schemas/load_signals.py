@@ -1,4 +1,4 @@
-"""Speeds of drives and torques of loads as channels of recordings beside a scene file, written out in it."""
+"""Speeds of drives and torques of loads from channels of recordings, written out in the scene."""
 
 from __future__ import annotations
 
@@ -39,13 +39,16 @@ class LoadSignalInput(BoundaryModel):
     channel: str = Field(
         default="",
         max_length=255,
-        description="Its channel; left out: the only one of a speed or of a torque",
+        description="Channel of the recording; left out: the only one of a speed or of a torque",
         examples=["Speed"],
     )
     unit: str = Field(
-        default="", max_length=20, description="Its unit; left out: that of the file", examples=["rpm"]
+        default="",
+        max_length=20,
+        description="Unit of the channel; left out: the unit in the file",
+        examples=["rpm"],
     )
-    scale: Number = Field(default=1.0, description="What the values are multiplied by", examples=[-1.0])
+    scale: Number = Field(default=1.0, description="Factor of the values", examples=[-1.0])
     start_s: Number | None = Field(
         default=None,
         description="Time of the recording that is 0 in the run; left out: its first",
@@ -62,7 +65,7 @@ class LoadSignalInput(BoundaryModel):
 
 
 class _Course(NamedTuple):
-    """The field of a part that a channel becomes, what it measures, and what one of the field is in SI."""
+    """Field of a part that takes a channel: its name, the quantity, and the SI value of one unit."""
 
     field: str
     quantity: str
@@ -136,7 +139,7 @@ def _series(
 
 
 def _stretch(time: FloatArray, values: FloatArray, start: float, end: float) -> tuple[FloatArray, FloatArray]:
-    """Return what lies between two times, with values at both."""
+    """Return the samples between two times, with values at both."""
     inside = time[(time > start) & (time < end)]
     cut = np.concatenate([[start], inside, [end]])
     return cut, np.interp(cut, time, values)

@@ -1,4 +1,4 @@
-"""What moves a scene: drives, free rotations, torques."""
+"""Motion and loads of a scene: drives, free rotations, torques."""
 
 from __future__ import annotations
 

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 HASH = "^[0-9a-f]{64}$"
 """Pattern of the names of results, which are content hashes."""
 MAX_FAULTS = 50
-"""Faults that are reported of one body."""
+"""Number of faults that are reported of one body."""
 
 _MAX_ENTRIES = 1000
-"""Of tables in a list, and of names in a table, where no other number is declared."""
+"""Most tables in a list, and most names in a table, where the field declares no other number."""
 _TABLES = ("model", "definition-ref")
 T = TypeVar("T")
 Listed = Annotated[tuple[T, ...], Strict(False)]

@@ -10,14 +10,15 @@ from typing import Any, TypeAlias
 from lineofaction.gearbox.problems import BadInput
 
 Find: TypeAlias = Callable[[str, str], Path]
-"""From the name of a file and the field that has it to where it is; raises `BadInput`."""
+"""Function from the name of a file and the field with that name to the path of the file; raises `BadInput`.
+"""
 _FOLDERS = re.compile(r"[/\\]")
 Table = dict[str, Any]
 _LARGEST_FILE = 16_000_000
 
 
 def in_folder(folder: Path) -> Find:
-    """Return what finds files by their names relative to a folder."""
+    """Return a function that finds files by their names relative to a folder."""
     return lambda name, _field: folder / name
 
 

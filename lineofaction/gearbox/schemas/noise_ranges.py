@@ -1,4 +1,4 @@
-"""Ranges of what is only guessed about a scene, and whether the sound is computed over them."""
+"""Ranges of guessed figures of a scene, and whether the sound is computed over them."""
 
 from __future__ import annotations
 

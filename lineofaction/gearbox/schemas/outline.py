@@ -16,7 +16,7 @@ class OutlineBody(BaseModel):
         teeth: int
         tooth_mm: list[Point]
         radius_mm: dict[str, float] = Field(description="tip, root, base, reference, held")
-        angle_deg: float = Field(description="By which the whole is turned counter-clockwise")
+        angle_deg: float = Field(description="Angle by which the outline is turned counter-clockwise")
         centre_mm: Point
         turn: float = Field(description="Sense of rotation, 1 counter-clockwise")
         face_mm: Point = Field(description="Ends of the face along z, from the pinion's mid-face")

@@ -1,4 +1,4 @@
-"""What is said of an input before anything is computed: warnings, the plan of a run, its cost."""
+"""Statements about an input before anything is computed: warnings, the plan of a run, its cost."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class InputWarning(BaseModel):
     low: float | None = Field(description="Lowest plausible value; null: none")
     high: float | None = Field(description="Highest plausible value; null: none")
     reason: str
-    source: str = Field(description="Where the bound comes from")
-    whole: str = Field(description="What a question about the unit ends with; may be empty")
-    message: str = Field(description="All of it as a sentence")
+    source: str = Field(description="Source of the bound")
+    whole: str = Field(description="End of a question about the unit; may be empty")
+    message: str = Field(description="The warning as a sentence")
 
 
 def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str, Any]]:
-    """Return what an import left out of a scene or a case as warnings."""
+    """Return the omissions of an import from a scene or a case as warnings."""
     nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
     return [
         {
@@ -48,18 +48,24 @@ class PlannedCost(BaseModel):
     cpu_seconds: float
     correction: dict[str, float] = Field(description="Factor by stage from earlier runs on this machine")
     memory_bytes: int = Field(description="Largest resident memory of the process")
-    positions: int = Field(description="Of the table; expected where they are adaptive")
+    positions: int = Field(
+        description="Number of positions of the table; an expected number where positions are adaptive"
+    )
 
 
 class ModelBias(BaseModel):
-    """By how much the gears exceed a plane model; parts of its own figures, with sign."""
+    """Amount by which the gears exceed a plane model; ratios to the plane model's figures, with sign."""
 
     subject: str = Field(description="Plane model and face width in words")
     mean: float
-    peak_to_peak: float | None = Field(description="Null where reliefs hide it: it may have either sign")
-    either_way_um: float = Field(description="Then the largest change of peak-to-peak in µm, else 0")
-    error: float = Field(description="Error of the bias in parts of it")
-    visible_peak_to_peak: float = Field(description="Of flanks whose ripple no relief hides")
+    peak_to_peak: float | None = Field(description="Null where reliefs leave its sign open")
+    either_way_um: float = Field(
+        description="Largest change of peak-to-peak in µm if peak_to_peak is null, else 0"
+    )
+    error: float = Field(description="Error of the bias over the bias")
+    visible_peak_to_peak: float = Field(
+        description="Ratio for the peak-to-peak of flanks whose ripple no relief hides"
+    )
     bending_ripple: float = Field(description="Peak-to-peak over the mean of unmodified flanks")
     words: str
 
@@ -70,12 +76,12 @@ class PlannedError(BaseModel):
     mesh: float
     slices: float
     positions: float
-    numerical: float = Field(description="Of mesh, slices and positions")
-    plane: float = Field(description="Of a plane in place of three dimensions")
-    method: float = Field(description="What the method leaves out, whatever the mesh")
+    numerical: float = Field(description="Error of mesh, slices and positions together")
+    plane: float = Field(description="Error of a plane model in place of three dimensions")
+    method: float = Field(description="Error of the method, which no mesh lowers")
     total: float
     bias: ModelBias | None = Field(
-        description="What a plane model leaves out; part of `plane` and `total`, not of the errors in µm"
+        description="Bias of a plane model; part of `plane` and `total`, not of the errors in µm"
     )
     mean_um: float | None = Field(description="Null where no size is known before the run")
     peak_to_peak_um: float | None = Field(description="Null where no size is known before the run")
@@ -124,7 +130,7 @@ class PlanBody(BaseModel):
         reason: str
 
     class PlannedLevel(BaseModel):
-        """A mesh level of the model, or what the tolerance needs beyond the time: cost and error."""
+        """A mesh level, or the level that the tolerance needs without the time budget: cost and error."""
 
         model: str
         level: str
@@ -140,9 +146,11 @@ class PlanBody(BaseModel):
         finite_width: list[Recipe] | None = Field(
             default=None, description="Meshes that correct a plane model for the finite width"
         )
-        slices: int | None = Field(default=None, description="Of the common face width; none in the plane")
+        slices: int | None = Field(
+            default=None, description="Number of slices of the common face width; null: a plane model"
+        )
         patch: dict[str, float] = Field(description="Sizes of the load patches in m, and their load")
-        positions: int | Literal["adaptive"] = Field(description="In one base pitch")
+        positions: int | Literal["adaptive"] = Field(description="Number of positions in one base pitch")
         load: list[float] = Field(description="Normal forces in N")
         support_load: list[float] = Field(description="Further normal forces in N, for the force extraction")
 

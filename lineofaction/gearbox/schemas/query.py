@@ -9,9 +9,9 @@ from pydantic import Discriminator, Field, Strict, Tag, model_validator
 from lineofaction.gearbox.schemas.model import BoundaryModel, refuse
 
 ONE, MANY = Tag("[one]"), Tag("[many]")
-"""Marks of the two types; names in brackets are left out of what a fault is called."""
+"""Tags of the two types; the names in brackets do not appear in the field of a fault."""
 ONE_OR_MANY = Discriminator(lambda value: (MANY if isinstance(value, list | tuple) else ONE).tag)
-"""Chooses the type by the value, so that a fault is that of the type that was meant."""
+"""Choice of the type by the value, so that a fault is about the intended type."""
 MAX_POINTS = 100_000
 LIMITS: dict[str, float] = {
     "position": 1e9,

@@ -21,7 +21,7 @@ _SIGNS = {
     "pair": ("a case (with [pair])", "loa analyze and its like take it"),
     "shafts": ("a scene (with [[shafts]])", "loa simulate and its like take it"),
 }
-"""The table by which a file is known: what it holds, and who takes it."""
+"""Content of a file and the verbs that take it, by the table that identifies the file."""
 
 
 def validated(model: type[M], data: object) -> M:

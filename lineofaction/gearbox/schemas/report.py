@@ -1,4 +1,4 @@
-"""The table ``[report]``: what a report is about, and what its figures must reach."""
+"""The table ``[report]``: the subject of a report, and requirements on its figures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ ShortText = Annotated[str, Field(min_length=1, max_length=200)]
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a figure must reach: the beginning of its name, a limit and its unit as the report writes it."""
+    """A limit on a figure of the report: the beginning of its name, the limit, the unit as in the report."""
 
     text: str
     figure: str
@@ -27,7 +27,7 @@ class Requirement:
 
     @classmethod
     def of(cls, text: str) -> Requirement | None:
-        """Return what ``FIGURE at most|least NUMBER UNIT`` says; None: it has another form."""
+        """Return the requirement of ``FIGURE at most|least NUMBER UNIT``; None: it has another form."""
         match = _FORM.fullmatch(text)
         if match is None:
             return None
@@ -38,16 +38,17 @@ class Requirement:
 class ReportInput(BoundaryModel):
     """The title block of a report; no result depends on it."""
 
-    title: ShortText | None = Field(default=None, description="In place of the title by its content")
+    title: ShortText | None = Field(default=None, description="Title; left out: a title by the content")
     project: ShortText | None = Field(default=None, description="Project", examples=["EV reducer"])
-    author: ShortText | None = Field(default=None, description="Who answers for it", examples=["A. Smith"])
+    author: ShortText | None = Field(default=None, description="Author of the report", examples=["A. Smith"])
     number: ShortText | None = Field(default=None, description="Number of the drawing", examples=["25-061"])
-    revision: ShortText | None = Field(default=None, description="Its revision", examples=["B"])
+    revision: ShortText | None = Field(default=None, description="Revision of the drawing", examples=["B"])
     requirements: Listed[ShortText] = Field(
         default=(),
         max_length=20,
-        description="What main results must reach: the beginning of a name, at most or at least, a number "
-        "and the unit of the report; a result that is nearer to its limit than its error is open",
+        description="Requirements on main results: the beginning of a name, at most or at least, a number "
+        "and the unit of the report; a result that is nearer to its limit than its error is "
+        "open",
         examples=[["peak-to-peak STE at most 0.5 µm"]],
     )
 

@@ -6,7 +6,7 @@ from lineofaction.gearbox.schemas.model import _LEFT_OUT, _NOT_NULL, Json
 
 
 def all_of(*rules: Json) -> Json:
-    """Return what a model adds to its schema (``json_schema_extra``): all rules hold."""
+    """Return the addition to a model's schema (``json_schema_extra``) by which all rules hold."""
     return {"allOf": list(rules)}
 
 

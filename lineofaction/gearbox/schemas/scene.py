@@ -115,7 +115,7 @@ class SceneInput(BoundaryModel):
     )
     complaint: ComplaintInput | None = Field(
         default=None,
-        description="What is complained of: plots mark it, loa complaint says what it is",
+        description="Complaint about a sound: plots mark its order, loa complaint lists its causes",
         examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
         exclude_if=lambda value: value is None,
     )
@@ -130,7 +130,7 @@ class SceneInput(BoundaryModel):
         default=(),
         max_length=1000,
         exclude_if=lambda texts: not texts,
-        description="What the file that the scene was made from has and the scene has not; verbs repeat it",
+        description="Parts of the imported file that the scene lacks; verbs repeat them",
     )
     effects: dict[EffectName, Switch] = Field(
         default={}, description="Switches of optional physics; left out = auto"
@@ -147,7 +147,7 @@ class SceneInput(BoundaryModel):
     @model_validator(mode="before")
     @classmethod
     def _tables(cls, data: Any) -> Any:
-        """Say how a part is written when a single table stands where a list is meant."""
+        """Refuse a single table where a list is meant, with the spelling of a list in TOML."""
         if isinstance(data, dict):
             for kind in _KINDS:
                 if isinstance(data.get(kind), dict):

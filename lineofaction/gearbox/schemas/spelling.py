@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Spelling:
-    """Beside the type of a field: how the option is spelled that it has."""
+    """Spelling of a field as an option of the command line, as metadata beside the type of the field."""
 
     option: str
     value: str | None = None
-    """What the option stands for if it takes none."""
+    """Value that the option stands for; None: the option takes a value."""
     file: bool = False
     """Whether the option takes the file of a result, which the field names by its content hash."""
 

@@ -1,4 +1,4 @@
-"""What studies take and vary: a case or a scene, speeds, orders."""
+"""The subjects and variables of studies: a case or a scene, speeds, orders."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ RANGES = (
     "bearing_stiffness",
     "mesh_damping",
 )
-"""Of `dynamics.noise.GUESSES`, which takes longer to load than a service to start."""
+"""Copy of the names in `dynamics.noise.GUESSES`. Importing that module takes longer than a service takes to
+start."""
 
 
 class OverSpeeds(BoundaryModel):
@@ -89,7 +90,7 @@ class OverSpeedsOrRun(OverOrders):
 
 
 class CaseOrScene(BoundaryModel):
-    """A case or a scene, one of both."""
+    """A case or a scene, exactly one."""
 
     model_config = ConfigDict(json_schema_extra=all_of(exactly_one_of("case", "scene")))
 

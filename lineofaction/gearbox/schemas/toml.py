@@ -1,4 +1,4 @@
-"""TOML of cases and scenes: read from anybody within bounds, written without what is not given."""
+"""TOML of cases and scenes: untrusted text read within bounds, written without fields that are not set."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
 
 
 def _fault(field: str, text: str, message: str) -> Fault:
-    """Return what is wrong with a TOML text, with the line and what is expected there."""
+    """Return the fault of a TOML text, with the line and the expected text there."""
     reason, at, where = message.partition(" (at line ")
     number = where.partition(",")[0]
     if not at or not number.isdigit():

@@ -1,4 +1,4 @@
-"""A channel of a recording: values over time, or over another abscissa, with what its file says of them."""
+"""A channel of a recording: values over time, or over another abscissa, with facts of its file."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ class Channel:
     values: NDArray[Any]
     """`abscissa`, `values`: Values may be complex. Shape (n,) each."""
     over: str = "time"
-    """What the abscissa is: ``"time"`` (s), ``"order"``, ``"frequency"`` (Hz) of a frequency response, or
-    empty for anything else.
+    """Kind of abscissa: ``"time"`` (s), ``"order"``, ``"frequency"`` (Hz) of a frequency response, or empty
+    for another kind.
     """
     label: str = ""
     """Name of the abscissa in the file."""
     direction: str = ""
     """``"x"``, ``"y"``, ``"z"`` where the file says along which the sensor measures; else empty."""
     nodes: tuple[int, ...] = ()
-    """Of a frequency response: response node and direction, reference node and direction, 1 to 3 for x, y, z
-    and below 0 against them; else empty.
+    """Response node and direction, reference node and direction of a frequency response; otherwise empty.
+    Directions are 1 to 3 for x, y, z, negative for the opposite sense.
     """
 
     def series(self, field: str) -> tuple[FloatArray, FloatArray]:

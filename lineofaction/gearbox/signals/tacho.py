@@ -10,10 +10,12 @@ from lineofaction.gearbox.signals.units import SPEED
 
 _TURN = 2.0 * np.pi
 HYSTERESIS = 0.25
-"""Of the span of a tacho: it counts as low below the middle less that, as high above the middle and that."""
+"""Share of the span of a tacho's signal: the signal is low below the middle less this share, high above the
+middle plus this share."""
 FEWEST_PULSES = 8
 _UNEVEN = 3.0
-"""A time between pulses over that before it: a pulse was lost, or the shaft stood still."""
+"""Ratio of a time between pulses to the time before. A larger ratio means that a pulse was lost or the shaft
+stood still."""
 
 
 def turns_of_speed(field: str, channel: Channel, unit: str, time: FloatArray) -> FloatArray:

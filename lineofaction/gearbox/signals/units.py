@@ -1,4 +1,4 @@
-"""Units of measured channels: what one of each is in SI, from what a file states or a name ends in."""
+"""Units of measured channels: their SI values, by the unit of a file or the ending of a name."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from lineofaction.gearbox.problems import BadInput
 
 STANDARD_GRAVITY = 9.80665
-"""m/s^2 (ISO 80000-3)."""
+"""Standard gravity, m/s^2 (ISO 80000-3)."""
 _TURN = 2.0 * math.pi
 ACCELERATION, VELOCITY, FORCE, LENGTH, SPEED, TORQUE, TIME, ANGLE = (
     "acceleration",
@@ -72,7 +72,7 @@ _ENDINGS = {
 
 @dataclass(frozen=True)
 class MeasuredUnit:
-    """A unit of a channel: the quantity it measures, and what one of it is in the SI unit of that."""
+    """A unit of a channel: the quantity that it measures, and its value in the SI unit."""
 
     quantity: str
     factor: float

@@ -32,7 +32,7 @@ _FORMATS = "lineofaction.gearbox.signals.formats"
 
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
-    """Return what a file holds, its arrays written."""
+    """Return the content of a file; its arrays are written to files."""
     try:
         reader = import_module(f"{_FORMATS}.{request['format']}")
         channels = list(reader.channels(Path(request["file"]), request["channels"]))

@@ -1,1 +1,1 @@
-"""The studies, a package each: what is varied, and the work. Their rows are in `registry`."""
+"""The studies, a package each with inputs, figures and work. Their rows are in `registry`."""

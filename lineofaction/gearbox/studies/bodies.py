@@ -1,4 +1,4 @@
-"""What a gear unit is drawn as: bodies of revolution about axes along z, and the surfaces of its housings."""
+"""Bodies that a gear unit is drawn as: bodies of revolution about axes along z, surfaces of housings."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 from bounds.types import FloatArray, IntArray, Json
 
 UNIT = "unit"
-"""Among the facts of a result: the bodies of its scene."""
+"""Name among the facts of a result under which the bodies of its scene stand."""
 SHAFT, PINION, WHEEL, BEARING, HOUSING = "shaft", "pinion", "wheel", "bearing", "housing"
-"""What a part is: of gears, the one that drives its first mesh and the one that is driven."""
+"""Kinds of bodies. A gear that drives its first mesh is a pinion, a driven one a wheel."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Ring:
 
 @dataclass(frozen=True)
 class Body:
-    """A part of a unit: what it is, its name, where its axis crosses z = 0, m, and its rings."""
+    """A part of a unit: its kind, its name, the point where its axis crosses z = 0, m, and its rings."""
 
     kind: str
     name: str
@@ -54,7 +54,7 @@ class Hull:
 
     @property
     def written(self) -> Json:
-        """What a result has of it among its facts: 32-bit floats and 16-bit indices, in Base64."""
+        """The surface as a result has it among its facts: 32-bit floats and 16-bit indices, in Base64."""
         packed = {"points": self.points.astype("<f4"), "facets": self.facets.astype("<u2")}
         texts = {name: base64.b64encode(values.tobytes()).decode() for name, values in packed.items()}
         return {"kind": HOUSING, "name": self.name} | texts

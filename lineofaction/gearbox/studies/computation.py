@@ -1,4 +1,4 @@
-"""The work of a study, the class that its module `run` has one of, and the netCDF files of results."""
+"""The work of a study, a class with one instance in its module `run`, and the netCDF files of results."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.model import BoundaryModel
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.cost import StudyCost
-from lineofaction.gearbox.studies.figures import figures_of
+from lineofaction.gearbox.studies.figures import figures_of, metadata_of
 from lineofaction.gearbox.studies.motion import OfferedMotion
 from lineofaction.gearbox.studies.scene_before_tables import CASES
 from model_studies.record_file import read_record, write_record
@@ -41,19 +41,19 @@ class ResultFile:
     """The netCDF file of a result."""
 
     attribute: str
-    """By which such a file is known."""
+    """Attribute of the file by which its kind is known."""
     values: tuple[str, ...]
-    """That it has in such files."""
+    """Values of the attribute that such files have."""
     write: Callable[[Any, Path], object]
     read: Callable[[Path], Any]
-    """`write`, `read`: Result and path to the file, and back; `read` raises the libraries' errors or
-    ValueError.
+    """`write`, `read`: Functions from result and path to the file, and from the path to the result; `read`
+    raises the libraries' errors or ValueError.
     """
     result: Any
-    """What `read` returns, as an annotation: the client's types are written from it."""
+    """Type that `read` returns, as an annotation: the client's types are written from it."""
 
     def holds(self, attributes: Mapping[str, object]) -> bool:
-        """Whether a file with these attributes is one."""
+        """Whether a file with these attributes is a file of this kind."""
         return attributes.get(self.attribute) in self.values
 
 
@@ -81,19 +81,19 @@ class Means:
     home: Path
     """Folder of the caches."""
     report: Callable[[str, float], None]
-    """Called as report(stage, fraction)."""
+    """Function that is called as report(stage, fraction) on progress."""
     workers: Workers = field(default_factory=InProcess)
-    """Who does the tasks."""
+    """Executor of the tasks."""
     cancel: Callable[[], bool] | None = None
-    """Says whether to end with the best so far."""
+    """Function that returns whether to end with the best so far; None: never."""
     folder: Path | None = None
-    """Where to put the runs that a study keeps in full; None: nowhere."""
+    """Folder for the runs that a study stores in full; None: no run is stored."""
     run: RunResult | None = None
-    """Whose bearing forces a study takes in place of the linear response."""
+    """Run whose bearing forces replace those of the linear response; None: the linear response."""
 
     @property
     def analysis(self) -> Run:
-        """How analyses of gear pairs are run: shared by the workers, condensed gears kept."""
+        """The settings of analyses of gear pairs: shared workers, and a cache of condensed gears."""
         return Run(self.workers, self.home / "compliance", self.report)
 
 
@@ -106,29 +106,29 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
     """
 
     inputs: type[Inputs]
-    """Model of what is varied."""
+    """Model of the inputs."""
     answer: type[Answer]
     """Model of the figures of a result."""
     file: ResultFile
-    """How a result is written and read back."""
+    """File format of a result."""
     tables: ClassVar[bool] = True
     """Whether a scene comes with the tables of its meshes."""
     interruptible: ClassVar[bool] = False
-    """Whether it ends with the best so far when `Means.cancel` says so."""
+    """Whether the work ends with the best so far when `Means.cancel` returns True."""
     resumed: ClassVar[bool] = False
-    """Whether tasks that were done are kept for an attempt after one that died."""
+    """Whether finished tasks are stored for another attempt after an attempt that died."""
     writers: ClassVar[Mapping[str, Callable[[Any, Any, Path], object]]] = {}
-    """Further files of the verb, by their ending: called with result, what was studied, and file."""
+    """Writers of further files of the verb, by their ending: called with result, subject, and file."""
 
     def narrowed(self, subject: Written, _inputs: Inputs) -> Written:
-        """Return what of the subject the inputs choose: it is checked, hashed and computed."""
+        """Return the part of the subject that the inputs choose, which is checked, hashed and computed."""
         return subject
 
     def check(self, subject: Written, inputs: Inputs) -> None:
         """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
 
     def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what it costs once a scene has its tables; None where nothing predicts it.
+        """Return the cost once a scene has its tables; None: nothing predicts it.
 
         The cases of a scene are written out. What is in the cache of compliances costs nothing.
         """
@@ -148,7 +148,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
 
     def figures(self, result: Result) -> Json:
         """Return the figures of a result in the units of the boundary, as they are printed and served."""
-        return figures_of(self.answer, result, getattr(result, "facts", {}), **self._derived(result))
+        return figures_of(self.answer, result, metadata_of(result), **self._derived(result))
 
     def _derived(self, _result: Result) -> Json:
         return {}
@@ -162,11 +162,11 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         file.write_text(f"{json.dumps(self.figures(result), allow_nan=False)}\n", encoding="utf-8")
 
     def warnings(self, _result: Result) -> list[Json] | None:
-        """Return what a result warns of beside its case, which others assess; None for nothing."""
+        """Return warnings of a result beyond those of its case, which others assess; None: none."""
         return None
 
     def failure(self, _result: Result) -> str:
-        """Say what of a result was not found; empty if nothing is missing."""
+        """Return a sentence on missing parts of a result; empty if nothing is missing."""
         return ""
 
     def stored_runs(self, _result: Result, _means: Means) -> Mapping[str, Path]:

@@ -1,4 +1,4 @@
-"""What a study is predicted to cost before it begins, and how large a scene is that is not computed yet."""
+"""Predicted cost of a study before it begins, and the size of a scene whose tables are not computed yet."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ if TYPE_CHECKING:
 _SMALL = 0.02
 """Share of the whole below which a part is not named."""
 LONG = 3600.0
-"""CPU seconds from which on a cost is said in hours too, and comes with advice."""
+"""CPU seconds from which on a cost is written in hours too, and with advice."""
 
 _PANELS = 6.0
-"""CPU seconds of the panels of a gear case, measured 5 to 60 of cases and 0.3 of a block; they are kept."""
+"""CPU seconds of the panels of a gear case, measured 5 to 60 for cases and 0.3 for a block; the cache keeps
+the panels."""
 
 
 class Work(NamedTuple):
@@ -85,5 +86,5 @@ class StudyCost:
 
 
 def panels_work(housings: int) -> Work:
-    """Return what panels of so many housings usually take: their meshes are not made before."""
+    """Return the usual work of the panels of housings, whose meshes are not made before."""
     return Work("panels", _PANELS, housings)

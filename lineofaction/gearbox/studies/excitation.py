@@ -1,4 +1,4 @@
-"""What excites a linear response in one harmonic of a mesh, each amplitude with its error."""
+"""Excitation of a linear response by one harmonic of a mesh, each amplitude with its error."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Excitation:
-    """A harmonic of a mesh at its torque, or an order beside its harmonics: amplitudes in SI.
+    """A harmonic of a mesh at its torque, or an order between harmonics: amplitudes in SI.
 
     An error is None where the table states none.
     """
 
     mesh: str
     torque: float
-    """On the driving gear, N m."""
+    """Torque on the driving gear, N m."""
     harmonic: int | None
-    """None: an order beside the harmonics of the mesh."""
+    """Harmonic of the mesh; None: an order between harmonics."""
     order: float
     transmission_error: float
     error_of_transmission_error: float | None
@@ -28,6 +28,6 @@ class Excitation:
     error_of_friction_force: float | None
 
 
-def stored_excitations(facts: Mapping[str, Any]) -> list[Excitation]:
+def stored_excitations(metadata: Mapping[str, Any]) -> list[Excitation]:
     """Return the excitations among the facts of a result; none of forces of a run."""
-    return [Excitation(**row) for row in facts.get("excitations", ())]
+    return [Excitation(**row) for row in metadata.get("excitations", ())]

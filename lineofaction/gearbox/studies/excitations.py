@@ -1,4 +1,4 @@
-"""What a result says of its scene: what excites it, each with its error, its complaint, its reductions."""
+"""Facts of a result about its scene: excitations with their errors, complaint, reductions."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from lineofaction.gearbox.studies.unit_bodies import bodies_of
 
 Result = TypeVar("Result")
 OFF_MESH = 6
-"""Orders beside the mesh orders that are listed of a mesh."""
+"""Number of orders between the mesh orders that are listed for a mesh."""
 
 
 def excitations_of(response: HarmonicResponse, system: System, subject: TabledScene) -> list[Excitation]:
-    """Return what excites in the harmonics of every mesh with a table, and in orders beside them.
+    """Return the excitations by harmonics of every mesh with a table, and by orders between harmonics.
 
     Of the latter those largest in transmission error, where it is above its error. Copies of a planet excite
     as the one that the scene names.
@@ -55,11 +55,11 @@ def complaint_at_loads(system: System, subject: TabledScene) -> Complaint:
     torques, levels = {}, {}
     for mesh, table in subject.databases.items():
         index = names.index(mesh)
-        torque = abs(float(flanks.nominal_force[index])) * table.facts.base_radius[0]
+        torque = abs(float(flanks.nominal_force[index])) * table.geometry.base_radius[0]
         if torque > 0.0:
             skew, change = table.misalignment, table.center_distance_change
             curve = table.curve(
-                force=min(table.facts.normal_force(torque), float(table.force[-1])),
+                force=min(table.geometry.normal_force(torque), float(table.force[-1])),
                 misalignment=float(np.clip(0.0, skew[0], skew[-1])),
                 center_distance_change=float(np.clip(0.0, change[0], change[-1])),
                 allow_failed=True,
@@ -75,8 +75,8 @@ def _of_mesh(
 ) -> Iterator[Excitation]:
     """Yield the harmonics of a mesh, which are `step` apart in the orders of the response."""
     force = abs(float(response.mean_force[mesh]))
-    torque = force * table.facts.base_radius[0]
-    errors = excitation_errors(table, table.facts.normal_force(torque))
+    torque = force * table.geometry.base_radius[0]
+    errors = excitation_errors(table, table.geometry.normal_force(torque))
     slides = largest_friction * bool(np.any(response.friction_force[mesh]))
 
     def error(by_harmonic: FloatArray, harmonic: int | None, off_mesh: float = np.nan) -> float | None:
@@ -109,14 +109,14 @@ def _of_mesh(
 
 
 def with_scene_metadata(result: Result, subject: TabledScene) -> Result:
-    """Return a result with the `scene_metadata` among its facts."""
+    """Return a result with the `scene_metadata` among its metadata."""
     changed: Any = result
-    known: Result = replace(changed, facts={**changed.facts, **scene_metadata(subject)})
+    known: Result = replace(changed, metadata={**changed.metadata, **scene_metadata(subject)})
     return known
 
 
 def scene_metadata(subject: TabledScene) -> Json:
-    """Return what a result says of its scene.
+    """Return the facts of a result about its scene.
 
     Its `reduction_cost`, the fields of the `WorkCost` of the reductions by housing: a file of modes may be
     without them. What is `turning`, by which orders are named. The bodies that its `unit` is drawn as. Of a
@@ -134,6 +134,6 @@ def scene_metadata(subject: TabledScene) -> Json:
 
 
 def order_names(order: FloatArray, metadata: Json) -> list[str]:
-    """Return what each order of a result is (`bounds.order_name`); none of files without `turning`."""
+    """Return the name of each order of a result (`bounds.order_name`); empty for files without `turning`."""
     turning = metadata.get("turning")
     return [] if turning is None else [order_name(value, **turning) for value in order.tolist()]

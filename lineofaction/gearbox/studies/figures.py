@@ -68,7 +68,7 @@ def figures_of(model: type[Part], *sources: Any, **members: Any) -> Json:
 
 @dataclass(frozen=True)
 class _Declared:
-    """A figure of a model: its names here, without its unit (empty: others share it), and in the document."""
+    """A figure of a model: field, field without unit (empty: not unique), and key in the document."""
 
     name: str
     bare: str
@@ -122,6 +122,12 @@ def _declared(model: type[Part]) -> tuple[_Declared, ...]:
 def _names(model: type[Part]) -> frozenset[str]:
     """Return the names by which a model has its figures."""
     return frozenset(name for figure in _declared(model) for name in (figure.name, figure.bare) if name)
+
+
+def metadata_of(result: Any) -> Mapping[str, Any]:
+    """Return the plain metadata of the result of a scene; empty for that of a pair."""
+    metadata = getattr(result, "metadata", None)
+    return metadata if isinstance(metadata, Mapping) else {}
 
 
 def _member(result: Any, name: str) -> Any:

@@ -1,4 +1,4 @@
-"""What studies of housings start from: surfaces, the bearing forces of the response or of a run, costs."""
+"""Inputs of studies of housings: surfaces, bearing forces of the response or of a run, and costs."""
 
 from __future__ import annotations
 
@@ -62,28 +62,28 @@ def bearing_forces(
 ) -> ReportedHarmonics:
     """Return the orders of the bearing forces in the run, without one in the linear response.
 
-    The facts of both have `forces`: where they come from, and of a run how its windows hold. The quantity is
-    that of `response_of`.
+    The metadata of both have `forces`: where they come from, and of a run how its windows hold. The quantity
+    is that of `response_of`.
     """
     if means.run is None:
         response = response_of(subject, inputs, means, quantity)
-        return replace(response, facts=response.facts | {"forces": LINEAR})
+        return replace(response, metadata=response.metadata | {"forces": LINEAR})
     began = cpu_seconds()
     with boundary_errors():
         orders = bearing_orders(means.run, inputs.orders)
     seconds = {"orders": cpu_seconds() - began}
     forces = _run_forces(orders) | {"other_housings": list(other_housings(subject.scene.housings, means.run))}
-    return replace(orders, facts=orders.facts | {"forces": forces, "seconds": seconds})
+    return replace(orders, metadata=orders.metadata | {"forces": forces, "seconds": seconds})
 
 
 def _run_forces(orders: BearingOrders) -> Json:
-    """Return how the windows of a run hold, by order, then by window."""
+    """Return facts on the quality of a run's windows, by order, then by window."""
     known = bool(np.all(np.isfinite(orders.smearing)))
     return {
         "source": "run",
         "time_s": orders.time.tolist(),
-        "window_pitches": orders.facts["pitches"],
-        "windows_left_out": orders.facts["windows_left_out"],
+        "window_pitches": orders.metadata["pitches"],
+        "windows_left_out": orders.metadata["windows_left_out"],
         "speed_change": orders.sweep.tolist(),
         "smearing": orders.smearing.T.tolist() if known else None,
         "remainder": dict(zip(orders.bearing, orders.remainder.tolist(), strict=True)),
@@ -100,7 +100,7 @@ def response_of(
     scene = subject.scene if quantity is None else replace(subject.scene, quantity=quantity)
     response, system = sized_response(scene, inputs, means)
     excitations = [asdict(excitation) for excitation in excitations_of(response, system, subject)]
-    return replace(response, facts=response.facts | {"excitations": excitations})
+    return replace(response, metadata=response.metadata | {"excitations": excitations})
 
 
 def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[ForcedResponse, System]:
@@ -116,16 +116,16 @@ def sized_response(scene: Scene, inputs: OverOrders, means: Means) -> tuple[Forc
         began = cpu_seconds()
         influences = decision.influences or sized(decision.scene)
     seconds = cpu_seconds() - began + decision.taken.cpu_seconds
-    metadata = response.facts
+    metadata = response.metadata
     ledger = sized_ledger(metadata["effect_ledger"], decision.automatic, influences)
     known = {"effect_ledger": ledger, "seconds": {**metadata["seconds"], "influence_estimates": seconds}}
-    return replace(response, facts=metadata | known), system
+    return replace(response, metadata=metadata | known), system
 
 
 def predicted_response(
     scene: SceneInput, inputs: OverOrders, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return what the `sized_response` of a scene takes, before its tables; None: nothing predicts it.
+    """Return the cost of the `sized_response` of a scene before its tables; None: nothing predicts it.
 
     `further`: how many responses of varied scenes there are beside it. Modes that a solid housing keeps are
     not known before and do not count. Raises `BadInput`: no such scene.
@@ -153,7 +153,7 @@ def predicted_response(
 def predicted_forces(
     scene: SceneInput, inputs: OverSpeedsOrRun, further: Callable[[Scene], int] | None = None
 ) -> StudyCost | None:
-    """Return what the `bearing_forces` take, as `predicted_response`; None of a run: none is read."""
+    """Return the cost of the `bearing_forces`, as `predicted_response`; None: they are those of a run."""
     return predicted_response(scene, inputs, further) if inputs.run is None else None
 
 

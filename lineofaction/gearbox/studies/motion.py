@@ -1,4 +1,4 @@
-"""How a unit moves by a result: its shafts along their axes and the surface of its housing."""
+"""Motion of a unit in a result: its shafts along their axes and the surface of its housing."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class UnitMotion:
     shaft: IntArray
     """Index of the shaft of each point of an axis. Shape (P,)."""
     position: FloatArray
-    """Along it, m, increasing within a shaft. Shape (P,)."""
+    """Position of each point along its shaft, m, increasing within a shaft. Shape (P,)."""
     motion: ComplexArray
     """x, y, z (m), tilt_x, tilt_y, rotation (rad). Shape (P, 6)."""
     oscillates: bool
     """Whether the phase runs; a deflection rests."""
     surface: SurfaceShape | None = None
-    """Of a housing, m."""
+    """Motion of the surface of a housing, m; None: no housing has a surface."""
     is_velocity: bool = False
     """Whether the surface's motion is its velocity, m/s, which has levels; else a shape without a size."""
 
@@ -52,7 +52,7 @@ class UnitMotion:
 
 @dataclass(frozen=True)
 class OfferedMotion:
-    """A motion of a result: in which group it is listed, what it is, and what makes it."""
+    """A motion of a result: its group, its name, and the function that makes it."""
 
     group: str
     name: str

@@ -1,4 +1,4 @@
-"""What the runs of a scene are predicted to cost, by some steps of it."""
+"""Predicted cost of the runs of a scene, measured on a few of their steps."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
 from dynamics.meshes.technique import PlainTable
 from dynamics.scene import Scene
 from fe_contact.geometry import ParallelAxes
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import CheckedCases
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.schemas import Case
@@ -24,18 +24,18 @@ if TYPE_CHECKING:
     pass
 
 CASES = CheckedCases(16)
-"""Cases whose costs were predicted last: those of a scene and of several verbs are checked once."""
+"""Cases whose costs were predicted last: cases that a scene or several verbs share are checked once."""
 
 _SINGLE_STIFFNESS = 14e9
-"""Of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
+"""Stiffness of a pair of teeth per unit width, N/m^2: the usual value of ISO 6336-1:2019, 9.3."""
 
 _POSITIONS = 48
-"""Of a table in a base pitch, about as many as a computed one has."""
+"""Number of positions of a table in a base pitch, about as many as a computed table has."""
 
 
 @dataclass(frozen=True)
 class SceneText:
-    """A scene by its text: what is made of the last ones is kept, since several verbs are of the same."""
+    """A scene whose text is the key of a cache: several verbs work on the same scene."""
 
     text: str
     scene: SceneInput = field(compare=False)
@@ -66,7 +66,7 @@ def scene_in_motion(written: SceneText) -> Scene | None:
     pairs = _pairs(scene)
     if pairs is None:
         return None
-    geometry = {name: PairFacts.of(pair) for name, pair in pairs.items()}
+    geometry = {name: PairGeometry.of(pair) for name, pair in pairs.items()}
     return check_scene(scene, geometry, {name: _usual_table(pair) for name, pair in pairs.items()})
 
 

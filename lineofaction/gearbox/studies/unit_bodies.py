@@ -25,15 +25,15 @@ from lineofaction.gearbox.studies.bodies import BEARING, PINION, SHAFT, WHEEL, B
 SLENDER = 8.0
 """Length over diameter of a shaft without sections."""
 BUSHING = 1.7
-"""Outside over shaft diameter of a bearing whose outside no catalog states."""
+"""Outer diameter over shaft diameter of a bearing for which no catalog states the outer diameter."""
 WIDTH = 1.1
-"""Of a bearing over its height."""
+"""Width of a bearing over its height."""
 ADDENDUM, DEDENDUM = 1.0, 1.25
-"""Over the module, of gears that no case has."""
+"""Addendum and dedendum over the module, for gears without a case."""
 
 
 MAX_FACETS = 2_000
-"""Of a housing in a picture: 32 kB of the result."""
+"""Most facets of a housing in a picture: 32 kB of the result."""
 
 
 def bodies_of(subject: TabledScene) -> list[Json]:
@@ -59,7 +59,7 @@ def _hulls(subject: TabledScene) -> Iterator[tuple[Hull, IntArray]]:
 
 
 def surface_motion(subject: TabledScene, freedom: Sequence[str]) -> NDArray[np.float32]:
-    """Return how the points of all surfaces among the bodies of a scene move per freedom, (p, 3, n), 32 bits.
+    """Return the motion of all points of a scene's surfaces per freedom, (p, 3, n), 32 bits.
 
     `freedom` are the names of a system's freedoms. No points: none of these moves a housing.
     """

@@ -1,1 +1,1 @@
-"""From results to a REXS document: calculated attributes of stages, bearings and shafts."""
+"""Writing of results to a REXS document: calculated attributes of stages, bearings and shafts."""

@@ -9,7 +9,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 
 CALCULATED = "calculated"
-"""Origin of what this program writes (REXS, since 1.5)."""
+"""Origin of attributes that this program writes (REXS, since 1.5)."""
 
 Results = Mapping[int, Iterable[Attribute]]
 """Calculated attributes by id of the component."""

@@ -79,7 +79,7 @@ def _bearings(parts: SceneParts, case: CaseDeflection) -> Iterator[_Part]:
 
 
 def _meshes(parts: SceneParts, result: GearboxDeflection, case: CaseDeflection) -> Iterator[_Part]:
-    """Yield what the stages have; a load case on the coast side turns the train the other way."""
+    """Yield the attributes of the stages; a load case on the coast side turns the train the other way."""
     flanks = {entry.mesh: entry for entry in result.flanks if entry.case == case.name}
     turned = 1 if case.direction == "drive" else -1
     for mesh in case.meshes:

@@ -1,4 +1,4 @@
-"""Whether a deflection is that of a gear unit: the first difference of their scenes and load cases."""
+"""Comparison of a deflection's scene with a gear unit: the first difference of scenes and load cases."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from lineofaction.gearbox.studies.deflect.run import scene_of
 from lineofaction.gearbox.units import RPM
 
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
-"""Of numbers that are equal: files of scenes have twelve digits."""
+"""Tolerances, relative and absolute, within which numbers are equal: files of scenes have twelve digits."""
 
 LOAD = 1e-6
-"""Relative, of the torques and speeds of load cases: those of a result come from its search."""
+"""Relative tolerance of torques and speeds of load cases, which come from a search in a result."""
 
 SETTINGS = ("run", "accuracy", "outputs", "integration", "effects", "left_out")
-"""Of a scene: how it is computed, which a REXS file does not say, and what its import left out."""
+"""Tables of a scene that are not compared: settings of the computation, which a REXS file has not, and
+remarks on what the import left out."""
 
 _REMEDY = "Deflect the scene and the load cases that `loa open` writes of this unit, as they are."
 

@@ -140,6 +140,6 @@ def _duplicates() -> Sequence[Measured]:
 
 
 def _centroid(problem: ContactProblem, solution: ContactSolution) -> FloatArray:
-    """Return where along the face the load acts, m."""
+    """Return the centroid of the load along the face, m."""
     force = solution.force[:, 0]
     return np.asarray(force @ problem.candidates.face_position / force.sum(axis=1))

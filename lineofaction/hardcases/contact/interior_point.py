@@ -50,9 +50,10 @@ class Problem:
     gap_about: GapAbout
     width: Array
     length: float
-    """Reference length of the local law away from free ends: strips are tabulated for a part of it."""
+    """Reference length of the local law away from free ends. Strips are tabulated for half widths up to 0.66
+    of this length."""
     reference_length: Array
-    """That of each contact, greater near free ends."""
+    """Reference length of each contact, greater near free ends."""
     modulus: Array
 
 
@@ -146,7 +147,7 @@ def _strips(problem: Problem, half: Array) -> tuple[Array, Array]:
 
 
 class _GuardedLaw:
-    """The law with its secant below a strip of 1e-4 reference lengths and straight on above one of 0.66.
+    """The law from 1e-4 to 0.66 reference lengths of a strip: its secant below, its tangent above.
 
     Strips are tabulated over their length; between the entries the length is found by the secant method.
     """

@@ -17,10 +17,11 @@ from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray, IntArray
 
 NOMINAL_TORQUE = 100.0
-"""N m on the driving gear of the nominal pair: 0.5 GPa of Hertz pressure."""
+"""Torque on the driving gear of the nominal pair, N m: 0.5 GPa of Hertz pressure."""
 
 CYCLIC = 2e-5
-"""How much STE may differ from tooth to tooth in the plane: the mesh of the body is not the same for all."""
+"""Relative difference of the STE from tooth to tooth in the plane: the mesh of the body differs between
+teeth."""
 
 
 @dataclass(frozen=True)

@@ -121,7 +121,7 @@ def _tall(addendum: float) -> Gear:
 
 
 def _smoothness(case: Posed) -> Measured:
-    """Return how the largest step of STE shrinks on positions four times as close: 1/4 if smooth."""
+    """Return the ratio of the largest step of STE on positions four times as close: 1/4 if smooth."""
     steps = []
     for count in (256, 1024):
         curve = case.ste(even_positions(count))[:, -1]

@@ -20,7 +20,7 @@ _POSITION = np.array([0.3])
 _LOADS = np.array([0.5, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-3])
 
 _LENGTH = 2.5e-3
-"""Of the relief in m, along the radius."""
+"""Length of the relief along the radius, m."""
 
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 
@@ -71,7 +71,7 @@ def _raised(problem: ContactProblem, touching: ContactSolution) -> tuple[Contact
 
 
 def _reach(case: Posed, relief: float) -> float:
-    """Return how far the weaker pair is from touching: < 0 it carries (share), > 0 it gapes (um)."""
+    """Return the distance of the weaker pair from touch: < 0 it carries (share), > 0 it gapes (um)."""
     problem, solution = _solve(case, relief)
     force = solution.force[0, 0]
     weaker = int(np.argsort(force)[-2])
@@ -84,7 +84,7 @@ def _reach(case: Posed, relief: float) -> float:
 
 
 def _off_the_ramp(case: Posed, relief: float) -> float:
-    """Return how far the entering pair's gap is off that of a ramp of height c and slope m along the flank.
+    """Return the deviation of the entering pair's gap from a ramp of height c and slope m along the flank.
 
     It is c - R m^2/2 along the normal, which gear 2 closes by a lag of 1/(1 - s) times that, s the slope over
     its roll length.

@@ -10,7 +10,7 @@ from dynamics.types import FloatArray
 
 
 def bounce(time: FloatArray, gap: float, speed: float, natural: float) -> FloatArray:
-    """Return where the mass is, in m from the first spring's end, < 0 towards the second.
+    """Return the position of the mass, m from the first spring's end, < 0 towards the second.
 
     Parameters
     ----------

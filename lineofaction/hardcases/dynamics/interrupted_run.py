@@ -72,7 +72,7 @@ def _in_legs(scene: Scene, path: Path) -> int:
 
 
 def _after(blocks: int) -> Callable[[], bool]:
-    """Return what asks to stop when it is asked for the last of so many times."""
+    """Return a function that requests the stop at the last of so many calls."""
     left = iter(range(blocks - 1))
     return lambda: next(left, None) is None
 

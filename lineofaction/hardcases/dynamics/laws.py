@@ -15,12 +15,13 @@ from lineofaction.hardcases.scene import Measured
 
 METHODS = ("implicit", "explicit")
 LARGEST_GROWTH = 100.0
-"""What a motion may make of errors of one tolerance: beyond it, agreement to measured errors says little."""
+"""Largest ratio of an error to the tolerance of a run. With larger ratios the motion amplifies errors so much
+that agreement within measured errors says little."""
 LARGEST_RATIO = 1.25
 """A measured error is 1.2 times the difference to a run at a tenth of the tolerance, for that run's error: a
 sixth as large on average, more where a step level (2^(1/4), 2 in errors of order 4) rounds against it."""
 LARGEST_MISSING = 1e-3
-"""Energy that may be missing, over what was turned over: what the documentation promises."""
+"""Largest missing energy over the energy turned over, as the documentation promises."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ def by_method(scene: Scene, method: str) -> Scene:
 
 
 def common_figures(runs: _Runs, scene: Scene) -> tuple[Measured, ...]:
-    """Return how far both integrators are apart, and the energy that the worse one misses.
+    """Return the difference of both integrators, and the energy that the worse one misses.
 
     They agree to their tolerances; where the scene has errors measured (`Integration.estimate_error`), since
     its motion makes more of an error than one tolerance, to these.
@@ -86,7 +87,7 @@ def off_closed_form(runs: _Runs, scene: Scene, exact: Callable[[FloatArray], Flo
 
 
 def _measured_error(run: RunResult) -> float:
-    """Return what a run says its rms error is, m."""
+    """Return the rms error that a run states, m."""
     return float(run.receipt["error"]["time_step"]["rms"])
 
 

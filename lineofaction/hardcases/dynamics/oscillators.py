@@ -20,21 +20,21 @@ TEETH = 20
 BASE_RADIUS = 0.04 * math.cos(math.radians(20.0))
 
 STIFFNESS = 4e8
-"""N/m along the line of action."""
+"""Mesh stiffness along the line of action, N/m."""
 
 INERTIA = Inertia(1.0, 1e-3, 1e-3)
 
 MASS = INERTIA.polar / BASE_RADIUS**2
 
 NATURAL = math.sqrt(STIFFNESS / MASS)
-"""rad/s, of the driven gear on its mesh."""
+"""Natural frequency of the driven gear on its mesh, rad/s."""
 
 RPM = math.pi / 30.0
 
 TORQUE = 100.0
 
 DEFLECTION = TORQUE / BASE_RADIUS / STIFFNESS
-"""m, of the mesh under that torque."""
+"""Deflection of the mesh under that torque, m."""
 
 _LEVEL = TORQUE / BASE_RADIUS
 

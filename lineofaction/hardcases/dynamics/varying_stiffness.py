@@ -23,7 +23,8 @@ SCENES = Scenes("dynamics")
 _RATIO = 3.0
 
 _FREQUENCIES = (1.5, 2.0)
-"""Of the mesh over that of the gear on the mean stiffness: stable, and in the widest unstable band."""
+"""Mesh frequency over the natural frequency of the gear on the mean stiffness: a stable value, and one in the
+widest unstable band."""
 
 
 @SCENES.add(

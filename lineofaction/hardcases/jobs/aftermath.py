@@ -1,4 +1,4 @@
-"""A job that cannot end well, with jobs behind it: what became of all of them."""
+"""A job that cannot end well, with jobs behind it: the ends of all of them."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thicknes
 
 @dataclass(frozen=True)
 class Aftermath:
-    """The end of a disturbed job, and what it left behind."""
+    """The end of a disturbed job, and the figures that were checked after it."""
 
     job: Job
-    """Ended."""
+    """Job after its end."""
     errors: FloatArray | None
-    """Its transmission errors, if it has succeeded all the same, or at last."""
+    """Transmission errors of the job, if it succeeded at some attempt; else None."""
     figures: tuple[Measured, ...]
-    """What every such job must leave behind."""
+    """Figures that every disturbed job must show afterwards."""
 
     def ended_as(self, status: str, attempts: int) -> bool:
         """Whether the job ended in this status at this attempt."""
@@ -79,13 +79,13 @@ def _case_of(model: str, level: str, torques: tuple[float, ...] = (40.0,), posit
 
 
 SMALL = _case_of("plane_strain", "draft")
-"""Done in a second, of which half is the start of its worker."""
+"""Small job of a second, of which half is the start of its worker."""
 MEDIUM = _case_of("plane_strain", "standard")
-"""Other meshes than those of the small one."""
+"""Job with other meshes than the small one."""
 LARGE = _case_of("3d", "fine")
-"""Needs 1.1 GB where the small one needs 270 MB."""
+"""Large job of 1.1 GB; the small one needs 270 MB."""
 LONG = _case_of("3d", "fine", tuple(float(torque) for torque in range(10, 40)), 1000)
-"""Needs fifty times as long as the small one."""
+"""Long job, fifty times as long as the small one."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _left(service: JobService) -> tuple[Measured, ...]:
 def _others(
     service: JobService, ended: list[Job], before: FloatArray, *, overtaken: bool
 ) -> tuple[Measured, ...]:
-    """Return how the jobs behind the disturbed one fared, and whether the small one is as ever."""
+    """Return figures on the jobs behind the disturbed one, and on a repetition of the small one."""
     disturbed, dismissed, after = ended
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
     served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None

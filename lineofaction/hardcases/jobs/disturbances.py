@@ -14,7 +14,7 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("service")
 
 MEMORY_MB = 384
-"""Half-way, in proportion, between what the small job needs and what the large one does."""
+"""Memory limit in MB, between the needs of the small and of the large job."""
 
 AFTER = (
     "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "

@@ -1,4 +1,4 @@
-"""A service for one hard scene: its settings, its processes, and what disturbs it."""
+"""A service for one hard scene: its settings, its processes, and its disturbance."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from service.store.results import ResultStore
 from service.worker.process import ANALYZE, default_registry
 
 LOOK_S = 0.02
-"""Between two looks at a job: a mesher needs several times as long to load."""
+"""Seconds between two looks at a job: a mesher needs several times as long to load."""
 
 Disturb = Callable[["JobService", Job], None]
 

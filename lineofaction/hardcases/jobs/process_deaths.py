@@ -30,13 +30,13 @@ from service.queue.job import Job
 SCENES = Scenes("service")
 
 MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.worker."
-"""What their commands hold; a worker is started anew or forked."""
+"""Texts in the commands of mesher and worker; a worker is started anew or forked."""
 
 _HANGING = """
 import time
 time.sleep(3600.0)
 """
-"""A mesher that is met, however short its mesh."""
+"""Program of a mesher that never ends, so that it runs when it is killed, however fast the mesh."""
 
 
 @contextmanager

@@ -1,1 +1,1 @@
-"""Two results against each other, and against what was measured: differences with their errors."""
+"""Comparison of two results, or of a result with a measurement: differences with their errors."""

@@ -1,4 +1,4 @@
-"""What a change of flanks brings: levels before and after over the same pairs, and what decides."""
+"""Page on a change of flanks: levels before and after over the same pairs, and the decision."""
 
 from __future__ import annotations
 

@@ -271,7 +271,7 @@ def _page(
     if tables and runs:
         raise BadInput.of("files", "a table and a run", _BOUND, _REMEDY)
     if tables:
-        teeth = next(iter(tables.values())).facts.teeth[0]
+        teeth = next(iter(tables.values())).geometry.teeth[0]
         return compare_tables(tables, _measured(files, teeth, "µm"), torque)
     for name, run in runs.items():
         if not run.mesh:

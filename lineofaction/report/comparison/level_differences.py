@@ -12,11 +12,11 @@ from dynamics.orders import OrderPower, Waterfall, order_power, shared_frequenci
 from lineofaction.report.drawing.figure import Table
 
 PLACES = 40
-"""Speeds at which differences are looked at."""
+"""Number of speeds at which differences are computed."""
 _OUT = 10.0
-"""Of the noise: power of an order that is compared at one speed."""
+"""Least power of an order over the power of the noise at which the order is compared at a speed."""
 _DB = 10.0 / math.log(10.0)
-"""dB of a relative change of power that is small."""
+"""Level in dB per unit of a small relative change of power."""
 _SIGMAS = 2.0
 
 
@@ -26,11 +26,11 @@ class LevelDifference:
 
     order: int
     levels: tuple[float, float]
-    """dB re one unit rms, mean power over the shared speeds."""
+    """Mean power over the shared speeds, dB re one unit rms."""
     errors: tuple[float, float]
-    """dB, two standard deviations."""
+    """Errors of the levels, two standard deviations, dB."""
     largest: float
-    """The largest difference at one speed, dB; NaN of an order that is not seen."""
+    """The largest difference at one speed, dB; NaN: the order stands out of the noise at no speed."""
     is_seen: bool
     """Whether the order stands out of the noise in both."""
 

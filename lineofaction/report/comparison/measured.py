@@ -18,7 +18,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import FloatArray, Table, number
 
 COLORS = (palette.BLUE, palette.VERMILLION)
-"""Of the first result and of the second."""
+"""Colors of the first result and of the second."""
 
 POSITIONS = ("position", "angle_deg")
 ORDERS = ("mesh_order", "order")
@@ -41,7 +41,7 @@ _REMEDY = (
 
 @dataclass(frozen=True)
 class Difference:
-    """One number of two results: what, at which load or speed, and both in the unit they are written in."""
+    """A number of two results: its name, its load or speed, and both values in the unit of the report."""
 
     name: str
     where: str

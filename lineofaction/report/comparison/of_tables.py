@@ -44,7 +44,7 @@ _TORQUE_ROUNDING = 1e-9
 """Relative rounding by which the ends of two torque ranges may differ."""
 
 Named = dict[str, SteDatabase]
-"""One or two tables by the names they are shown under, in the order given."""
+"""One or two tables by the names of their curves, in the sequence of the call."""
 
 
 def compare_tables(
@@ -80,12 +80,12 @@ def compare_tables(
         for difference in differences
         if difference.name == "peak to peak"
     )
-    titles = dict.fromkeys(pair_title(table.facts) for table in tables.values())
+    titles = dict.fromkeys(pair_title(table.geometry) for table in tables.values())
     return Page(f"{' and '.join(tables)} compared", "; ".join(titles), headlines, tuple(sections))
 
 
 def _common(tables: Sequence[SteDatabase]) -> list[float]:
-    """Return those torques of the first table that all tables cover, moved into the range by rounding."""
+    """Return the torques of the first table that all tables cover, moved into the range by rounding."""
     low, high = _limits(tables)
     lowest, highest = low * (1 - _TORQUE_ROUNDING), high * (1 + _TORQUE_ROUNDING)
     torques = [float(torque) for torque in tables[0].torque if lowest <= torque <= highest]

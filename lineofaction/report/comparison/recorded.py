@@ -1,4 +1,4 @@
-"""A recording beside a computed run: maps over mesh orders, levels of orders, and their differences in dB."""
+"""Comparison of a recording and a run: maps over mesh orders, levels of orders, differences in dB."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ _QUANTITIES = {
     "mesh_force": FORCE,
     "dynamic_transmission_error": LENGTH,
 }
-"""What a sensor measures of the series of a run."""
+"""Quantities of sensors by the series of a run that they measure."""
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
 _LEAD = (
@@ -59,24 +59,24 @@ _LEAD = (
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a caller says of a recording that its file does not."""
+    """Facts about a recording that its file leaves open."""
 
     channel: str = ""
     unit: str = ""
-    """`channel`, `unit`: The channel that is compared; empty: the only one of the quantity; its unit: that of
-    the file.
+    """`channel`, `unit`: The compared channel, empty: the only channel of the quantity; the unit of the
+    channel, empty: the unit in the file.
     """
     full_scale: float = 1.0
-    """What one of the file's numbers is in the unit, as the full scale of a WAV file."""
+    """Value, in the unit, of 1 in the file, as the full scale of a WAV file."""
     tacho: str = ""
     tacho_unit: str = ""
-    """`tacho`, `tacho_unit`: The channel of the speed, or of the pulses of a tacho."""
+    """`tacho`, `tacho_unit`: Channel of the speed or of the pulses of a tacho, and its unit."""
     pulses_per_turn: float = 0.0
-    """Of a tacho; 0: the channel is a speed."""
+    """Pulses of a tacho per turn; 0: the channel is a speed."""
     rpm: float = 0.0
-    """The one speed of a recording without a tacho; 0: there is a channel."""
+    """Constant speed of a recording without a tacho, rpm; 0: the recording has a channel of the speed."""
     ratio: float = 1.0
-    """Speed of the driving gear over that of the shaft whose speed or pulses were recorded."""
+    """Speed of the driving gear over the speed of the recorded shaft."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from lineofaction.gearbox.signals.units import ACCELERATION, FORCE, LENGTH, meas
 from lineofaction.report.comparison.measured import MeasuredCurve, MeasuredOrders, averaged
 
 _SCALES = {"µm": (LENGTH, 1e6), "N": (FORCE, 1.0), "m/s²": (ACCELERATION, 1.0)}
-"""Quantity of a unit of the page, and what one SI unit is in it."""
+"""Quantity of a unit of the page, and value of one SI unit in that unit."""
 _FORM = "one function (dataset 58) in {unit} over orders, position (base pitches) or angle (degrees)"
 _AXIS_REMEDY = "Say which by the label of the abscissa: Order, Mesh order, Position or Angle."
 

@@ -1,1 +1,1 @@
-"""What a report shows of a deflected gearbox."""
+"""Figures and tables of a deflected gearbox in a report."""

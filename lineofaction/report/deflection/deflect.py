@@ -264,7 +264,7 @@ def _page(result: GearboxDeflection) -> Page:
 
 
 def agreement(result: GearboxDeflection) -> str:
-    """Say how well mesh loads and deflections agree."""
+    """Return a sentence on the agreement of mesh loads and deflections."""
     if not mesh_names(result):
         return "Nothing meshes."
     if not any(np.isfinite(part.face_load_factor) for part in result.flanks):

@@ -15,7 +15,7 @@ from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Figure, FloatArray, Line, Note, Panel, number
 
 WAYS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(np.arange(45.0, 405.0, 22.5))])
-"""Of the radii at whose ends a name may begin, the preferred first."""
+"""Directions of the radii at whose ends a name may begin, the preferred first."""
 CHARACTER, ROW = 0.013, 0.03
 """Width and height of a character over the size of the drawing."""
 
@@ -28,13 +28,13 @@ ALONG = (
 )
 AGAINST = " Against z: operating pitch circles, and where the center of each gear moves."
 NEAR = 0.04
-"""Of the size of the drawing: names at less than this cover each other."""
+"""Distance over the size of the drawing below which names cover each other."""
 VIEWS = np.array([(math.cos(a), math.sin(a)) for a in np.radians(sorted(range(-89, 91), key=abs))])
-"""Directions across z, those near x first."""
+"""Directions across z, the directions near x first."""
 COAXIAL = 1e-6
-"""m; axes at less than this are one."""
+"""Distance in m below which two axes are one."""
 EDGE = 0.04
-"""Of an axis beyond what it holds."""
+"""Margin of a plot's axis beyond its contents, over their span."""
 CIRCLE = np.linspace(0.0, 2.0 * math.pi, 91)
 
 

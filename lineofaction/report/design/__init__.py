@@ -1,1 +1,1 @@
-"""What a report shows of studies of designs: sweeps, tolerances, optimization."""
+"""Figures and tables of studies of designs in a report: sweeps, tolerances, optimization."""

@@ -1,4 +1,4 @@
-"""Flanks that are heard least in a scene: levels before and after by load case, and what gets worse."""
+"""Quietest flanks of a scene: levels before and after by load case, and figures that get worse."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from lineofaction.report.drawing.page import Headline, Page, Section
 from lineofaction.report.presentation import Presentation
 
 _WIDTH = 0.32
-"""Of a bar, two of which stand at an order."""
+"""Width of a bar, two of which stand at an order."""
 
 
 def _loads(result: HeardOptimization) -> tuple[str, ...]:

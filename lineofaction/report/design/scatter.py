@@ -125,7 +125,7 @@ def _amplitude(length: float) -> str:
 
 
 def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
-    """Say how many pairs are above the limit, what decides, what cures it; and what the model misses."""
+    """Return sentences on pairs above the limit, decisive deviations, cures, and the model's error."""
     lines = () if study.above is None else tuple(_above_limit(study, study.above))
     if study.solved < len(study.peak_to_peak) or study.above is not None:
         misses = ", ".join(

@@ -120,7 +120,7 @@ def _reason(study: PairStudy, curves: Sensitivity) -> str:
 
 
 def _by_pairs(before: float, after: float, change: float) -> str:
-    """Say what the number of pairs that carry has to do with a relative change of the ripple.
+    """Return a sentence on the effect of the number of carrying pairs on a relative change of the ripple.
 
     The ripple is the step between n and n + 1 pairs. It falls as the part that n pairs carry alone shrinks.
     """

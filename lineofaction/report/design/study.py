@@ -1,4 +1,4 @@
-"""A study of scenes: maps and curves over the grid, distributions, what matters, worst and failed runs."""
+"""A study of scenes: maps and curves over the grid, distributions, influences, worst and failed runs."""
 
 from __future__ import annotations
 
@@ -198,7 +198,7 @@ def _bars(
 
 
 def _extreme(study: Study) -> str:
-    """Say where the first response is largest."""
+    """Return a sentence on the point of the largest first response."""
     first = study.figure[:, 0]
     if not np.isfinite(first).any():
         return "No run has figures."
@@ -276,7 +276,7 @@ def _page(study: Study) -> Page:
         Section("Responses", "", tuple(replace(f, table=None) for f in _study_figures(study))),
         Section("Figures", "", (), (_summary_table(study), *tables)),
     )
-    without = ", ".join(study.facts["neglected"])
+    without = ", ".join(study.metadata["neglected"])
     samples = f" {study.samples} samples of each combination." if study.samples > 1 else ""
     over = ", ".join(study.factor[k] for k in _varied(study))
     lead = f"{len(study.reason)} runs over {over}.{samples} Neglected in the runs: {without}."
@@ -288,7 +288,7 @@ def _text(study: Study) -> Iterator[Table | str]:
     yield _extreme_table(study)
     if study.usable < len(study.reason):
         yield _failed_table(study)
-    yield f"neglected in the runs: {', '.join(study.facts['neglected'])}"
+    yield f"neglected in the runs: {', '.join(study.metadata['neglected'])}"
     yield f"cost {engineering(1e3 * float(study.seconds[:, 0].mean()), 3)} ms CPU a run"
 
 

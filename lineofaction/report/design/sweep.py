@@ -1,4 +1,4 @@
-"""A sweep as people see it: maps, curves, the least values with what is as low within the errors."""
+"""Page of a sweep: maps, curves, and least values with the points that are as low within the errors."""
 
 from __future__ import annotations
 

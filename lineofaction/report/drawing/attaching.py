@@ -41,7 +41,7 @@ def attached(pdf: bytes, name: str, content: bytes) -> bytes:
 
 
 def _end(pdf: bytes) -> tuple[int, int, int]:
-    """Return where the last table of references is, the number of objects, and that of the catalog."""
+    """Return the offset of the last table of references, the number of objects, and that of the catalog."""
     trailer = pdf[pdf.rfind(b"trailer") :]
     matches = [re.search(rb"%b\s+(\d+)" % name, trailer) for name in (b"startxref", b"/Size", b"/Root")]
     if not all(matches):

@@ -1,4 +1,4 @@
-"""Bodies of revolution and surfaces about them as they are seen: rays, what is in front, its light."""
+"""Pictures of bodies of revolution and surfaces: rays, the nearest surface of each ray, and its light."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from bounds.types import BoolArray, FloatArray, IntArray
 from lineofaction.gearbox.studies.bodies import HOUSING, Body, Hull, Ring
 
 YAW, PITCH = 0.8, 0.35
-"""rad; from where a unit is seen first, on the page too."""
+"""Angles of the first view of a unit, rad, here and on the page."""
 FIELD = 1.0 / math.tan(math.radians(15.0))
-"""Of the page's camera: cotangent of half its field of view, upright."""
+"""Cotangent of half the vertical field of view of the page's camera."""
 LIGHT = (0.1, 0.6, 0.1)
-"""Added to the direction of the eye."""
+"""Vector that is added to the direction of the eye; the sum is the direction of the light."""
 SHADE = 0.34
-"""Brightness of what has no light."""
+"""Brightness of a surface without light."""
 CONTOUR = 0.4
-"""Brightness of an edge over that of its surface."""
+"""Brightness of an edge over the brightness of its surface."""
 FINER = 2
 """Rays per pixel, across and down."""
 SIDES = 48
-"""Of the polygon about a circle that says how far a body reaches."""
+"""Number of corners of the polygon about a circle by which the extent of a body is found."""
 THROUGH = 0.3
 """Opacity of a surface, through which the rest is seen."""
 BEHIND = 1e-6
-"""Part of its distance by which a surface must be nearer than another to hide it."""
+"""Relative difference of distance by which a surface must be nearer than another to hide it."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Camera:
         return np.asarray(light / np.linalg.norm(light))
 
     def pixels(self, points: FloatArray) -> FloatArray:
-        """Return where points (n, 3) are seen, across and down (n, 2)."""
+        """Return the pixels of points (n, 3), across and down (n, 2)."""
         right, up, back = self.axes @ (points - self.eye).T
         return np.asarray(self.middle + self.scale * np.stack([right, -up], axis=1) / -back[:, None])
 
@@ -124,7 +124,7 @@ class _Window:
 
 @dataclass(frozen=True)
 class _Surface:
-    """Where rays of a window meet a surface: their lengths, infinite without, and its light there."""
+    """Intersection of the rays of a window with a surface: lengths, infinite if none, and light there."""
 
     distance: FloatArray
     light: FloatArray
@@ -153,7 +153,7 @@ def _end(z: float, radii: tuple[float, float], eye: FloatArray, ray: FloatArray,
 
 @dataclass(frozen=True)
 class _Cone:
-    """A wall about z between two ends: its radius at the lower one and what that gains along z."""
+    """A wall about z between two ends: its radius at the lower end, and the growth of the radius per z."""
 
     low: float
     high: float
@@ -161,7 +161,7 @@ class _Cone:
     slope: float
 
     def met(self, eye: FloatArray, ray: FloatArray, light: FloatArray, *, outward: bool) -> _Surface:
-        """Return where rays meet it first from outside, or from within."""
+        """Return the first intersection of rays with the wall, from outside or from within."""
         at_eye = self.radius + self.slope * (eye[2] - self.low)
         a = ray[0] ** 2 + ray[1] ** 2 - (self.slope * ray[2]) ** 2
         half_b = ray[0] * eye[0] + ray[1] * eye[1] - self.slope * ray[2] * at_eye
@@ -190,7 +190,7 @@ class _Cone:
 
 @dataclass
 class _Picture:
-    """What is in front at each ray: its distance, its surface by number (0: nothing), its color (h, w, 3)."""
+    """The nearest surface of each ray: distance, number of the surface (0: none), color (h, w, 3)."""
 
     camera: Camera
     distance: FloatArray
@@ -234,7 +234,7 @@ class _Picture:
         self.color[front] += THROUGH * (over - self.color[front])
 
     def contours(self) -> BoolArray:
-        """Return where a surface ends."""
+        """Return the pixels at which a surface ends."""
         edge = np.zeros(self.surface.shape, dtype=bool)
         for axis in (0, 1):
             changes = np.diff(self.surface, axis=axis) != 0

@@ -61,7 +61,7 @@ class Axis:
         return bool(np.isfinite(value)) and (self.scale == "linear" or value > 0.0)
 
     def fraction(self, values: FloatArray, ends: tuple[float, float]) -> FloatArray:
-        """Return where values lie on an axis with these ends: 0 at the first, 1 at the last."""
+        """Return the place of values on an axis with these ends: 0 at the first, 1 at the last."""
         low, high = ends
         if self.scale == "log":
             values, low, high = np.log10(values), float(np.log10(low)), float(np.log10(high))
@@ -112,7 +112,7 @@ class Bars:
 
 @dataclass(frozen=True)
 class Reference:
-    """A straight line across a panel at one value, with a short label beside it.
+    """A straight line across a panel at one value, with a short label at its end.
 
     The label of a horizontal line is centered at the fraction `at` of the width, or ends there if it is above
     one half.
@@ -209,7 +209,7 @@ class Panel:
 
 @dataclass(frozen=True)
 class Table:
-    """Numbers in words: what a screen reader, a printout or a spreadsheet takes instead of a plot."""
+    """A table of numbers as text, the alternative to a plot for screen readers, print and spreadsheets."""
 
     caption: str
     head: tuple[str, ...]
@@ -226,7 +226,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Track:
-    """One of the sounds of a plot, and where on the horizontal axis of its first panel it is as it plays.
+    """A sound of a plot, with its place on the horizontal axis of the first panel as it plays.
 
     `time` (n,), s, increases; `along` (n,) are values on the axis. `query` names it to the service's path of
     the sound of a result. `mesh_frequency` (n,), Hz, is that of mesh order 1; None: no mesh is heard alone.
@@ -241,7 +241,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Sound:
-    """What a plot shows, to listen to: its quantity, and what it is not, in the caption.
+    """Sound of a plot: the caption names its quantity, and parts that the sound leaves out.
 
     `files` are WAV, one for each track, all of one full scale; none if they would be too large for a page.
     """

@@ -1,4 +1,4 @@
-"""What is complained of, marked in every plot whose axes or orders have it."""
+"""Marks of a complaint in every plot whose axes or orders contain it."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from bounds import engineering, order_name
+from lineofaction.gearbox.studies.figures import metadata_of
 from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
@@ -28,13 +29,12 @@ DRIVER = "speed of the driving gear, rpm"
 TORQUE = "torque on the driving gear, N m"
 """Labels of axes of runs and tables."""
 BOLDER = 2.0
-"""Width of the line of the order, of what it is without a complaint."""
+"""Width of the complaint's order over the usual width of the line."""
 
 
 def marks_of(result: Any) -> Marks | None:
-    """Return what a result says of the complaint of its scene, None without one."""
-    metadata: Mapping[str, Any] = getattr(result, "facts", {})
-    return metadata.get(NAME)
+    """Return the marks by the complaint of a result's scene, None without a complaint."""
+    return metadata_of(result).get(NAME)
 
 
 def of_run(marks: Marks, mesh: str) -> Marks:

@@ -19,13 +19,13 @@ from lineofaction.report.drawing.interactive import plotly_figure
 
 Json = dict[str, Any]
 SCRIPT, STYLE_SHEET = "player.js", "player.css"
-"""The page of the service has the same."""
+"""Names of the player's files, which the page of the service shares."""
 _ROWS_OF_A_PAGE = 40
-"""In print, the most rows of a table that is not cut."""
+"""Most rows of a table that is not divided between printed pages."""
 _HALF_OF_A_PAGE, _ACROSS_A_PAGE = 56, 110
-"""Characters across a table beside which another one fits, and across one that fits."""
+"""Widths of tables in characters: largest width beside which another table fits, and largest on a page."""
 _SHORT = 24
-"""Characters of a cell that is not broken where the table fits."""
+"""Most characters of a cell that stays on one line where the table fits."""
 # In this page players stand in the document: the script joins them to their plot once that is drawn.
 _JOINED = """
 if (document.getElementById("library")) await drawn;
@@ -56,7 +56,7 @@ def _player(figure: Figure) -> str:
 
 
 def sound_json(sound: Sound) -> Json:
-    """Return what the script needs of a sound."""
+    """Return the data of a sound for the script of the page."""
     tracks = [
         {
             "name": one.name,
@@ -102,7 +102,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Headline:
-    """A main result: what, its value and its error or remark."""
+    """A main result: its name, its value, and its error or remark."""
 
     name: str
     value: str
@@ -111,7 +111,7 @@ class Headline:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """What a report is about, by name; `verdicts` on what is required; `corner` stands on every page."""
+    """Subject of a report, by name; `verdicts` on requirements; `corner` stands on every page."""
 
     rows: tuple[tuple[str, str], ...]
     verdicts: tuple[str, ...] = ()
@@ -120,7 +120,7 @@ class TitleBlock:
 
 @dataclass(frozen=True)
 class Page:
-    """All of a report; `alarms` are what the reader must know before any number.
+    """The contents of a report; `alarms` are warnings to be read before any number.
 
     `records` are what its results were made from and with, by the names of their files.
     """
@@ -164,13 +164,13 @@ def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
 
 @cache
 def _library() -> str:
-    """Return what draws plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
+    """Return the library of plots as base64 of gzip: 2 in place of 5 MB, which browsers unpack themselves."""
     packed = gzip.compress(_text("package_data/plotly.min.js", "plotly").encode(), mtime=0)
     return base64.b64encode(packed).decode("ascii")
 
 
 def _margins(page: Page) -> str:
-    """Return what stands on every printed page beside its number."""
+    """Return the margin texts of every printed page, apart from its number."""
     corner = page.block.corner if page.block else ""
     texts = {"top-left": page.title, "top-right": corner, "bottom-left": "lineofaction"}
     plain = {corner_name: re.sub(r"[^\w .,:;()/+-]", " ", text) for corner_name, text in texts.items()}

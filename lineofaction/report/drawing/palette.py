@@ -1,4 +1,4 @@
-"""Colors that stay apart for color-blind readers and in gray print.
+"""Colors that color-blind readers can tell, also in gray print.
 
 Categories take the palette of Okabe and Ito (2008); ordered values take dark-to-light steps of cividis, which
 rises evenly in lightness for normal and for red-green-blind eyes (Nunez, Anderton and Renslow 2018, PLoS ONE

@@ -15,8 +15,8 @@ from lineofaction.report.drawing.figure import Axis, FloatArray, Note, Panel
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
 _MARGIN = 0.05
-"""Of the panel above its curves, and below them where the axis has no limits: what goes beyond it runs into
-the title or the axis."""
+"""Margin over the height of the panel, above its curves, and below them where the axis has no limits. A text
+beyond the margin runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 _ROOM = 0.05  # of the height beyond the curves where the axis has no limits
@@ -91,7 +91,7 @@ def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
 
 
 class _LineLabel(NamedTuple):
-    """A label beside a panel; heights are parts of the panel's, 0 at the bottom.
+    """A label at the side of a panel; heights are shares of the panel's height, 0 at the bottom.
 
     `end` is the height at which its line ends, `middle` that of the label.
     """

@@ -30,7 +30,7 @@ FOLD = 40.0
 SIDE = 0.03
 """Least area of a side whose edges are drawn, over the area of the surface."""
 ALIKE = 80.0
-"""Angle, degrees, between the normals of neighbors from which on the smoothing leaves both alone."""
+"""Least angle, degrees, between the normals of neighbors that the smoothing leaves unchanged."""
 PASSES = 3
 """Passes of the smoothing of normals."""
 OUTLINE_MARGIN = 2
@@ -46,7 +46,7 @@ BEHIND = 3.0
 EYE = (1.0, 0.55, 0.65)
 """Direction to the eye; y points up in the picture."""
 SIDES = {"From the front": EYE, "From behind and below": (-EYE[0], -EYE[1], -EYE[2])}
-"""Two opposite directions to the eye, by the title: a facet that nothing hides is seen from one of them."""
+"""Two opposite directions to the eye, by the title: every facet that nothing hides faces one of them."""
 
 
 def surface_panels(

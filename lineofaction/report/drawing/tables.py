@@ -1,4 +1,4 @@
-"""Tables of plain facts: settings and records, effects, what housings cost."""
+"""Tables of plain facts: settings and records, effects, costs of housings."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _SYMBOLS = str.maketrans({"^": "", "2": "²", "3": "³"})
 """Powers of units as they are printed."""
 _DEGREE = {"deg": "°", "degC": "°C"}
 EffectRow = tuple[str, str, bool, str, str]
-"""An effect: its name, what it acts in, whether it is simulated, its influence in words, and why."""
+"""An effect: its name, its part, whether it is simulated, its influence in words, and the reason."""
 Json = dict[str, Any]
 GIGABYTE = 1e9
 HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")

@@ -1,1 +1,1 @@
-"""What a report shows of effects, errors and their cost."""
+"""Figures and tables of effects, errors and their cost in a report."""

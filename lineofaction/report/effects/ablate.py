@@ -1,4 +1,4 @@
-"""An ablation: the largest change, the plot, every effect, and what was not toggled."""
+"""Page of an ablation: the largest change, the plot, every effect, and effects that were not toggled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An accuracy study: what was chosen, the knee, the plot, every fidelity, and what was not run."""
+"""Page of an accuracy study: the choice, the knee, the plot, every fidelity, and fidelities not run."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class _Peer:
 
 
 def _peers(study: Frontier) -> list[_Peer]:
-    """Return what is known of this very pair, and full contact as it is recorded."""
+    """Return the known errors of this very pair, and of full contact as recorded."""
     peers, measured = [], study.full_contact
     if levels := study.known_full_contact:
         titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
@@ -60,7 +60,7 @@ def _peers(study: Frontier) -> list[_Peer]:
 
 
 def _peer_caption(study: Frontier) -> str:
-    """Say where the points come from, and what was measured of them."""
+    """Return a sentence on the source of the points, and on the measured values."""
     times = f"Peer: {ORIGIN}; times for the same {study.solves} positions x loads."
     known = f"{times} " if study.known_full_contact else ""
     measured = study.full_contact

@@ -1,1 +1,1 @@
-"""What a report shows of flanks and roots."""
+"""Figures and tables of flanks and roots in a report."""

@@ -37,7 +37,7 @@ from lineofaction.report.ste.curves import POSITION_LABEL
 from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
 
 N_PER_MM = 1e3
-"""In N/m."""
+"""One N/mm in N/m."""
 
 MAX_LINES = 8  # positions
 Gear = Literal["pinion", "wheel"]
@@ -46,12 +46,13 @@ PRESSURE = "Hertz pressure, MPa"
 _MAX_ISOLINES = 6
 _HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
 _Map = tuple[FloatArray, FloatArray]
-"""Roll lengths (R,) in mm and pressures (R, K) in MPa."""
+"""Roll lengths (R,) in mm and pressures (R, K) in MPa of a contact pattern."""
 MAX_CURVES = 4  # positions
 _VISIBLE_GAP = 0.01
-"""um; a plot of less shows nothing."""
+"""Least gap that is drawn, um; a plot of a smaller gap shows nothing."""
 _ROUNDING = 1e-9
-"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+"""Share of the face width within which a load centroid counts as mid-face, the rounding of a symmetric load.
+"""
 
 
 def _face_axis(flanks: LoadDistribution) -> Axis:
@@ -137,7 +138,7 @@ def contact_pattern_figure(flanks: LoadDistribution) -> Figure:
     maps = [(1e3 * rows, 1e-6 * pressure) for rows, pressure in pressures]
     count = flanks.face_position.size
     drawn = _shaded if count > 1 else _curve
-    teeth = "/".join(map(str, flanks.scene.facts.teeth))
+    teeth = "/".join(map(str, flanks.scene.geometry.teeth))
     stretches = f" and {count} stretches of the face; blank: nothing touches" if count > 1 else ""
     return Figure(
         key="contact_pattern",
@@ -161,7 +162,7 @@ def _roll_marks(
         "pitch point": scene.pitch_point[index],
         "tip": scene.tip[index],
     }
-    base = scene.facts.base_radius[index]
+    base = scene.geometry.base_radius[index]
     return tuple(
         Reference(f"{name}, d {2e3 * np.hypot(base, roll):.4g} mm", 1e3 * roll, direction, 0.99)
         for name, roll in marks.items()
@@ -191,7 +192,7 @@ def _isolines(largest: float) -> tuple[float, ...]:
 def _title(flanks: LoadDistribution, gear: Gear) -> str:
     if gear == "pinion":
         return "pinion (drives): root below, tip above"
-    ring = flanks.scene.facts.internal
+    ring = flanks.scene.geometry.internal
     return "ring gear: tip below, root above" if ring else "wheel: root below, tip above"
 
 
@@ -358,7 +359,7 @@ def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
     """Return the page of flank results; beside their database, which has its own effects and case."""
-    pair = flanks.scene.facts
+    pair = flanks.scene.geometry
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
     return Page(
         pair_title(pair), pair_lead(pair), tuple(_headlines(flanks)), sections, _alarms(flanks, database)
@@ -441,7 +442,7 @@ def _alarms(flanks: LoadDistribution, database: SteDatabase | None) -> tuple[str
     """Say loudly if database and flank results are of different pairs."""
     if database is None:
         return ()
-    mine, theirs = flanks.scene.facts, database.facts
+    mine, theirs = flanks.scene.geometry, database.geometry
     same = mine.teeth == theirs.teeth and all(
         abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
         for name in ("base_pitch", "face_width")

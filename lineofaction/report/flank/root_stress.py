@@ -1,4 +1,4 @@
-"""Tooth-root stress as people see it: what the roots of one tooth of each gear meet in the mesh."""
+"""Page of tooth-root stress: the stress in the roots of one tooth of each gear through the mesh."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a report shows of housings and their sound."""
+"""Figures and tables of housings and their sound in a report."""

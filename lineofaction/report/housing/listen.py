@@ -1,4 +1,4 @@
-"""A run heard through a housing as people see it: its level over the way, with a player."""
+"""Page of a run heard through a housing: its level over the speeds, with a player."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from lineofaction.report.run.sound import PAGE_BYTES, SAMPLE_BYTES
 from lineofaction.report.run.view import speed_axis
 
 BLOCK = 0.1
-"""s over which a level is taken."""
+"""Duration over which a level is averaged, s."""
 MIN_SPAN, DEPTH, MARGIN = 20.0, 60.0, 2.0
-"""dB shown below the loudest, at least and at most; beyond both ends."""
+"""Range of levels below the loudest in a plot, dB: least range, largest range, and margin at both ends."""
 
 
 def _level_figure(audio: HeardRun) -> Figure:
@@ -66,7 +66,7 @@ def _noun(audio: HeardRun) -> str:
 
 
 def _sound(audio: HeardRun, along: FloatArray) -> Sound | None:
-    """Return what the plot sounds like; None of silence."""
+    """Return the sound of the plot; None: silence."""
     recording = audio.recording
     if recording.peak == 0.0:
         return None

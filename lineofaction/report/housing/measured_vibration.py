@@ -1,4 +1,4 @@
-"""Vibration of a measured housing as people see it: velocities, shares of bearings, what is absent."""
+"""Page of the vibration of a measured housing: velocities, shares of bearings, missing functions."""
 
 from __future__ import annotations
 
@@ -49,17 +49,17 @@ def measured_figure(result: MeasuredHousingVibration) -> Figure:
 def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Panel:
     """Draw one velocity (S, H) in mm/s by its largest orders."""
     vibration = result.vibration
-    x, along = row_axis(vibration.speed, result.facts)
+    x, along = row_axis(vibration.speed, result.metadata)
     sizes = np.nan_to_num(rms).max(axis=0)
     lines = tuple(
         Line(
-            f"order {order_label(vibration.order[h], result.facts)}",
+            f"order {order_label(vibration.order[h], result.metadata)}",
             along,
             rms[:, h],
             palette.category(k),
             width=1.4,
         )
-        for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.facts))
+        for k, h in enumerate(drawn_orders(vibration.order, sizes, MAX_ORDERS, result.metadata))
     )
     return Panel(x, Axis("rms velocity, mm/s"), lines, title=name)
 
@@ -67,7 +67,7 @@ def _panel(result: MeasuredHousingVibration, name: str, rms: FloatArray) -> Pane
 def _where(result: MeasuredHousingVibration) -> str:
     vibration, s, h = result.vibration, result.at_speed, result.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_label(vibration.order[h], result.facts)} at {speed} rpm, {hertz} Hz"
+    return f"order {order_label(vibration.order[h], result.metadata)} at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: MeasuredHousingVibration) -> Table:
@@ -79,7 +79,7 @@ def _largest_table(result: MeasuredHousingVibration) -> Table:
         rows.append(
             (
                 name,
-                order_label(vibration.order[h], result.facts),
+                order_label(vibration.order[h], result.metadata),
                 number(float(vibration.speed[s]) / RPM, 5),
                 number(float(vibration.frequency[s, h]), 5),
                 number(float(rms[s, h]) / MM_PER_S, 4),
@@ -120,9 +120,9 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
 def measured_page(result: MeasuredHousingVibration) -> Page:
     """Return the page of a measured housing; a table says what its responses replace and leave out."""
     figures = (measured_figure(result), _contribution_figure(result))
-    drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.facts))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.facts)
-    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.facts))
+    drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.metadata))
+    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.metadata)
+    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.metadata))
     absent = Table(_LEFT_OUT, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
@@ -144,11 +144,11 @@ def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
     """Yield velocities, contributions, excitations, and sentences on what is absent."""
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(result.facts)) is not None:
+    if (excites := excitation_table(result.metadata)) is not None:
         yield excites
     yield from result.left_out
-    yield from (f"{what}: {text}" for what, text in force_rows(result.facts))
-    yield from model_text(result.facts)
+    yield from (f"{what}: {text}" for what, text in force_rows(result.metadata))
+    yield from model_text(result.metadata)
 
 
 def measured_series(result: MeasuredHousingVibration) -> Table:

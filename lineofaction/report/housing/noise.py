@@ -52,9 +52,9 @@ _REGION_POINTS = 3
 
 
 def _sound_map(sound: RadiatedSound) -> Figure:
-    orders, (x, along) = sound.orders, row_axis(sound.speed, sound.facts)
+    orders, (x, along) = sound.orders, row_axis(sound.speed, sound.metadata)
     forces = "linear: stiffness varies with position, no loss of contact"
-    if of_run(sound.facts) is not None:
+    if of_run(sound.metadata) is not None:
         forces = "with the amplitudes of the run"
     return Figure(
         key="sound_map",
@@ -85,16 +85,16 @@ def _cells(orders: OrderPower, speed: FloatArray) -> HeatMap:
 
 
 def _level_over_speed(sound: RadiatedSound) -> Figure:
-    orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.facts)
+    orders, (x, speed) = sound.orders, row_axis(sound.speed, sound.metadata)
     level, total = orders.weighted_level, orders.total_weighted_level
-    loudest_orders = drawn_orders(sound.order, level.max(axis=1), MAX_ORDERS, sound.facts)
+    loudest_orders = drawn_orders(sound.order, level.max(axis=1), MAX_ORDERS, sound.metadata)
     floor = float(total.max()) - DEPTH
-    names = [f"order {order_label(sound.order[h], sound.facts)}" for h in loudest_orders]
+    names = [f"order {order_label(sound.order[h], sound.metadata)}" for h in loudest_orders]
     lines = (
         Line("total", speed, _above(total, floor), palette.INK, width=2.2),
         *category_lines(speed, names, _above(level[loudest_orders], floor)),
     )
-    if (run_sum := total_line(sound.speed, sound.facts)) is not None:
+    if (run_sum := total_line(sound.speed, sound.metadata)) is not None:
         lines += (Line("all of the run", run_sum[0], _above(run_sum[1], floor), palette.MUTED, width=1.4),)
     at = int(total.argmax())
     return Figure(
@@ -143,7 +143,7 @@ def _third_octaves(sound: RadiatedSound) -> Figure:
 
 
 def _bearing_levels(sound: RadiatedSound) -> Figure:
-    (x, speed), total = row_axis(sound.speed, sound.facts), sound.orders.total_weighted_level
+    (x, speed), total = row_axis(sound.speed, sound.metadata), sound.orders.total_weighted_level
     alone = np.stack([_total(sound, power) for power in sound.bearing_alone])
     floor = float(total.max()) - DEPTH
     maximum = np.argsort(-alone.max(axis=1), kind="stable")[:MAX_ORDERS]
@@ -183,7 +183,7 @@ def _panel_intensity(sound: RadiatedSound) -> Figure | None:
     minimum, largest = (number(end, 2) for end in (value.min(), value.max()))
     return Figure(
         key="sound_panels",
-        title=f"Sound intensity on the surface: {_where(points[0], sound.facts)}",
+        title=f"Sound intensity on the surface: {_where(points[0], sound.metadata)}",
         caption="Active intensity normal to the hull that the radiation model takes: openings are covered, "
         "fine details rounded off. Negative: takes power that other panels radiate.",
         alternative=f"The intensity is between {minimum} and {largest} mW/m².",
@@ -205,7 +205,7 @@ def _levels_table(sound: RadiatedSound, level: FloatArray, total: FloatArray) ->
         sound.order, level.argmax(axis=1), level, sound.frequency.T, strict=True
     ):
         speed = number(float(sound.speed[at]) / RPM, 5)
-        rows.append((order_label(order, sound.facts), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
+        rows.append((order_label(order, sound.metadata), f"{row[at]:.1f}", speed, number(hertz[at], 5)))
     head = ("order", "dB(A)", "speed, rpm", "frequency, Hz")
     return Table("Largest level of each order", head, tuple(rows))
 
@@ -220,7 +220,7 @@ def _above(level: FloatArray, floor: float) -> FloatArray:
 
 def _loudest_table(sound: RadiatedSound) -> Table:
     columns = {
-        "order": lambda point: order_label(point.order, sound.facts),
+        "order": lambda point: order_label(point.order, sound.metadata),
         "speed, rpm": lambda point: number(point.speed / RPM, 5),
         "frequency, Hz": lambda point: number(point.frequency, 5),
         "dB(A)": lambda point: f"{point.weighted_level:.1f}" + ("" if point.in_contact else " (flanks part)"),
@@ -235,9 +235,9 @@ def _loudest_table(sound: RadiatedSound) -> Table:
 
 
 def _sentences(sound: RadiatedSound) -> tuple[str, ...]:
-    """Say what radiates at the loudest point, and through what; nothing in silence."""
+    """Return sentences on the radiating parts at the loudest point and their paths; empty in silence."""
     return tuple(
-        f"{_where(point, sound.facts)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
+        f"{_where(point, sound.metadata)}: {point.weighted_level:.1f} dB(A) through mode {point.mode} of "
         f"{point.mode_housing} ({number(point.natural_frequency, 4)} Hz); bearing {point.bearing} alone "
         f"{point.bearing_level:.1f} dB(A); {_main_region(sound)}"
         for point in loudest(sound, 1)
@@ -255,9 +255,9 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
     where = f"at {number(float(sound.speed[at]) / RPM, 4)} rpm, all orders"
     if (floor := sound.orders.floor_level) is not None and (off := sound.orders.total_error) is not None:
         where += f", of it {floor[at]:.1f} dB(A) ± {engineering(float(off[at]), 2)} dB in those not listed"
-    if (band := sound.facts["band"]) is not None:
+    if (band := sound.metadata["band"]) is not None:
         where += f"; {ends(band['largest_total'])} over the ranges of guesses"
-        where += "".join(f"; {text}" for text in narrowest(sound.facts))
+        where += "".join(f"; {text}" for text in narrowest(sound.metadata))
     headlines = [Headline("sound power level", f"{total[at]:.1f} dB(A)", where)]
     if band is not None and sound.speed.size > 1:
         mean = band["mean_total"]
@@ -267,8 +267,8 @@ def _headlines(sound: RadiatedSound) -> tuple[Headline, ...]:
         Headline("loudest order", f"{point.weighted_level:.1f} dB(A)", text)
         for point, text in zip(points, _sentences(sound), strict=True)
     ]
-    if (pressure := sound.facts.get("pressure")) is not None:
-        headlines.append(_pressure_headline(pressure, sound.facts))
+    if (pressure := sound.metadata.get("pressure")) is not None:
+        headlines.append(_pressure_headline(pressure, sound.metadata))
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         first = f"from {number(parting[0], 4)} rpm on"
@@ -308,9 +308,9 @@ def _pressure_table(pressure: Json, metadata: Json) -> Table:
 
 def _model_tables(sound: RadiatedSound) -> Iterator[Table]:
     for housing in sound.housing:
-        compared = sound.facts["models"][housing]
+        compared = sound.metadata["models"][housing]
         if compared.get("predicted"):
-            order, speed = order_label(compared["order"], sound.facts), number(compared["speed"] / RPM, 4)
+            order, speed = order_label(compared["order"], sound.metadata), number(compared["speed"] / RPM, 4)
             rows = tuple(_model(name, compared) for name in compared["predicted"])
             title = f"Radiation models of {housing} at order {order}, {speed} rpm"
             yield Table(title, _MODEL_HEAD, rows)
@@ -338,18 +338,18 @@ def _region_name(region: Mapping[str, Any]) -> str:
 
 def _main_region(sound: RadiatedSound) -> str:
     """Say through which region most of the loudest point leaves."""
-    region = sound.facts["regions"][0][0]
+    region = sound.metadata["regions"][0][0]
     return f"{100.0 * region['share']:.0f} % leaves {_region_name(region)}"
 
 
 def _region_table(sound: RadiatedSound) -> Table:
     listed = [
         {"point": point, **region}
-        for point, regions in zip(loudest(sound, _REGION_POINTS), sound.facts["regions"], strict=False)
+        for point, regions in zip(loudest(sound, _REGION_POINTS), sound.metadata["regions"], strict=False)
         for region in regions
     ]
     columns = {
-        "order": lambda region: order_label(region["point"].order, sound.facts),
+        "order": lambda region: order_label(region["point"].order, sound.metadata),
         "speed, rpm": lambda region: number(region["point"].speed / RPM, 5),
         "region": _region_name,
         "share, %": lambda region: f"{100.0 * region['share']:.1f}",
@@ -364,25 +364,25 @@ def _region_table(sound: RadiatedSound) -> Table:
 def _figures(sound: RadiatedSound) -> tuple[Figure, ...]:
     draws = (_sound_map, _level_over_speed, _third_octaves, _bearing_levels, _panel_intensity)
     figures = tuple(figure for draw in draws if (figure := draw(sound)) is not None)
-    figures += excitation_figures(sound.facts)
-    if sound.facts.get("over_time") is None:
+    figures += excitation_figures(sound.metadata)
+    if sound.metadata.get("over_time") is None:
         return figures
-    return (*figures, third_octaves_over_time(sound.facts))
+    return (*figures, third_octaves_over_time(sound.metadata))
 
 
 def _limits(sound: RadiatedSound) -> Iterator[tuple[str, str]]:
-    yield from force_rows(sound.facts)
+    yield from force_rows(sound.metadata)
     for name in sound.housing:
         yield from _radiation_limits(sound, name)
     parting = sound.speed[~sound.in_contact] / RPM
     if parting.size:
         where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
-        what = "see loa steady" if of_run(sound.facts) is None else "their impacts are in the run's total"
+        what = "see loa steady" if of_run(sound.metadata) is None else "their impacts are in the run's total"
         yield "flanks lift off", f"at {parting.size} of {sound.speed.size} speeds, {where}: {what}"
 
 
 def _radiation_limits(sound: RadiatedSound, housing: str) -> Iterator[tuple[str, str]]:
-    about, compared = sound.facts["radiation"][housing], sound.facts["models"][housing]
+    about, compared = sound.metadata["radiation"][housing], sound.metadata["models"][housing]
     resolved, valid, highest = about["resolved_frequency"], about["valid_frequency"], sound.frequency.max()
     yield (
         housing,
@@ -415,27 +415,27 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield _loudest_table(sound)
     yield _region_table(sound)
     yield from _sentences(sound)
-    if (excites := excitation_table(sound.facts)) is not None:
+    if (excites := excitation_table(sound.metadata)) is not None:
         yield excites
     yield from (f"{what}: {text}" for what, text in _limits(sound))
     yield from _model_tables(sound)
-    yield from uncertainty_tables(sound.facts)
-    yield from narrowest(sound.facts)
-    if (pressure := sound.facts.get("pressure")) is not None:
-        yield _pressure_table(pressure, sound.facts)
-    left_out = sound.facts["sensitivities_left_out"]
+    yield from uncertainty_tables(sound.metadata)
+    yield from narrowest(sound.metadata)
+    if (pressure := sound.metadata.get("pressure")) is not None:
+        yield _pressure_table(pressure, sound.metadata)
+    left_out = sound.metadata["sensitivities_left_out"]
     yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
-    yield from model_text(sound.facts)
+    yield from model_text(sound.metadata)
 
 
 def _page(sound: RadiatedSound) -> Page:
-    page = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.facts)
-    tables = tuple(uncertainty_tables(sound.facts))
-    if missing := sound.facts["sensitivities_left_out"]:
+    page = dynamics_page("Sound power", _figures(sound), _headlines(sound), sound.metadata)
+    tables = tuple(uncertainty_tables(sound.metadata))
+    if missing := sound.metadata["sensitivities_left_out"]:
         tables += (Table("No sensitivity", ("to", "because"), tuple(missing.items())),)
     bands = (Section("Bands, and what 1 dB costs", tables=tables),) if tables else ()
-    if (pressure := sound.facts.get("pressure")) is not None:
-        pressure_section = Section("Sound pressure", tables=(_pressure_table(pressure, sound.facts),))
+    if (pressure := sound.metadata.get("pressure")) is not None:
+        pressure_section = Section("Sound pressure", tables=(_pressure_table(pressure, sound.metadata),))
         bands = (pressure_section, *bands)
     rests = Table("Radiation models, and what the levels do not hold", ("what", "how"), tuple(_limits(sound)))
     accuracy = Section("Accuracy of the levels", tables=(rests, *_model_tables(sound)), part=Part.ACCURACY)

@@ -1,4 +1,4 @@
-"""Bands of sound levels over what is guessed, what narrows them, and what 1 dB costs."""
+"""Bands of sound levels by guessed figures, measures that narrow them, and changes for 1 dB."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lineofaction.report.drawing.marks import order_label
 
 MAX_ORDERS, MAX_CAUSES = 6, 3
 MIN_NARROWED = 0.1
-"""dB."""
+"""Least amount in dB by which a measure must narrow a band to be advised."""
 
 NARROWER = {
     "housing_damping": "state the damping of the housing (loss_factor, or measured modal_damping)",
@@ -22,7 +22,7 @@ NARROWER = {
     "speed_steps": "refine the speeds about the loudest",
     "radiation_model": "correct more lines by boundary elements",
 }
-"""What a user does about a contribution to a band."""
+"""Measure of the user that narrows a contribution to a band, by contribution."""
 
 
 def uncertainty_tables(metadata: Json) -> Iterator[Table]:
@@ -56,7 +56,7 @@ def _causes(level: Json) -> Iterator[str]:
 
 
 def narrowest(metadata: Json) -> Iterator[str]:
-    """Say what would narrow the band of the largest level most."""
+    """Yield the measure that narrows the band of the largest level most, if any does."""
     level = (metadata["band"] or {}).get("largest_total", {})
     for name, left in level.get("widths_without_db", {}).items():
         if name in NARROWER and level["width_db"] - left >= MIN_NARROWED:

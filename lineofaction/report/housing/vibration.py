@@ -49,7 +49,7 @@ MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
 def _where(analysis: VibrationAnalysis) -> str:
     vibration, s, h = analysis.vibration, analysis.at_speed, analysis.at_order
     speed, hertz = number(float(vibration.speed[s]) / RPM, 4), number(vibration.frequency[s, h], 4)
-    return f"order {order_label(vibration.order[h], analysis.facts)} at {speed} rpm, {hertz} Hz"
+    return f"order {order_label(vibration.order[h], analysis.metadata)} at {speed} rpm, {hertz} Hz"
 
 
 def _largest_table(result: HousingVibrationResult) -> Table:
@@ -64,7 +64,7 @@ def _largest_table(result: HousingVibrationResult) -> Table:
         hertz = float(vibration.frequency[s, h])
         near = result.natural_frequency[int(np.argmin(np.abs(result.natural_frequency - hertz)))]
         speed = number(float(vibration.speed[s]) / RPM, 5)
-        order = order_label(vibration.order[h], result.analysis.facts)
+        order = order_label(vibration.order[h], result.analysis.metadata)
         size = number(float(rms[s, h]) / MM_PER_S, 4), number(float(vibration_level(rms[s, h])), 4)
         valid = "yes" if vibration.valid[s, h] else "no"
         rows.append((name, order, speed, number(hertz, 5), number(near, 5), *size, valid))
@@ -123,11 +123,11 @@ def _velocity_figure(result: HousingVibrationResult) -> Figure:
 def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> Panel:
     """Draw one velocity (S, H) in mm/s by its largest orders."""
     vibration = analysis.vibration
-    x, speed = row_axis(vibration.speed, analysis.facts)
+    x, speed = row_axis(vibration.speed, analysis.metadata)
     lines = []
-    for k, h in enumerate(drawn_orders(vibration.order, rms.max(axis=0), MAX_ORDERS, analysis.facts)):
+    for k, h in enumerate(drawn_orders(vibration.order, rms.max(axis=0), MAX_ORDERS, analysis.metadata)):
         valid, color = vibration.valid[:, h], palette.category(k)
-        order = f"order {order_label(vibration.order[h], analysis.facts)}"
+        order = f"order {order_label(vibration.order[h], analysis.metadata)}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):
             onward = ~valid | np.append(~valid[1:], False)
@@ -220,7 +220,7 @@ def _alternative(result: HousingVibrationResult) -> str:
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     text = f"Shown in detail: {_where(analysis)}."
     if beyond.size:
-        orders = ", ".join(order_label(order, analysis.facts) for order in beyond[:MAX_ORDERS])
+        orders = ", ".join(order_label(order, analysis.metadata) for order in beyond[:MAX_ORDERS])
         text += f" Orders {orders} reach above what the modes kept carry."
     return text
 
@@ -229,9 +229,9 @@ def _page(result: HousingVibrationResult) -> Page:
     shape = _shape_figure(result)
     first, *others = (_velocity_figure(result), _contribution_figure(result), _transfer_figure(result))
     shapes = () if shape is None else (shape,)
-    drawn = (first, *shapes, *others, *excitation_figures(result.analysis.facts))
-    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.facts)
-    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.facts))
+    drawn = (first, *shapes, *others, *excitation_figures(result.analysis.metadata))
+    page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.metadata)
+    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.metadata))
     accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 
@@ -262,15 +262,15 @@ def _text(result: HousingVibrationResult) -> Iterator[Table | str]:
     analysis, vibration = result.analysis, result.analysis.vibration
     yield _largest_table(result)
     yield _contribution_table(result)
-    if (excites := excitation_table(analysis.facts)) is not None:
+    if (excites := excitation_table(analysis.metadata)) is not None:
         yield excites
     beyond = vibration.order[~np.all(vibration.valid, axis=0)]
     if beyond.size:
-        orders = ", ".join(order_label(order, analysis.facts) for order in beyond)
+        orders = ", ".join(order_label(order, analysis.metadata) for order in beyond)
         limit = number(vibration.highest_valid_frequency, 4)
         yield f"orders {orders} go beyond {limit} Hz, 0.7 of the highest mode kept: keep more modes"
-    yield from (f"{what}: {text}" for what, text in force_rows(analysis.facts))
-    yield from model_text(analysis.facts)
+    yield from (f"{what}: {text}" for what, text in force_rows(analysis.metadata))
+    yield from model_text(analysis.metadata)
 
 
 def _first_figure(result: HousingVibrationResult) -> Figure:
@@ -280,7 +280,7 @@ def _first_figure(result: HousingVibrationResult) -> Figure:
 def _by_kind(
     modeled: Callable[[HousingVibrationResult], View], measured: Callable[[MeasuredHousingVibration], View]
 ) -> Callable[[Result], View]:
-    """Return what shows a result by the kind of its housing."""
+    """Return a function that shows a result by the kind of its housing."""
 
     def rendered(result: Result) -> View:
         return measured(result) if isinstance(result, MeasuredHousingVibration) else modeled(result)

@@ -1,1 +1,1 @@
-"""What a report shows of modes, forced responses and steady states."""
+"""Figures and tables of modes, forced responses and steady states in a report."""

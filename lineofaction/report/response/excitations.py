@@ -1,4 +1,4 @@
-"""What excites a linear response, by mesh and harmonic, each amplitude with its error."""
+"""Excitations of a linear response, by mesh and harmonic, each amplitude with its error."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table,
 from lineofaction.report.drawing.marks import order_label
 
 MAX_HARMONIC = 6
-"""Harmonics of each mesh that are listed and drawn; orders beside them are listed."""
+"""Highest harmonic of each mesh that is listed and drawn; orders between the harmonics are listed only."""
 _WIDTH = 0.8
-"""Of all bars of a harmonic together."""
+"""Width of all bars of a harmonic together."""
 
 
 class _Quantity(NamedTuple):
@@ -62,7 +62,7 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
 
 
 def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
-    """Say how much of a long table's excitation a response does not list; nothing where it lists all."""
+    """Return rows on the share of a long table's excitation that a response does not list; else empty."""
     if not (left_out := metadata.get("lines_left_out")):
         return ()
     share = engineering(100.0 * left_out["force"], 2)

@@ -1,4 +1,4 @@
-"""Natural modes of a run: their lines over speed, their table, what moves in them."""
+"""Natural modes of a run: their lines over speed, their table, and their moving parts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WIDTH = 0.62
 
 @dataclass(frozen=True)
 class ModeLine:
-    """A mode over the blocks of a diagram: its name in the legend, color, frequency (B,), Hz, what moves.
+    """A mode over the blocks of a diagram: legend, color, frequency (B,), Hz, and moving parts.
 
     `shares` are those of the parts in its kinetic energy; empty for runs that do not hold them.
     """

@@ -67,7 +67,7 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
 
 def _campbell(modes: ModalAnalysis) -> Figure:
     speed = modes.speed / RPM
-    reach = float(modes.facts["orders"]) * float(np.max(modes.mesh_frequency, initial=0.0))
+    reach = float(modes.metadata["orders"]) * float(np.max(modes.mesh_frequency, initial=0.0))
     top = min(HEADROOM * float(np.nanmax(modes.frequency)), max(HEADROOM * reach, MIN_TOP))
     lines = [*_orders(modes, speed, top), *_modes(modes, speed)]
     if modes.critical_speed.size:
@@ -75,7 +75,7 @@ def _campbell(modes: ModalAnalysis) -> Figure:
         lines.append(
             Line("critical speeds", there, modes.critical_frequency, palette.INK, width=0.0, markers=True)
         )
-    x = Axis.over(f"speed of {modes.facts['leading_shaft']}, rpm", speed)
+    x = Axis.over(f"speed of {modes.metadata['leading_shaft']}, rpm", speed)
     y = Axis("frequency, Hz", limits=(0.0, top))
     return Figure(
         key="modal_campbell",
@@ -91,7 +91,7 @@ def _campbell(modes: ModalAnalysis) -> Figure:
 def _orders(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterator[Line]:
     """Multiples of every mesh frequency, each once."""
     for mesh in _different(modes):
-        for order in range(1, int(modes.facts["orders"]) + 1):
+        for order in range(1, int(modes.metadata["orders"]) + 1):
             height = order * modes.mesh_frequency[mesh]
             yield Line(
                 "mesh orders", speed, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
@@ -110,7 +110,7 @@ def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterato
     several, width = len(_different(modes)) > 1, float(np.ptp(speed))
     for mesh in _different(modes):
         rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
-        for order in range(1, int(modes.facts["orders"]) + 1):
+        for order in range(1, int(modes.metadata["orders"]) + 1):
             end = min(float(speed[-1]), 0.97 * top / (order * rate))
             if end <= speed[0] or last - end < ROOM * width:
                 continue
@@ -256,7 +256,7 @@ def _least_damped(modes: ModalAnalysis) -> Headline:
 
 
 def _text(modes: ModalAnalysis) -> Iterator[Table | str]:
-    start = modes.facts["equilibrium"]
+    start = modes.metadata["equilibrium"]
     forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
     yield f"static equilibrium {start['status'].lower()}, {leftover(start['residual'])} N left; {forces}"
     yield _modes_table(modes, PRINTED_MODES)

@@ -28,7 +28,7 @@ from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
 
 MIN_SHARE = 1e-3
-"""%, of what is listed."""
+"""Least share that is listed."""
 
 MAX_ORDERS, MAX_PEAKS, PRINTED_PEAKS = 6, 15, 4
 """Peaks of a quantity on the page and on a terminal."""
@@ -81,19 +81,19 @@ def _power_figure(response: ForcedResponse) -> Figure:
 
 
 def _speed_axis(response: ForcedResponse) -> Axis:
-    return Axis.over(f"speed of {response.facts['leading_shaft']}, rpm", response.speed / RPM)
+    return Axis.over(f"speed of {response.metadata['leading_shaft']}, rpm", response.speed / RPM)
 
 
 def _total(response: ForcedResponse) -> FloatArray:
-    """Return what all parts lose, (S,) W."""
+    """Return the power loss of all parts, (S,) W."""
     return np.asarray(np.sum(response.power.loss, axis=(0, 2)))
 
 
 def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
     size = np.max(quantities[1 if response.mesh else 0][1], axis=0) if quantities else np.empty(0)
-    drawn = drawn_orders(response.order[: size.size], size, MAX_ORDERS, response.facts)
-    names, panels = [f"order {order_label(response.order[h], response.facts)}" for h in drawn], []
+    drawn = drawn_orders(response.order[: size.size], size, MAX_ORDERS, response.metadata)
+    names, panels = [f"order {order_label(response.order[h], response.metadata)}" for h in drawn], []
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, drawn].T)))
     if response.mesh:
@@ -114,7 +114,7 @@ def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
 
 
 def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return what is shown by name, (S, H) each."""
+    """Return the shown quantities by name, (S, H) each."""
     quantities = []
     if response.mesh:
         name = f" of {response.mesh[mesh]}" if len(response.mesh) > 1 else ""
@@ -124,7 +124,7 @@ def _quantities(response: ForcedResponse, mesh: int) -> list[tuple[str, FloatArr
         ]
     force = _bearing_force(response)
     if force.size:
-        name = response.facts.get("complaint", {}).get("bearing")
+        name = response.metadata.get("complaint", {}).get("bearing")
         bearing = int(np.argmax(np.max(force, axis=(1, 2)))) if name is None else response.bearing.index(name)
         quantities.append((f"force on {response.bearing[bearing]}, N", force[bearing]))
     return quantities
@@ -144,7 +144,7 @@ def _peak_table(response: ForcedResponse, maximum: int = MAX_PEAKS) -> Table:
     ]
     columns = {
         "force of": lambda peak: f"{peak.quantity.removesuffix('_force')} {peak.name}",
-        "order": lambda peak: order_label(peak.order, response.facts),
+        "order": lambda peak: order_label(peak.order, response.metadata),
         "speed, rpm": lambda peak: number(peak.speed / RPM, 5),
         "frequency, Hz": lambda peak: number(peak.frequency, 5),
         "nearest mode, Hz": lambda peak: number(peak.natural_frequency, 5),
@@ -185,18 +185,18 @@ def _largest(what: str, names: Sequence[str], size: FloatArray, response: Forced
 
 
 def _at(response: ForcedResponse, speed: int, order: int) -> str:
-    label = order_label(response.order[order], response.facts)
+    label = order_label(response.order[order], response.metadata)
     return f"order {label} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
 
 
 def _figures(response: ForcedResponse) -> tuple[Figure, ...]:
-    figures = (_response_figure(response), *excitation_figures(response.facts))
+    figures = (_response_figure(response), *excitation_figures(response.metadata))
     return (*figures, _power_figure(response)) if _loses_power(response) else figures
 
 
 def _text(response: ForcedResponse) -> Iterator[Table | str]:
     yield _peak_table(response, PRINTED_PEAKS)
-    if (excites := excitation_table(response.facts)) is not None:
+    if (excites := excitation_table(response.metadata)) is not None:
         yield excites
     parting = response.speed[~response.in_contact] / RPM
     if parting.size:
@@ -207,7 +207,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield from (f"{what}: {text}" for what, text in orders_left_out(response.facts))
+    yield from (f"{what}: {text}" for what, text in orders_left_out(response.metadata))
     yield from _left_out_text(response)
     if _loses_power(response):
         yield _power_table(response)
@@ -216,7 +216,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
 
 
 def _left_out_text(response: ForcedResponse) -> Iterator[str]:
-    """Say what the orders that are not listed make of the bearing force that is largest in all orders."""
+    """Yield a sentence on unlisted orders: their part in the largest bearing force of all orders."""
     if response.bearing_floor.size:
         square, floor = response.bearing_mean_square, response.bearing_floor
         at = np.unravel_index(int(np.argmax(square)), square.shape)

@@ -40,7 +40,7 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
     """Draw one mesh: stable motions of the branch solid, unstable ones dashed, both sweeps as points."""
     swept = states.speed[states.curve != BRANCH] / RPM
     ends = (float(swept.min()), float(swept.max()))
-    x = Axis(f"speed of {states.facts['leading_shaft']}, rpm", limits=ends)
+    x = Axis(f"speed of {states.metadata['leading_shaft']}, rpm", limits=ends)
     quantities = _quantities(states, mesh)
     marks = tuple(Reference(f"fold {number(speed, 5)}", speed) for speed in _folds(states, ends))
     panels = tuple(
@@ -58,7 +58,7 @@ def _steady_figure(states: SteadyStates, mesh: int = 0) -> Figure:
 
 
 def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]:
-    """Return what is shown by name, (P,) each; without meshes the bearing that feels most."""
+    """Return the shown quantities by name, (P,) each; without meshes the bearing with the largest force."""
     if not states.mesh:
         if not states.bearing:
             return []

@@ -1,1 +1,1 @@
-"""What a report shows of runs."""
+"""Figures and tables of runs in a report."""

@@ -66,7 +66,7 @@ def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: f
 
 
 def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
-    """Return how many base pitches a mesh passes; 0 of a run without meshes."""
+    """Return the number of base pitches that a mesh passes; 0: the run has no meshes."""
     return float(np.ptp(np.unwrap(run.position[mesh], period=1.0))) if run.mesh else 0.0
 
 
@@ -301,7 +301,7 @@ def has_orders(run: RunResult, mesh: int = 0) -> bool:
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:
-    """Return where what is heard of a run is loudest; None of a run without orders.
+    """Return the time at which the signal of a run is loudest; None: the run has no orders.
 
     Raises `BadInput`: it does not vary.
     """

@@ -49,7 +49,7 @@ _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
 }
-"""Sources of error, and the unit of what they do to transmission errors."""
+"""Name of each source of error, and unit of the error of transmission errors by it."""
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:
@@ -258,7 +258,7 @@ def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str
 
 
 def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
-    """Say whether the step error meets its tolerance, and how far traces and levels are off in chaos."""
+    """Return rows on the step error and its tolerance, and on the error of traces and levels in chaos."""
     rows = []
     if "met" in steps:
         met = "met" if steps["met"] else "not met"

@@ -30,15 +30,16 @@ from lineofaction.report.run.view import (
 from model_studies.record_file import read_record
 
 PAGE_RATE, PAGE_BYTES, SAMPLE_BYTES = 24_000, 2_000_000, 4
-"""Hz of a sound in a page if it passes what the run holds; bytes of the sounds of a plot; of a sample."""
+"""Sampling rate, Hz, of a sound in a page whose run holds higher frequencies; most bytes of the sounds of a
+plot; bytes of a sample."""
 POINTS = 200  # of the way along an axis
 LONGEST = 300.0
-"""s of a run that the service makes a file of: 58 MB."""
+"""Longest run in s of which the service makes a sound file: 58 MB."""
 
 
 @dataclass(frozen=True)
 class RunSignal:
-    """A run to listen to: its name, the run, and what is shown of it."""
+    """A run as a sound: its name, the run, and the shown signal."""
 
     name: str
     run: RunResult
@@ -50,7 +51,7 @@ class RunSignal:
 
     @property
     def query(self) -> dict[str, str]:
-        """Return what names the signal to the service."""
+        """Return the query by which the service knows the signal."""
         name = next(key for key, value in QUANTITIES.items() if value is self.signal.quantity)
         part: dict[str, str] = {self.signal.quantity.part: self.signal.part}
         along = {"direction": self.signal.direction} if self.signal.direction else {}
@@ -107,7 +108,7 @@ def _passed(source: RunSignal) -> float:
 
 
 def _track(source: RunSignal, axis: Axis) -> Track:
-    """Return where a run is on the axis as it plays."""
+    """Return the track of a run: its place on the axis as it plays."""
     run = source.run
     time = np.linspace(float(run.time[0]), float(run.time[-1]), POINTS)
     along = time
@@ -133,7 +134,7 @@ def stored_sound(inputs: Json) -> Json:
 
 
 def _of_runs(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recording]:
-    """Return what is shown of runs, all as of the first."""
+    """Return recordings of the runs' signals, all with the view of the first."""
     runs = [RunResult.from_netcdf(file) for file in files]
     for run in runs:
         _require_short(float(np.ptp(run.time)))

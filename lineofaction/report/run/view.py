@@ -1,4 +1,4 @@
-"""What of a run is shown: its view, its signal along one direction, and its series."""
+"""View of a run in a report: the chosen series, its direction, and the scale of amplitudes."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
 MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
-"""Of an amplitude."""
+"""Factors from a peak amplitude to the amplitude of each scale."""
 
 PITCHES = 3
 STEADY = 0.1
-"""Greatest change of speed over a run, of the highest, at which it has one speed alone."""
+"""Largest change of speed over a run, relative to the highest speed, at which the run counts as steady."""
 ROUNDING = 1e-12  # of the largest value: what varies less is constant
 
 
@@ -59,7 +59,7 @@ QUANTITIES = {
 
 @dataclass(frozen=True)
 class RunView:
-    """What a reader wants to see of a run; what is left out, the run decides.
+    """Choices of a reader about the view of a run; the run supplies the fields that are left out.
 
     - `quantity`, one of `QUANTITIES`: the force on bearings, of a run without them that of the mesh
     - `bearing`: where the quantity varies most
@@ -82,7 +82,7 @@ class RunView:
 
 @dataclass(frozen=True)
 class Signal:
-    """What is shown of one run: a series, the row of its first axis, and how amplitudes are written.
+    """A series of one run as shown: the row of its first axis, and the scale of amplitudes.
 
     `part` names the bearing or the mesh, `mesh` is that whose orders are shown, `orders` are those named.
     """
@@ -98,7 +98,7 @@ class Signal:
 
     @property
     def name(self) -> str:
-        """What and where, and along which direction if that is named."""
+        """The quantity with its bearing or mesh, and the direction if one is named."""
         where = f"bearing {self.part}" if self.quantity.part == "bearing" else self.part
         along = {"": "", PRINCIPAL: " along its principal direction"}.get(
             self.direction, f" along {self.direction}"
@@ -211,7 +211,7 @@ def decibels(values: FloatArray, floor: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class Travel:
-    """How the driving gear of a mesh moves over a run: speed (n,) without sign, position (n,) not wrapped.
+    """Motion of a mesh's driving gear over a run: speed (n,) without sign, position (n,) not wrapped.
 
     Positions are in base pitches, without gears of the shaft in turns.
     """
@@ -250,7 +250,7 @@ def validity(valid_order: int, top: float, of: str = "mesh") -> str:
 
 
 def counted_by(run: RunResult) -> str:
-    """Say what orders of a run are multiples of: "mesh", or "shaft" where it has none."""
+    """Return the base of a run's orders: "mesh", or "shaft" if the run has no mesh."""
     return "mesh" if run.mesh else "shaft"
 
 
@@ -290,7 +290,7 @@ def along_direction(run: RunResult, signal: Signal) -> RunResult:
 
 
 def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:
-    """Return what is shown of a run as a recording in the signal's unit; of bearings along one direction.
+    """Return the signal of a run as a recording in its unit, for bearings along one direction.
 
     Raises `BadInput`: it does not vary, or the run is shorter than 4 samples.
     """

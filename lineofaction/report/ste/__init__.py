@@ -1,1 +1,1 @@
-"""What a report shows of STE tables."""
+"""Figures and tables of STE tables in a report."""

@@ -34,7 +34,7 @@ MAX_LINES = 5  # of loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
-"""By load: figures of one page share them."""
+"""Curves of a database by load index: figures of one page share them."""
 _EQUAL = 1e-6
 MAX_CURVES = 8
 _MIN_SPACING = 1.1  # of what would let two neighbors touch
@@ -42,7 +42,8 @@ _MIN = 0.15  # of the largest ripple, between neighbors that would not touch any
 _ROOM = 0.04  # of the height
 _TONES = 3
 _MIN_ROOM, _MAX_ROOM = 0.08, 0.45
-"""Of the ripple, above and below it: for its error band, and no more, so that it fills half of the height."""
+"""Least and largest room above and below the ripple, over the ripple. The error band fills the room up to the
+largest, so that the ripple takes at least half of the height."""
 _FLAT = 1e-3  # µm, the height of a curve without any ripple
 
 
@@ -64,7 +65,7 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
 
 
 def drawn_pitches(database: SteDatabase) -> int:
-    """Return how many base pitches plots show: two, or a longer period up to its first 40."""
+    """Return the number of base pitches in plots: two, or a longer period up to its first 40."""
     return 2 if database.period == 1 else min(database.period, MAX_PITCHES)
 
 
@@ -181,7 +182,7 @@ def headline_load(database: SteDatabase, force: float | None = None) -> int:
 
 
 def pair_count_text(database: SteDatabase, load: int) -> str:
-    """Say how many tooth pairs carry one load of the aligned pair: "2 to 4 tooth pairs carry the load"."""
+    """Return text on the tooth pairs that carry one load of the aligned pair, as "2 to 4 tooth pairs"."""
     low, high = pair_range(database, load)
     if low == high:
         return f"{low} tooth {'pair carries' if low == 1 else 'pairs carry'} the load at every position"
@@ -199,7 +200,7 @@ def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
     """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
     counts = _counts(database, load)
     low, high = counts.min(), counts.max()
-    if low == high or database.facts.base_helix_angle != 0.0:
+    if low == high or database.geometry.base_helix_angle != 0.0:
         return False
     m, d = aligned_index(database)
     ste = database.static_transmission_error[:, load, m, d]
@@ -305,7 +306,7 @@ def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, 
 
 
 def _bands(ripple: Panel) -> str:
-    """Say what the bands are, where there are any, and which are cut."""
+    """Return a sentence on the error bands, if any, and on those that are cut."""
     if not any(line.has_band for line in ripple.lines):
         return ""
     said = "Bands: half the error of peak-to-peak on either side"

@@ -84,7 +84,7 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 
 
 def _ripple_text(curves: dict[str, Curve]) -> str:
-    """Say where, by the names of the curves, the ripple is least and largest, and whether that is shown."""
+    """Return a sentence on the least and the largest ripple by the names of the curves."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
     minimum, maximum = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
     where = {name: f"{um(e.value, 3)} µm {name}" for name, e in ripple.items()}
@@ -106,7 +106,7 @@ def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
 
 @dataclass(frozen=True)
 class _Deviation:
-    """One axis of more than one value: how it is named, its values, and the curves (n, F) there."""
+    """An axis with more than one value: its name, its values, and the curves (n, F) at these values."""
 
     name: str
     axis: Axis
@@ -187,7 +187,7 @@ def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Tab
 def has_face_load(database: SteDatabase) -> bool:
     """Whether the load moves along the face: a table in three dimensions of a helical or misaligned pair."""
     moves = np.nanmax(database.face_centroid) - np.nanmin(database.face_centroid)
-    return bool(moves > 1e-6 * database.facts.face_width)
+    return bool(moves > 1e-6 * database.geometry.face_width)
 
 
 def face_load(database: SteDatabase) -> Figure:
@@ -196,7 +196,7 @@ def face_load(database: SteDatabase) -> Figure:
     skews = database.requested_rows(MISALIGNMENT)
     centroid = 1e3 * database.face_centroid[:, load, skews, d]
     pressure = 1e-6 * database.max_pressure[:, load, skews, d]
-    label, oblique = load_labels(database)[load], database.facts.base_helix_angle
+    label, oblique = load_labels(database)[load], database.geometry.base_helix_angle
     waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
     return Figure(
         key="face_load",

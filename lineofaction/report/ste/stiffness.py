@@ -1,4 +1,4 @@
-"""Mesh stiffness, load sharing, and what yields: parts of the mean transmission error."""
+"""Mesh stiffness, load sharing, and deflections by part: shares of the mean transmission error."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
 def secant_stiffness_curves(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
     """Return the positions shown (n,) and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
     position, values = drawn_ste(database)
-    geometry = database.facts
+    geometry = database.geometry
     force = database.force * math.cos(geometry.base_helix_angle)
     return position, force / (values * geometry.face_width)
 
@@ -135,7 +135,7 @@ def load_sharing(database: SteDatabase) -> Figure:
 
 
 def _truncation_text(database: SteDatabase) -> str:
-    """Say where a period is longer than what is drawn."""
+    """Return a sentence if a period is longer than its plot."""
     pitches, period = drawn_pitches(database), database.period
     return f" Shown are the first {pitches} of {period} base pitches." if pitches < period else ""
 

@@ -99,7 +99,7 @@ def _finding(loads: ToothLoads) -> str:
 
 
 def _derived(database: SteDatabase, load: int) -> str:
-    """Say what derivatives may change of the forces, where base pitches follow from them."""
+    """Return a sentence on the error of forces by derivatives, if base pitches follow from them."""
     share_error = database.metadata.receipt.get("cycle", {}).get("share_error")
     if share_error is None:
         return ""

@@ -53,7 +53,7 @@ def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDat
     before, after = (scene.databases["mesh"] for scene in (first, again))
     for name in before.stored:
         np.testing.assert_array_equal(getattr(before, name), getattr(after, name), err_msg=name)
-    assert (before.facts, before.metadata) == (after.facts, after.metadata)
+    assert (before.geometry, before.metadata) == (after.geometry, after.metadata)
 
 
 def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypatch) -> None:

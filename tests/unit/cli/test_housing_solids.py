@@ -304,7 +304,7 @@ def test_a_damaged_content_is_refused_at_the_request(folder: Path) -> None:
 def tabled_facts(folder: Path):
     from fe_contact.ste import SteDatabase  # noqa: PLC0415
 
-    return SteDatabase.from_netcdf(folder / "mesh.nc").facts
+    return SteDatabase.from_netcdf(folder / "mesh.nc").geometry
 
 
 STUDIES: dict[str, tuple[str, ...]] = {

@@ -251,7 +251,7 @@ def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:
         assert result.exit_code == 0, result.stderr
         assert "What 1 dB costs" in result.stdout
     assert "What 1 dB costs" in report.read_text("utf-8")
-    rows = RadiatedSound.from_netcdf(file).facts["sensitivities"]
+    rows = RadiatedSound.from_netcdf(file).metadata["sensitivities"]
     expected = {"housing_damping", "housing_frequency", "bearing_stiffness", "mesh_damping"}
     assert {row["figure"] for row in rows} == expected
     for row in rows:
@@ -266,12 +266,12 @@ def test_what_one_decibel_costs_is_ranked(scene: Path, tmp_path: Path) -> None:
 def quiet_above() -> RadiatedSound:
     power = np.array(sound().power)
     power[-1] *= 1e-12
-    return replace(sound(), power=power, facts=sound().facts | {"leading_shaft": "input"})
+    return replace(sound(), power=power, metadata=sound().metadata | {"leading_shaft": "input"})
 
 
 def shade() -> HeatMap:
     sound = quiet_above()
-    _, along = row_axis(sound.speed, sound.facts)
+    _, along = row_axis(sound.speed, sound.metadata)
     return _cells(sound.orders, along)
 
 

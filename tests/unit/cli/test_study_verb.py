@@ -25,7 +25,7 @@ from dynamics.results import RunResult
 from dynamics.simulation import simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.cli.analyze import analyzed
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert.case import gear_pair
@@ -329,8 +329,9 @@ def test_deviations_of_a_case_with_axes_are_refused(written: SceneInput) -> None
 def test_responses_may_name_what_a_scene_has_with_all_its_planets() -> None:
     inputs = workbench.read(EXAMPLES / "planetary_scene.toml")
     assert isinstance(inputs, SceneInput)
-    facts = {mesh.name: PairFacts.of(gear_pair(mesh.case)) for _, mesh in inputs.with_database if mesh.case}
-    whole = check_scene(inputs, facts)
+    meshes = [mesh for _, mesh in inputs.with_database if mesh.case]
+    geometry = {mesh.name: PairGeometry.of(gear_pair(mesh.case)) for mesh in meshes}
+    whole = check_scene(inputs, geometry)
     parts = (*whole.ground_bearings, *whole.planet_bearings)
     named = [mesh.name for mesh in whole.meshes], [part.name for part in parts]
     assert names_with_planets(inputs) == named

@@ -90,7 +90,7 @@ def test_errors_of_dynamics_count_housings_as_the_file_does(tmp_path: Path) -> N
     scene, _ = scene_of(measured_scene(tmp_path))
     same = {"bushings": ["left"], "stiffness_matrix": MATRIX}
     two = tuple(HousingInput.model_validate(same | {"name": name}) for name in "ab")
-    facts = {"mesh": small_table().facts}
+    facts = {"mesh": small_table().geometry}
     with pytest.raises(BadInput, match=r"housings\[2\]\.bushings\[0\].*in one housing only"):
         check_scene(scene.model_copy(update={"housings": (*scene.housings, *two)}), facts)
     with pytest.raises(InputError, match=r"^meshes\[0\]"), numbered_as_written(scene.housings):
@@ -183,7 +183,7 @@ def test_a_file_that_cannot_be_used_is_named_by_the_field_of_the_scene(name: str
     scene["housings"] = [housing(tmp_path) | change(tmp_path)]
     inputs = validated(SceneInput, scene)
     with pytest.raises(BadInput, match=rf"^housings\[0\]\.{message}"):
-        check_scene(inputs, {"mesh": small_table().facts})
+        check_scene(inputs, {"mesh": small_table().geometry})
         read_responses(inputs)
 
 

@@ -14,7 +14,7 @@ from changed_scenes import By, changed
 from bounds import engineering
 from dynamics.plausibility import CHECKS as SCENE_CHECKS
 from fe_contact.plausibility import CHECKS as PAIR_CHECKS
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.checked_case import CheckedCase, check_case
 from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings
@@ -216,8 +216,9 @@ def warnings_of(content: dict[str, Any]) -> list[dict[str, Any]]:
 def warnings_of_scene(content: dict[str, Any]) -> list[dict[str, Any]]:
     """Return the warnings of a scene, by the cases of its meshes: no table is computed."""
     scene = validated(SceneInput, content)
-    facts = {mesh.name: PairFacts.of(gear_pair(mesh.case)) for mesh in scene.meshes if mesh.case is not None}
-    return scene_warnings(scene, check_scene(scene, facts))
+    meshes = [mesh for mesh in scene.meshes if mesh.case is not None]
+    geometry = {mesh.name: PairGeometry.of(gear_pair(mesh.case)) for mesh in meshes}
+    return scene_warnings(scene, check_scene(scene, geometry))
 
 
 @pytest.mark.parametrize(("example", "field", "check", "asked", "value"), EVERY, ids=NAMES)

@@ -124,7 +124,7 @@ def test_a_table_of_a_ring_gear_is_known_again_by_its_report() -> None:
     pair = gear_pair(given)
     for echo in (case_json(given), None):
         found = analyze(pair, torques=[60.0], level="draft", positions=8, model="plane_strain", case=echo)
-        assert found.facts.internal
+        assert found.geometry.internal
         assert pair_of(found) == pair
         assert iso_mesh_stiffness(found) is None
 

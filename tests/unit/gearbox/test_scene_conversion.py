@@ -17,7 +17,7 @@ from dynamics.assembly.assemble import assemble
 from dynamics.scene import Scene
 from fe_contact.geometry import Gear, GearPair, ToothProfile
 from fe_contact.geometry.backlash import base_circle_backlash
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -76,10 +76,10 @@ def test_given_inertia_is_used_as_it_is() -> None:
 def test_facts_of_a_pair_have_its_hand_and_its_common_face() -> None:
     right = Gear(17, 4e-3, 25e-3, 20e-3, helix_angle=0.2)
     left = Gear(31, 4e-3, 20e-3, 20e-3, helix_angle=-0.2)
-    facts = PairFacts.of(GearPair(right, left, axial_offset=5e-3))
-    assert (facts.teeth, facts.helix_hand, facts.internal) == ((17, 31), 1, False)
-    assert math.isclose(facts.face_width, 17.5e-3)
-    assert PairFacts.of(GearPair(left, right)).helix_hand == -1
+    geometry = PairGeometry.of(GearPair(right, left, axial_offset=5e-3))
+    assert (geometry.teeth, geometry.helix_hand, geometry.internal) == ((17, 31), 1, False)
+    assert math.isclose(geometry.face_width, 17.5e-3)
+    assert PairGeometry.of(GearPair(left, right)).helix_hand == -1
 
 
 UNIT = {"mass_kg": 1.0, "polar_kg_m2": 1.0, "transverse_kg_m2": 1.0}
@@ -136,7 +136,7 @@ def test_a_gear_in_two_meshes_must_be_the_same_in_both() -> None:
     third = {"name": "third", "shaft": "input", "position_mm": 50.0}
     mesh = EXAMPLE["meshes"][0] | {"name": "other", "driver": "third"}
     table, own = changed(EXAMPLE, {"gears[2]": third, "meshes[1]": mesh}), small_table()
-    other = replace(own, facts=replace(own.facts, teeth=(20, 30)))
+    other = replace(own, geometry=replace(own.geometry, teeth=(20, 30)))
     with pytest.raises(BadInput, match=r"meshes\[1\]\.driven = 'wheel': must be the gear of 20 teeth"):
         dynamic_scene(validated(SceneInput, table), {"mesh": own, "other": other})
 
@@ -202,8 +202,9 @@ def test_a_coefficient_of_friction_goes_to_its_mesh() -> None:
 def ring_table() -> Any:
     """The small table as that of 20 teeth in a ring of 60, at the same center distance and base pitch."""
     table = small_table()
-    facts = replace(table.facts, teeth=(20, 60), base_radius=(BASE_RADIUS, 3.0 * BASE_RADIUS), internal=True)
-    return replace(table, facts=facts)
+    radius = (BASE_RADIUS, 3.0 * BASE_RADIUS)
+    geometry = replace(table.geometry, teeth=(20, 60), base_radius=radius, internal=True)
+    return replace(table, geometry=geometry)
 
 
 PLANETARY: dict[str, Any] = {
@@ -294,9 +295,9 @@ def test_the_planetary_example_is_a_system() -> None:
     def of(teeth: tuple[int, int], internal: bool) -> Any:
         base = math.cos(math.radians(20.0)) * 1e-3
         radius = (base * teeth[0], base * teeth[1])
-        facts = replace(table.facts, teeth=teeth, base_radius=radius, center_distance=0.06, internal=internal)
-        facts = replace(facts, base_pitch=2.0 * math.pi * base)
-        return replace(table, facts=facts, torque=table.force * radius[0])
+        geometry = replace(table.geometry, teeth=teeth, base_radius=radius, base_pitch=2.0 * math.pi * base)
+        geometry = replace(geometry, center_distance=0.06, internal=internal)
+        return replace(table, geometry=geometry, torque=table.force * radius[0])
 
     example = tomllib.loads((ROOT / "examples" / "planetary_scene.toml").read_text())
     tables = {"sun mesh": of((24, 36), False), "ring mesh": of((36, 96), True)}

@@ -91,7 +91,7 @@ def test_the_stiffness_is_the_slope_of_force_over_transmission_error() -> None:
     found = of_stage(exported(Document(one_stage().model), stages(), [database], torque))
     at = np.array(found["custom_mesh_positions"].value)
     low, high = (database.curve(torque=torque * (1.0 + sign * step), at=at).ste for sign in (-1, 1))
-    force = 2.0 * step * torque / database.facts.base_radius[0]
+    force = 2.0 * step * torque / database.geometry.base_radius[0]
     stiffness = found["meshing_stiffness_characteristic"]
     assert stiffness.value == pytest.approx(1e-3 * force / (high - low), rel=1e-4)
     assert stiffness.unit == "N / mm"

@@ -11,7 +11,7 @@ import pytest
 from dynamics.mechanism.kinematics import solve_kinematics
 from dynamics.mechanism.train_phases import TrainPhases, train_phases
 from dynamics.scene import Scene
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -46,7 +46,7 @@ def chain() -> dict[str, Any]:
     }
 
 
-def scene_of(file: dict[str, Any], facts: dict[str, PairFacts] | None = None) -> Scene:
+def scene_of(file: dict[str, Any], facts: dict[str, PairGeometry] | None = None) -> Scene:
     return check_scene(SceneInput.model_validate(file), facts or {})
 
 

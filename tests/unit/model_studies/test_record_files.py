@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -16,6 +17,7 @@ import xarray
 from bounds.types import FloatArray, IntArray
 from model_studies import NOT_STORED, in_unit
 from model_studies.netcdf import UnreadableFile
+from model_studies.record import under_key
 from model_studies.record_file import read_record, write_record
 
 SCHEMA = "a study of cups"
@@ -103,6 +105,23 @@ def test_rows_of_records_are_one_variable_with_unit_and_dimensions(tmp_path: Pat
         assert heights.long_name == "rest height"
         assert (read["rest.load"].dims, read["rest.load"].units) == (("rest",), "N m")
         assert (read["first.load"].dims, float(read["first.load"])) == ((), 1.0 / 3.0)
+
+
+@dataclass(frozen=True)
+class Saucer:
+    """A record whose attributes have other names than its file."""
+
+    radius: float = field(metadata=in_unit("m") | under_key("size"))
+    owner: str = field(metadata=under_key("whose"))
+
+
+def test_a_file_may_hold_fields_by_other_names(tmp_path: Path) -> None:
+    saucer = Saucer(0.07, "Ada")
+    write_record(saucer, tmp_path / "saucer.nc", SCHEMA)
+    with h5netcdf.File(tmp_path / "saucer.nc") as file:
+        assert list(file.variables) == ["size"]
+        assert json.loads(file.attrs["documents"])["fields"] == {"size": "variable", "whose": "Ada"}
+    assert read_record(tmp_path / "saucer.nc", {SCHEMA: Saucer}) == saucer
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from fe_contact.analysis.flanks.flank_scene import flank_scene
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.effects.influence.influence import Influence
 from fe_contact.geometry import Gear, GearPair
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 
 __all__ = ["drawn_once", "own_directories"]
@@ -64,7 +64,7 @@ def closed_form(**changes: Any) -> SteDatabase:
         "status": np.zeros(grid, dtype=np.int8),
         "error_estimate": 0.002 * ste.reshape(grid),
         "residuals": np.full((*grid, 4), 1e-12),
-        "facts": PairFacts((20, 20), (R_B, R_B), PITCH, 0.0, 0.08, math.radians(20), WIDTH, 0),
+        "geometry": PairGeometry((20, 20), (R_B, R_B), PITCH, 0.0, 0.08, math.radians(20), WIDTH, 0),
         "metadata": Metadata(
             case=CASE,
             effect_ledger=[

@@ -12,7 +12,7 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
-from fe_contact.ste import Curve, Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Curve, Metadata, PairGeometry, SteDatabase
 from lineofaction.report.drawing.figure import Figure
 from lineofaction.report.pair import pair_of
 from lineofaction.report.ste.curves import MAX_LINES, drawn_loads, few_loads, load_labels
@@ -25,8 +25,9 @@ def random_table(seed: int) -> SteDatabase:
     """Return the table of a pair that is drawn at random: 1 to 7 loads, 1 to 5 tooth pairs in contact."""
     rng = np.random.default_rng(seed)
     pair = _pair(rng)
-    facts, torque = PairFacts.of(pair), np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
-    force = torque / (facts.base_radius[0] * math.cos(facts.base_helix_angle))
+    geometry = PairGeometry.of(pair)
+    torque = np.sort(np.round(rng.uniform(1.0, 900.0, rng.integers(1, 8)), 1))
+    force = torque / (geometry.base_radius[0] * math.cos(geometry.base_helix_angle))
     skew = 1e-6 * np.array([-20.0, 0.0, 40.0]) if rng.random() < 0.5 else np.zeros(1)
     change = 1e-3 * np.array([0.0, 0.1]) if rng.random() < 0.3 else np.zeros(1)
     position = np.arange(POSITIONS) / POSITIONS
@@ -34,7 +35,7 @@ def random_table(seed: int) -> SteDatabase:
     counts = np.broadcast_to(_pairs(rng, position)[:, None, None, None], grid)
     pairs = np.arange(int(counts.max()))
     ste = _ste(rng, position, force, grid[2:])
-    helical = facts.base_helix_angle > 0.0
+    helical = geometry.base_helix_angle > 0.0
     centroid = 1e-3 * helical * np.sin(2.0 * np.pi * position)[:, None, None, None] - 50.0 * skew[:, None]
     return SteDatabase(
         position=position,
@@ -53,7 +54,7 @@ def random_table(seed: int) -> SteDatabase:
         status=np.zeros(grid, dtype=np.int8),
         error_estimate=ste * (math.nan if rng.random() < 0.2 else 10.0 ** rng.uniform(-4.0, -1.0)),
         residuals=np.zeros((*grid, 4)),
-        facts=facts,
+        geometry=geometry,
         metadata=Metadata(case={"pair": asdict(pair)} if rng.random() < 0.9 else {"name": "random"}),
     )
 
@@ -244,9 +245,9 @@ def check_load_sharing(figure: Figure, database: SteDatabase) -> None:
 def check_mesh_stiffness(figure: Figure, database: SteDatabase) -> None:
     (mean, torque) = re.findall(rf"Mean {NUMBER} N/\(mm µm\) at {NUMBER} N m", figure.alternative)[0]
     k = load_labels(database).index(f"{torque} N m")
-    force = database.force[k] * math.cos(database.facts.base_helix_angle)
+    force = database.force[k] * math.cos(database.geometry.base_helix_angle)
     ste = database.ste(np.arange(2000) / 2000.0, float(database.force[k]))
-    stiffness = 1e-9 * float(np.mean(force / ste)) / database.facts.face_width
+    stiffness = 1e-9 * float(np.mean(force / ste)) / database.geometry.face_width
     assert float(mean) == pytest.approx(stiffness, rel=6e-3)
     against = re.search(rf", {NUMBER} % (above|below) the {NUMBER} N/\(mm µm\) of ISO", figure.alternative)
     pair = pair_of(database)
@@ -324,7 +325,7 @@ def check_face_load(figure: Figure, database: SteDatabase) -> None:
         high, 1e3 * database.face_centroid[at].max()
     )
     assert says(pressure, 1e-6 * database.max_pressure[at].max())
-    assert ("from slice to slice" in figure.caption) == (database.facts.base_helix_angle != 0.0)
+    assert ("from slice to slice" in figure.caption) == (database.geometry.base_helix_angle != 0.0)
 
 
 CHECKS = {

@@ -96,7 +96,7 @@ def test_the_order_of_the_complaint_is_among_those_shown() -> None:
 def test_a_result_without_a_complaint_has_no_marks() -> None:
     @dataclass(frozen=True)
     class Result:
-        facts: dict[str, Any] = field(default_factory=dict)
+        metadata: dict[str, Any] = field(default_factory=dict)
 
     assert marks_of(Result()) is None
     assert marks_of(Result({"complaint": MARKS})) is MARKS
@@ -123,10 +123,10 @@ def references_of(panel: Panel) -> list[str]:
 
 
 def test_an_order_between_those_of_the_mesh_is_named_and_found_by_its_number() -> None:
-    facts = {"turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 3.0}}}
-    named = order_label(2.0 / 3.0, facts)
+    metadata = {"turning": {"mesh": {"mesh": 1.0}, "shaft": {"pinion": 1.0 / 3.0}}}
+    named = order_label(2.0 / 3.0, metadata)
     assert named == "0.6667 (mesh 1 - pinion 1)"
-    assert [order_label(2.0, facts), order_label(0.7, facts), order_label(2.0 / 3.0, {})] == [
+    assert [order_label(2.0, metadata), order_label(0.7, metadata), order_label(2.0 / 3.0, {})] == [
         "2",
         "0.7",
         "0.6667",

@@ -26,7 +26,7 @@ def modes() -> ModalAnalysis:
     subject = subject_of(tube_on(None))
     found = modal_analysis(assemble(subject.scene), [0.0, 100.0])
     motion = surface_motion(subject, found.freedom)
-    return replace(found, surface_motion=motion, facts=found.facts | {UNIT: bodies_of(subject)})
+    return replace(found, surface_motion=motion, metadata=found.metadata | {UNIT: bodies_of(subject)})
 
 
 def pictures(modes: ModalAnalysis) -> list[Figure]:

@@ -69,7 +69,7 @@ def test_a_pressure_that_falls_along_the_path_is_interpolated_without_steps(flan
     falling = np.where(flanks.on_path, 1e9 - 1e10 * (flanks.roll_length_1 - lowest), 0.0)
     tilted = replace(flanks, pressure=falling, force=falling)
     rows, pressure = pressure_map(tilted, tilted.roll_length_1)
-    step = flanks.scene.facts.base_pitch / flanks.position.size
+    step = flanks.scene.geometry.base_pitch / flanks.position.size
     inside = (rows > rows[0] + step) & (rows < rows[-1] - step)
     assert np.count_nonzero(inside) > 50
     plane = (1e9 - 1e10 * (rows - lowest))[inside, None]
@@ -100,7 +100,7 @@ def test_isolines_are_few_and_round(largest: float) -> None:
 def test_the_marks_of_the_pattern_are_diameters_of_that_gear(flanks: LoadDistribution) -> None:
     pinion, wheel = panels(contact_pattern_figure(flanks))
     labels = [[mark.label for mark in panel.references] for panel in (pinion, wheel)]
-    a = flanks.scene.facts.center_distance
+    a = flanks.scene.geometry.center_distance
     pitch = [2e3 * a * z / 45 for z in (19, 26)]
     for row, diameter in zip(labels, pitch, strict=True):
         assert row[1] == f"pitch point, d {diameter:.4g} mm"
@@ -245,7 +245,7 @@ def test_another_pair_than_the_databases_is_said_loudly(
     flanks: LoadDistribution, database: SteDatabase, tmp_path: Path
 ) -> None:
     assert len(PAGE.with_database(flanks, database).alarms) == 1
-    own = replace(flanks, scene=replace(flanks.scene, facts=database.facts))
+    own = replace(flanks, scene=replace(flanks.scene, geometry=database.geometry))
     assert PAGE.with_database(own, database).alarms == PAGE.page(flanks).alarms == ()
     flanks.to_netcdf(tmp_path / "flanks.nc")
     database.to_netcdf(tmp_path / "ste.nc")

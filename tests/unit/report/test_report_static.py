@@ -374,10 +374,10 @@ def of_high_contact_ratio(database: SteDatabase, more: int = 1, helix: float = 0
     counts = database.pairs_in_contact + more
     pairs = np.arange(int(counts.max()))
     share = (pairs < counts[..., None]) / counts[..., None]
-    facts = replace(database.facts, base_helix_angle=helix)
+    geometry = replace(database.geometry, base_helix_angle=helix)
     torque = database.torque * math.cos(helix)
     return replace(
-        database, pairs_in_contact=counts, load_share=share, pair=pairs, facts=facts, torque=torque
+        database, pairs_in_contact=counts, load_share=share, pair=pairs, geometry=geometry, torque=torque
     )
 
 

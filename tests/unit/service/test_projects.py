@@ -194,7 +194,7 @@ def test_a_job_reads_tables_of_its_project_alone(tmp_path: Path) -> None:
         begun(machine.settings, SIMULATE, mine, crew, machine.store, WorkerFigures())
         return _table(WorkOrder.from_line(orders[0].line()), 0, mesh, [], lambda _fraction: None)
 
-    assert table("axle").facts == small_table().facts
+    assert table("axle").geometry == small_table().geometry
     for project in (COMMON, "drum"):
         with pytest.raises(NotFound):
             table(project)

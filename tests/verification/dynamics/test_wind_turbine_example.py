@@ -23,7 +23,7 @@ from dynamics.mechanism.phases import frame_turns
 from dynamics.motion.observation import local_state
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from fe_contact.ste import PairFacts
+from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
 from lineofaction.gearbox.convert.scene import dynamic_scene
 from lineofaction.gearbox.schemas import Case, read_model, validated
@@ -44,9 +44,9 @@ def wind_turbine(change: Change = lambda _table: None) -> Scene:
     small = small_table()
     databases = {}
     for mesh in table["meshes"]:
-        facts = PairFacts.of(check_case(read_model(Case, EXAMPLES / mesh["case_file"])))
-        torque = small.force * math.cos(facts.base_helix_angle) * facts.base_radius[0]
-        databases[mesh["name"]] = replace(small, facts=facts, torque=torque)
+        geometry = PairGeometry.of(check_case(read_model(Case, EXAMPLES / mesh["case_file"])))
+        torque = small.force * math.cos(geometry.base_helix_angle) * geometry.base_radius[0]
+        databases[mesh["name"]] = replace(small, geometry=geometry, torque=torque)
     return dynamic_scene(validated(SceneInput, table), databases)
 
 

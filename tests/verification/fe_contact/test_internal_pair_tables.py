@@ -47,9 +47,9 @@ def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() ->
         center_distance_changes=[-1e-4, 0.0, 2e-5],
     )
     assert np.abs(found.no_load_transmission_error).max() < 1e-15
-    assert found.facts.internal
-    assert found.facts.center_distance * math.cos(found.facts.working_pressure_angle) == pytest.approx(
-        found.facts.base_radius[1] - found.facts.base_radius[0], rel=1e-14
+    assert found.geometry.internal
+    assert found.geometry.center_distance * math.cos(found.geometry.working_pressure_angle) == pytest.approx(
+        found.geometry.base_radius[1] - found.geometry.base_radius[0], rel=1e-14
     )
 
 

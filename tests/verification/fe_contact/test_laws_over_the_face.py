@@ -52,7 +52,7 @@ def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand: int) -> No
     by_tilt = (ste[:, 2] - ste[:, 0]) / (skew[2] - skew[0])
 
     def of_moment(arm: np.ndarray) -> np.ndarray:
-        moment = force[:, None] * arm[..., 0] / table.facts.face_width
+        moment = force[:, None] * arm[..., 0] / table.geometry.face_width
         return np.asarray((moment[:, 2, 1] - moment[:, 0, 1]) / (force[2] - force[0]))
 
     assert np.ptp(by_tilt) > 0.05
@@ -64,8 +64,8 @@ def test_the_moment_of_the_load_is_what_a_misalignment_works_on(hand: int) -> No
 
 def arm_of_pairs(table: SteDatabase) -> np.ndarray:
     """Return the arm by shares of pairs and where they touch: z_c / cos^2 beta_b - tan beta_b sum c_j y_j."""
-    twist = math.tan(table.facts.base_helix_angle) * np.sign(table.facts.helix_hand or 1)
-    way = (table.position[:, None] % 1.0 + table.pair) * table.facts.base_pitch
+    twist = math.tan(table.geometry.base_helix_angle) * np.sign(table.geometry.helix_hand or 1)
+    way = (table.position[:, None] % 1.0 + table.pair) * table.geometry.base_pitch
     along = np.einsum("pfmdn,pn->pfmd", table.load_share, way)
     return np.asarray(table.face_centroid * (1.0 + twist**2) - twist * along)
 
@@ -147,13 +147,13 @@ def test_force_extraction_covers_all_axes():
     for m, d in ((0.0, 0.0), (20e-6, 50e-6), (8e-6, 20e-6)):
         deflection = table.ste(x, force, misalignment=m, center_distance_change=d)
         sample = table.force_at(x, deflection, misalignment=m, center_distance_change=d)
-        assert sample.force == pytest.approx(force * math.cos(table.facts.base_helix_angle), rel=1e-9)
+        assert sample.force == pytest.approx(force * math.cos(table.geometry.base_helix_angle), rel=1e-9)
 
 
 def test_a_wheel_beside_its_pinion_carries_on_the_common_face():
     gear = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3, axial_offset=8e-3)
     table = draft(pair)
-    assert table.facts.face_width == pytest.approx(12e-3)
+    assert table.geometry.face_width == pytest.approx(12e-3)
     assert np.all((table.face_centroid > -2e-3) & (table.face_centroid < 10e-3))
     assert table.n_failed == 0

@@ -18,13 +18,13 @@ class ContactSystem:
     gap: FloatArray
     """Weak gaps without pressure or lag, m^2. Shape (h,)."""
     compliance: FloatArray
-    """Symmetric positive definite, m^2/Pa. Shape (h, h)."""
+    """Compliance, symmetric positive definite, m^2/Pa. Shape (h, h)."""
     closing: FloatArray
-    """-d gap / d lag, m. Shape (h,)."""
+    """Closing of the gaps by the lag, -d gap / d lag, m. Shape (h,)."""
     lever: FloatArray
     """Moment about gear 1's center by unit pressures, m^2. Shape (h,)."""
     weight: FloatArray
-    """Of the hats, m: gap over weight is a length. Shape (h,)."""
+    """Weights of the hats, m: gap over weight is a length. Shape (h,)."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class ActiveSetSolution:
     """Solution of a `ContactSystem`."""
 
     pressure: FloatArray
-    """Pa. Shape (h,)."""
+    """Pressure of the hats, Pa. Shape (h,)."""
     lag: float
-    """m."""
+    """Lag of the driven gear, m."""
     gap: FloatArray
     """Weak gaps, m^2. Shape (h,)."""
     status: Status

@@ -37,23 +37,23 @@ def dissected(graph: sp.csr_array, nodes: IntArray) -> IntArray:
 
 @dataclass(frozen=True)
 class CondensedBody:
-    """One gear seen from the nodes of its strips, per unit face width."""
+    """One gear condensed to the nodes of its strips, per unit face width."""
 
     body: PlacedBody
     nodes: IntArray
-    """All nodes of its strips. Shape (k,)."""
+    """Numbers of all nodes of the strips. Shape (k,)."""
     columns: Mapping[int, IntArray]
-    """By pair index: where in `nodes` those of a strip are."""
+    """Positions in `nodes` of the nodes of each strip, by pair index."""
     compliance: FloatArray
     """Displacement per nodal force, m per N/m; freedom 2 i + c is component c of node i. Shape (2 k, 2 k)."""
     stiffness: sp.csc_array
-    """Of all nodes, the held ones too. (2 n, 2 n) sparse array."""
+    """Stiffness of all nodes, held ones included. (2 n, 2 n) sparse array."""
     solve: Callable[[FloatArray], FloatArray]
-    """Forces on the freedoms of all nodes (2 n,) to displacements; held nodes stay."""
+    """Function from forces on the freedoms of all nodes (2 n,) to displacements; held nodes stay."""
 
     @property
     def freedoms(self) -> IntArray:
-        """Freedoms of the nodes of its strips."""
+        """Freedoms of the nodes of the strips."""
         return freedoms(self.nodes)
 
     @property

@@ -15,7 +15,9 @@ from verification.full_contact.condensation.placed_mesh import PlacedBody
 from verification.full_contact.condensation.sites import ContactSite
 
 MESH_STIFFNESS = 20e9 / 210e9
-"""Of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess of the deflection."""
+"""Mesh stiffness of steel teeth, about 20 N/(mm um), over the modulus of elasticity. It gives a first guess
+of the deflection.
+"""
 
 
 class ContactModel(Protocol):

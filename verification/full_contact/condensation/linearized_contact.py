@@ -37,15 +37,15 @@ class LinearizedContact:
     ((u_1, h), (u_2, h)) arrays.
     """
     site: IntArray
-    """Which site a hat belongs to. Shape (h,)."""
+    """Index of the site of each hat. Shape (h,)."""
     line: IntArray
-    """Hats of one number stand along one profile. Shape (h,)."""
+    """Number of the profile along which each hat stands. Shape (h,)."""
     at_end: BoolArray
-    """Hats at an end of their strip that is no tip edge: pressure there is cut off. Shape (h,)."""
+    """Whether a hat is at an end of its strip that is no tip edge: its pressure is cut off. Shape (h,)."""
 
 
 class Solution(NamedTuple):
-    """A contact, its pressures, and the torque on gear 1 over the thickness that they were to balance."""
+    """A contact, its pressures, and the required torque on gear 1 per thickness."""
 
     contact: LinearizedContact
     pressure: FloatArray

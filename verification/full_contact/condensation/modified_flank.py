@@ -9,7 +9,7 @@ from fe_contact.types import FloatArray
 
 
 def material_removed(gear: Toothing, s: FloatArray, face: float = 0.0) -> FloatArray:
-    """Return what is removed along the normal at flank coordinates, m; it fades out over the fillet.
+    """Return the material removed along the normal at flank coordinates, m; it fades out over the fillet.
 
     `face` is the face position from mid-face, m.
     """
@@ -19,7 +19,7 @@ def material_removed(gear: Toothing, s: FloatArray, face: float = 0.0) -> FloatA
 
 
 def removed_at_roll(gear: Toothing, roll: FloatArray, face: float = 0.0) -> FloatArray:
-    """Return what is removed at roll lengths, m; beyond the ends of the involute as much as there."""
+    """Return the material removed at roll lengths, m; beyond the involute that of its ends."""
     ends = gear.form_roll_length, gear.tip_roll_length
     within = np.clip(roll, min(ends), max(ends))
     return np.asarray(gear.modification.material_removed(gear, within, face), dtype=float)

@@ -47,9 +47,9 @@ class PlacedBody:
     bore_nodes: IntArray
     """Nodes of the bore, or of the outside of a ring gear's rim. Shape (b,)."""
     center: FloatArray
-    """m. Shape (2,)."""
+    """Center of the gear, m. Shape (2,)."""
     strips: Mapping[int, Strip]
-    """By pair index."""
+    """Strips of the flanks by pair index."""
 
 
 def placed_bodies(

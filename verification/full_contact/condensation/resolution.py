@@ -27,7 +27,7 @@ class Resolution:
     per_half_width: float = USUAL
     """Quadratic elements in a Hertz half-width, 1.5 to 16."""
     corner: float = 8.0
-    """How many times finer the elements at a tip edge are."""
+    """Usual element size over the element size at a tip edge."""
     layers: int = 6
     """Layers over half the face, 1 to 24; the plane has none."""
     outermost: float = 0.25
@@ -58,6 +58,6 @@ class Resolution:
         return share * module * min(USUAL / self.per_half_width, COARSEST)
 
     def coarser(self, factor: float = 1.5) -> Resolution:
-        """Return the same with elements larger by `factor`."""
+        """Return the resolution with elements larger by `factor`."""
         layers = max(1, round(self.layers / factor))
         return Resolution(self.per_half_width / factor, self.corner, layers, self.outermost)

@@ -19,9 +19,13 @@ from verification.full_contact.condensation.resolution import Resolution
 STRIP, MATE_STRIP = 2.0, 2.5
 """Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
 TOUCHING, MARGINS = 1.6, (0.4, 0.9)
-"""On the path: how far apart flanks are at the ends of strips, as such widths; what is added to either."""
+"""Strips on the path of contact, in half-widths of the whole load on one pair: half-width that closes the gap
+at the ends of a strip, and margins added to the strips of slave and master.
+"""
 SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
-"""Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
+"""Search of the closest point on the mate: half-widths on either side, number of samples, and step of the
+samples that carry an element size.
+"""
 NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
 """Half-widths from a tip edge within which its elements are fine, and their size over the distance to it."""
 
@@ -32,10 +36,10 @@ class SizedStrip:
 
     low: float
     high: float
-    """`low`, `high`: Flank coordinates of its ends, m."""
+    """`low`, `high`: Flank coordinates of the ends of the strip, m."""
     at: FloatArray
     size: FloatArray
-    """`at`, `size`: Flank coordinates and the element sizes wanted there, m. Shape (k,) each."""
+    """`at`, `size`: Flank coordinates of samples, and the element sizes there, m. Shape (k,) each."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +49,9 @@ class ContactSite:
     ahead: int
     """Index of the pair; 0 is the reference pair, +1 is ahead."""
     slave: int
-    """0 or 1: the gear whose flank carries the pressure; the other one has the nearer tip edge."""
+    """Number of the gear whose flank carries the pressure, 0 or 1; the other gear has the nearer tip edge."""
     strips: tuple[SizedStrip, SizedStrip]
-    """On gear 1 and gear 2. Shape (SizedStrip, SizedStrip)."""
+    """Strips on gear 1 and gear 2. Shape (SizedStrip, SizedStrip)."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,7 @@ class Range:
     lag: float
     """Largest lag of the driven gear, m."""
     longer: float = 1.0
-    """Strips are that many times as long as usual."""
+    """Length of the strips over the usual length."""
 
 
 @dataclass(frozen=True)

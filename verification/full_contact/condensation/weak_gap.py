@@ -32,7 +32,7 @@ class WeakGap:
     gap: FloatArray
     """G_i, m^2. Shape (h,)."""
     weight: FloatArray
-    """Integral of phi_i over what faces the master, m. Shape (h,)."""
+    """Integral of phi_i over the part that faces the master, m. Shape (h,)."""
     closing: FloatArray
     """-dG_i by the lag of the driven gear, m. Shape (h,)."""
     forces: tuple[FloatArray, FloatArray]
@@ -41,7 +41,7 @@ class WeakGap:
 
 
 class _Facing(NamedTuple):
-    """Quadrature points of the slave (q,) and what they face; normals (q, 2), hats (q, h), lengths (q,)."""
+    """Quadrature points of the slave (q,) and opposite points; normals (q, 2), hats (q, h), lengths (q,)."""
 
     slave: CurvePoints
     master: CurvePoints

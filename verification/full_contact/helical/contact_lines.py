@@ -1,4 +1,4 @@
-"""Where the flanks of a pair of teeth face each other in a section, and the hats of pressure there.
+"""Opposite points of the flanks of a pair of teeth in a section, and the hats of pressure on them.
 
 Coordinates of a section: e from the slave's axis to where the line of action leaves its base circle, t along
 that line. Of the two flanks the one whose root is nearer is the slave: it carries the pressure along its
@@ -22,7 +22,7 @@ _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 
 
 class Facing(NamedTuple):
-    """What places of the slave face: roll length of the mate, gap (q,), normal and place (q, 2), m."""
+    """Points of the mate opposite points of the slave: roll length, gap (q,), normal and place (q, 2), m."""
 
     mate: FloatArray
     gap: FloatArray
@@ -36,13 +36,15 @@ class FacingFlanks:
 
     pair: ParallelAxes
     roll: float
-    """Roll length of gear 1 where they touch on the line of action, or would beyond its ends, m."""
+    """Roll length of gear 1 at the touching point on the line of action, or on its extension beyond the ends,
+    m.
+    """
     face: float
-    """From mid-face, m."""
+    """Distance of the section from mid-face, m."""
 
     @cached_property
     def slave(self) -> int:
-        """The gear whose root is nearer."""
+        """Number of the gear whose root is nearer."""
         path = self.pair.path_of_contact
         return 0 if self.roll < 0.5 * (path.start + path.end) else 1
 

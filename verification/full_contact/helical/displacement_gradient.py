@@ -42,7 +42,7 @@ def turning(twist: float) -> _Gradient:
 
 
 def along_line() -> _Gradient:
-    """Return those of a field that does not vary along the contact line."""
+    """Return the gradient of a field that does not vary along the contact line."""
     return _gradient({i: [Part(i, "t", along=False, factor=1.0)] for i in (X, Y, Z)})
 
 

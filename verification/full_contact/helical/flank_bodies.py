@@ -1,7 +1,7 @@
-"""One helical gear seen from its right flanks: over the face on a coarse section, and finely in the section.
+"""One helical gear condensed to its right flanks: over the face on a coarse section, and finely in sections.
 
-What a coarse mesh lacks beside a fine one under the same load dies out within some elements: it is that of a
-section in which nothing varies along the contact line, and is added section by section.
+The compliance that a coarse mesh lacks is local: it dies out within some elements from the load. It equals
+that of a section in which nothing varies along the contact line, and is added section by section.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class FlankStrip:
     """Nodes of a flank from its foot to the tip: corner, mid-side, corner ..."""
 
     nodes: IntArray
-    """Shape (2 e + 1,)."""
+    """Numbers of the nodes of the strip. Shape (2 e + 1,)."""
     s: FloatArray
     """Flank coordinates, m. Shape (2 e + 1,)."""
 
@@ -164,7 +164,7 @@ class FaceBody:
     starts: dict[int, int]
     """First freedom of a tooth."""
     compliance: FloatArray
-    """m/N. Shape (m, m)."""
+    """Compliance of the strips, m/N. Shape (m, m)."""
     unknowns: int
     spread: float
     """Elements to either side over which loads are spread on its mesh: a narrow load that slants through its
@@ -255,14 +255,16 @@ def _normal_loads(
 
 @dataclass(frozen=True)
 class HelicalGear:
-    """One gear condensed over its face, and the sections that say what its mesh lacks."""
+    """One gear condensed over its face, and the sections that give the compliance that its mesh lacks."""
 
     body: FaceBody
     fine: FlankStrip
-    """Of a section with a finely meshed tooth."""
+    """Flank strip of a section with a finely meshed tooth."""
     fine_compliance: FloatArray
     coarse_compliance: dict[int, FloatArray]
-    """`fine_compliance`, `coarse_compliance`: m per N/m. (k, k) array, and such by tooth."""
+    """`fine_compliance`, `coarse_compliance`: Compliance of the fine section, and of the coarse section by
+    tooth, m per N/m. (k, k) arrays.
+    """
 
     @property
     def lead(self) -> float:
@@ -271,7 +273,7 @@ class HelicalGear:
         return section.twist * section.base_radius
 
     def lacking(self, tooth: int, s: FloatArray, loads: FloatArray) -> FloatArray:
-        """Return what loads (q, i) at places s (q,) of a section give way more, (i, i) m per N/m."""
+        """Return the missing compliance of the coarse mesh for loads (q, i) at s (q,), (i, i) m per N/m."""
         fine = self.fine.shapes(s)[0].T @ loads
         coarse = self.body.meshed.strips[tooth].spread(s, self.body.spread)[0].T @ loads
         near = np.flatnonzero(np.any(fine != 0.0, axis=1))

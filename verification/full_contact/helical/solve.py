@@ -28,7 +28,7 @@ STRIP = 1.5
 """Half-width of the strips over Hertz' half-width of the whole load on one pair, in the first attempt."""
 WIDER, ATTEMPTS = 1.5, 3
 _CORNER = 0.15
-"""Base pitches beyond the path of contact at which tip edges may touch."""
+"""Distance beyond the path of contact within which tip edges may touch, base pitches."""
 LARGEST_RESIDUAL = 1e-8
 
 
@@ -39,7 +39,7 @@ class HelicalMesh:
     flank: float = 0.15
     """Elements on the flanks over the face, modules, 0.05 to 0.4."""
     layers: int = 8
-    """Over the face, 2 to 24."""
+    """Number of layers over the face, 2 to 24."""
     across: int = 15
     along: int = 49
     """`across`, `along`: Hats of pressure across a contact line and along one that runs over the whole face.
@@ -58,7 +58,7 @@ class HelicalMesh:
 
     @property
     def coarser(self) -> HelicalMesh:
-        """Return the same with all sizes larger by COARSER."""
+        """Return the mesh with all sizes larger by COARSER."""
         counts = {name: round(getattr(self, name) / COARSER) for name in ("layers", "across", "along")}
         sizes = COARSER * self.flank, self.per_half_width / COARSER
         return HelicalMesh(sizes[0], per_half_width=sizes[1], spread=self.spread, **counts)

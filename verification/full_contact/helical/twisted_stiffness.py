@@ -68,7 +68,7 @@ def _plane_matrices(section: Section, names: set[tuple[str, str]]) -> dict[tuple
 
 @dataclass(frozen=True)
 class Section:
-    """Plane mesh of one gear about its axis, with what turns it."""
+    """Plane mesh of one gear about its axis, with its twist along the face."""
 
     points: FloatArray
     """Nodes in the gear's own frame, m. Shape (n, 2)."""
@@ -77,7 +77,7 @@ class Section:
     twist: float
     """Turn of the section along z, counter-clockwise, rad/m."""
     base_radius: float
-    """m."""
+    """Base radius of the gear, m."""
 
 
 def twisted_stiffness(section: Section, layers: Layers, material: Material) -> ExtrudedStiffness:

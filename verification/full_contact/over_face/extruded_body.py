@@ -39,20 +39,20 @@ class ExtrudedBody:
     body: PlacedBody
     layers: Layers
     nodes: IntArray
-    """All nodes of its strips. Shape (k,)."""
+    """Numbers of all nodes of the strips. Shape (k,)."""
     columns: Mapping[int, IntArray]
-    """By pair index: where in `nodes` those of a strip are."""
+    """Positions in `nodes` of the nodes of each strip, by pair index."""
     even: FloatArray
     odd: FloatArray
-    """`even`, `odd`: Displacement of half the face per force, m/N, where the other half is moved alike or
-    oppositely. Shape (2 k f, 2 k f) each.
+    """`even`, `odd`: Displacement of half the face per force, m/N, where the other half has the same or the
+    opposite displacement. Shape (2 k f, 2 k f) each.
     """
     bore_moment: FloatArray
     """Moment about the center of the reactions at the held circle of half the face by even forces, m. Shape
     (2 k f,).
     """
     unknowns: int
-    """Of both half problems."""
+    """Number of unknowns of both half problems."""
 
     @property
     def arms(self) -> FloatArray:

@@ -28,7 +28,7 @@ class ExtrudedStiffness:
     """Stiffness of all unknowns of half the face."""
 
     matrix: sp.csc_array
-    """N/m. (m, m) sparse array."""
+    """Stiffness of the body, N/m. (m, m) sparse array."""
     node: IntArray
     component: IntArray
     function: IntArray

@@ -22,13 +22,14 @@ class FaceGap:
 
     gap: FloatArray
     weight: FloatArray
-    """`gap`, `weight`: m^3 and m^2. Shape (h,) each."""
+    """`gap`, `weight`: Weak gaps without pressure or lag, m^3, and weights of the hats, m^2. Shape (h,) each.
+    """
     closing: FloatArray
     """-dG by the lag of the driven gear, m^2. Shape (h,)."""
     forces: tuple[FloatArray, FloatArray]
-    """On the functions of both gears' strips by unit pressures, m^2; in the half of positive and of negative
-    face position, each as seen from mid-face. In the frames of the meshes. ((2, 2 k_1 f, h), (2, 2 k_2 f, h))
-    arrays.
+    """Forces on the functions of both gears' strips by unit pressures, m^2, in the half of positive and of
+    negative face position, each as seen from mid-face. They are in the frames of the meshes. ((2, 2 k_1 f,
+    h), (2, 2 k_2 f, h)) arrays.
     """
 
 

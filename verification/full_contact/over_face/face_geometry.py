@@ -38,7 +38,7 @@ class FaceGeometry:
     """
 
     pair: ParallelAxes
-    """Of equal face widths."""
+    """Gear pair; both gears have equal face widths."""
     sites: tuple[ContactSite, ...]
     bodies: tuple[ExtrudedBody, ExtrudedBody]
     misalignment: float

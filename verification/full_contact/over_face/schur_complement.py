@@ -19,7 +19,7 @@ MERGED, MAX_NODES = 1.6, 48
 
 @dataclass(frozen=True)
 class _Front:
-    """Nodes that are eliminated together, and those that they then tie together, both rising."""
+    """Nodes that are eliminated together, and nodes that the elimination couples, both rising."""
 
     nodes: IntArray
     beyond: IntArray
@@ -30,11 +30,11 @@ class ColumnMatrix:
     """Symmetric matrix of columns of unknowns on n nodes, in the order of elimination."""
 
     lower: sp.csc_array
-    """Its lower triangle. (m, m) sparse array."""
+    """Lower triangle of the matrix. (m, m) sparse array."""
     starts: IntArray
     """First unknown of each node. Shape (n + 1,)."""
     graph: sp.csr_array
-    """Which nodes share elements. (n, n) sparse array."""
+    """Graph of the nodes that share elements. (n, n) sparse array."""
 
     def unknowns(self, nodes: IntArray) -> IntArray:
         """Return the unknowns of nodes, node by node."""
@@ -79,7 +79,7 @@ def _assembled(
 
 
 def _eliminated(dense: FloatArray, pivots: int) -> FloatArray:
-    """Return what a front leaves to its unknowns beyond the first `pivots`, the lower triangle."""
+    """Return the front without its first `pivots` unknowns, the lower triangle."""
     try:
         factor = cholesky(dense[:pivots, :pivots], lower=True, check_finite=False)
     except LinAlgError as error:

@@ -34,7 +34,7 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
 
 
 def _scale(heading: Sequence[str]) -> float:
-    """Return what one of the times is in s."""
+    """Return the unit of the times in s."""
     scale = TIMES.get(heading[0]) if heading else None
     if scale is None or len(set(heading)) < len(heading):
         raise UnusableFile(f"a CSV file whose first column is {' or '.join(TIMES)}, each name once", _REMEDY)

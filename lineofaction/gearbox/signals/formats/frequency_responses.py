@@ -70,7 +70,7 @@ def _motion(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float
 
 
 def _force(name: str, part: Dataset, scale: Dataset | None) -> float:
-    """Return what one of the unit of the denominator is in N."""
+    """Return the unit of the denominator in N."""
     label = text_of(part, "orddenom_axis_units_lab")
     kind = int(part["orddenom_spec_data_type"])
     below = text_of(part, "ordinate_axis_units_lab").rpartition("/")[2]
@@ -83,7 +83,7 @@ def _force(name: str, part: Dataset, scale: Dataset | None) -> float:
 
 
 def _numerator(label: str) -> str:
-    """Return what stands above a force in a label such as ``(m/s^2)/N``; of one without a force all of it."""
+    """Return the numerator of a label such as ``(m/s^2)/N``; of one without a force all of it."""
     above, _, below = label.rpartition("/")
     unit = measured_unit(below)
     is_quotient = unit is not None and unit.quantity == FORCE
@@ -93,7 +93,7 @@ def _numerator(label: str) -> str:
 def _factor(
     name: str, quantity: str, labeled: tuple[str, MeasuredUnit | None], per_si: float | None
 ) -> float:
-    """Return what one unit is in SI, by its label, by the units of the file, or by both alike.
+    """Return the SI value of one unit, by its label, by the units of the file, or by both alike.
 
     `per_si`: units of the file in one SI unit, of dataset 164.
     """
@@ -113,7 +113,7 @@ def _factor(
 
 
 def _of_file(name: str, per_si: float) -> float:
-    """Return what one unit of the file is in SI."""
+    """Return the SI value of one unit of the file."""
     if not (np.isfinite(per_si) and per_si > 0.0):
         raise UnusableFile("a universal file whose units (dataset 164) are above 0", value=name)
     return 1.0 / per_si

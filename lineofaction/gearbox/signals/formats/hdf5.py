@@ -1,4 +1,4 @@
-"""HDF5 files: vectors of numbers with a time or a sample rate beside them, by h5py."""
+"""HDF5 files: vectors of numbers with their times or sample rate, by h5py."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
 
 
 class _Walk:
-    """Goes through the groups of a file, and counts what it meets."""
+    """A walk through the groups of a file that counts the objects in them."""
 
     def __init__(self, names: Sequence[str]) -> None:
         self.names, self.budget, self.entries = names, SampleBudget(), 0

@@ -1,4 +1,4 @@
-"""MATLAB files: vectors of numbers beside times or a sample rate, by SciPy, from 7.3 on by h5py."""
+"""MATLAB files: vectors of numbers with times or a sample rate, by SciPy, from 7.3 on by h5py."""
 
 from __future__ import annotations
 

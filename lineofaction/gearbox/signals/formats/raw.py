@@ -1,4 +1,4 @@
-"""What a reader hands on: channels as they stand in a file, and the fault of a file that holds none."""
+"""Channels as a reader of recordings returns them, and the error for a file without usable channels."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 
 MAX_CHANNELS = 1024
 MAX_SAMPLES = 20_000_000
-"""Of all channels that are read together: half a GB with their times."""
+"""Most samples of all channels that are read together: half a GB with their times."""
 
 
 class UnusableFile(Exception):
-    """A file holds no channels that can be read: what it must be, what to try, and the field at fault."""
+    """A file without readable channels: the accepted content, a remedy, and the field at fault."""
 
     def __init__(self, bound: str, remedy: str = "Export it again.", value: str = "") -> None:
         self.bound, self.remedy, self.value = bound, remedy, value
@@ -38,7 +38,7 @@ class RawChannel:
 
 
 class SampleBudget:
-    """Counts the samples that a reader is about to take, of at most so many channels."""
+    """Count of the samples that a reader is about to take, up to a number of channels and samples."""
 
     def __init__(self, most_channels: int = MAX_CHANNELS) -> None:
         self.most_channels = most_channels

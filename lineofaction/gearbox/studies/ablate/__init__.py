@@ -36,7 +36,7 @@ class Toggled(Part):
 
 
 class Level(Part):
-    """Change of the level of what a scene is computed for, at the order that changes most."""
+    """Change of the level of the scene's quantity at the order that changes most."""
 
     quantity: str
     unit: str
@@ -46,15 +46,15 @@ class Level(Part):
 
 
 def _estimate(estimate: Any) -> Json | None:
-    """Return what a library estimates of an effect, its lengths in um."""
+    """Return a library's estimate of an effect, its lengths in um."""
     return None if estimate is None else dict(in_um(estimate.to_json()))
 
 
 class AblateFigures(Figures):
-    """All effects, each toggled by itself; of a case the loads, of a scene its meshes and bearings."""
+    """Influence of all effects: for a case at its loads, for a scene at its meshes and bearings."""
 
     class EffectFigures(Part):
-        """One effect toggled: the figures with and without it, and their changes without it."""
+        """An effect toggled: the figures with and without it, and the changes without it."""
 
         name: str
         on: bool

@@ -46,7 +46,7 @@ class _AblateStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
     ) -> StudyCost | None:
-        """Return what the tables of a case take, or the runs of a scene: as it is, and an effect each."""
+        """Return the cost of a case's tables or a scene's runs: with all effects, and without each."""
         if isinstance(subject, SceneInput):
             return runs_cost(subject, lambda scene: runs_of_ablation(scene, inputs.only))
         with boundary_errors():

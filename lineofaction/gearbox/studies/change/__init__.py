@@ -1,4 +1,4 @@
-"""Two flanks of a mesh, the speeds and loads at which they are heard, and the tolerances of both."""
+"""Inputs of a change of flanks: two designs of a mesh, speeds, loads, and tolerances of both."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _AFTER = {
 
 
 class HeardInput(BoundaryModel):
-    """What is compared: a quantity, and what is made of it over the speeds."""
+    """Quantity whose levels are compared, and the figure that is formed from its levels over the speeds."""
 
     quantity: Literal["sound_power", "sound_pressure", "surface_velocity", "bearing_force"] | None = Field(
         default=None,
@@ -48,7 +48,7 @@ class HeardInput(BoundaryModel):
     )
     microphone_mm: Position | None = Field(
         default=None,
-        description="Where the sound pressure is heard, x, y, z in mm in the frame of the scene",
+        description="Microphone of the sound pressure, x, y, z in mm in the frame of the scene",
         examples=[[0.0, 1000.0, 0.0]],
     )
     bearing: Name | None = Field(
@@ -81,7 +81,7 @@ class Inputs(OverOrders):
         description="Load cases on the driving flanks; default: the loads of the scene at t = 0",
         examples=[[{"name": "cruise", "torque_n_m": 60.0, "speed_rpm": 3000.0}]],
     )
-    heard: HeardInput = Field(default=HeardInput(), description="What is compared")
+    heard: HeardInput = Field(default=HeardInput(), description="Quantity that is compared")
     tolerances: ToleranceInputs = Field(
         default=ToleranceInputs(samples=PAIRS),
         description="Tolerances of both designs and the sample, drawn once: each pair takes two contact "
@@ -98,7 +98,7 @@ class Inputs(OverOrders):
 
 
 class QuantileFigures(Part):
-    """A level of all pairs: the nominal one, and what 5, 50 and 95 % of the pairs are below."""
+    """A level of all pairs: the nominal one, and the quantiles of 5, 50 and 95 %."""
 
     nominal_db: float
     low_db: float

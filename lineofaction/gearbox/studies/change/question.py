@@ -1,4 +1,4 @@
-"""What is heard of flanks in a scene: refusals before anything is computed."""
+"""Questions about the sound of flanks in a scene, and their refusals before anything is computed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from lineofaction.gearbox.studies.housings import require_surface
 
 
 class HeardQuestion(Protocol):
-    """What is heard, and under what: the load cases, at speeds, up to so many orders of the mesh."""
+    """The request of a study of sound: load cases, speeds, highest order of the mesh, and the quantity."""
 
     @property
     def load_cases(self) -> Sequence[LoadCaseInput]: ...  # noqa: D102

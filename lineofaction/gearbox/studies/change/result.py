@@ -1,4 +1,4 @@
-"""What a change of flanks brings: levels of the same sample of pairs before and after it."""
+"""Result of a change of flanks: levels before and after the change, over one sample of pairs."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ from model_studies import in_unit
 from model_studies.spread import quantiles, rank_correlation
 
 ALL = "all"
-"""The line of all orders of the mesh together: flanks change no others."""
+"""Name of the line that sums all orders of the mesh; other flanks leave other orders as they are."""
 LOW, MEDIAN, HIGH = 0.05, 0.5, 0.95
 """Quantiles of the band of a level."""
 AUDIBLE = 0.5
-"""dB; a change of less is none: of a level hardly anybody hears it."""
+"""Least change of a level that counts, dB: hardly anybody hears less."""
 
 
 @dataclass(frozen=True)
 class DesignLevels:
-    """Levels of a design under L load cases in K lines: as designed, and of N pairs, dB."""
+    """Levels of a design under L load cases in K lines, nominal and of N pairs within tolerances, dB."""
 
     nominal: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
-    """Shape (L, K)."""
+    """Levels with the nominal flanks. Shape (L, K)."""
     pairs: FloatArray = field(metadata=in_unit("dB", "pair", "load_case", "line"))
-    """Shape (N, L, K)."""
+    """Levels of the pairs. Shape (N, L, K)."""
     parting: FloatArray = field(metadata=in_unit("1", "load_case"))
     """Largest share of the static mesh force by which flanks part at a speed, 0: they do not. Shape (L,)."""
     error: FloatArray = field(metadata=in_unit("dB", "side", "load_case", "line"))
-    """How far levels may be below and above what the table of the nominal design says; NaN: not known. Shape
-    (2, L, K).
+    """Errors of the levels below and above, from the table of the nominal design; NaN: not known. Shape (2,
+    L, K).
     """
 
     def quantiles(self) -> FloatArray:
@@ -61,17 +61,18 @@ class FlankChange:
     quantity: str
     unit: str
     over_speeds: str
-    """`mesh`, `quantity`, `unit`, `over_speeds`: What is compared, in words; the unit with its reference."""
+    """`mesh`, `quantity`, `unit`, `over_speeds`: Words for the compared figure; the unit with its reference.
+    """
     lines: tuple[str, ...]
-    """`ALL` orders of the mesh together, then each."""
+    """Names of the lines: `ALL` orders of the mesh together, then each order."""
     torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
-    """On the driving gear of the mesh, N m. Shape (L,)."""
+    """Torque on the driving gear of the mesh, N m. Shape (L,)."""
     speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
-    """Of the leading shaft, rad/s. Shape (S,)."""
+    """Speed of the leading shaft, rad/s. Shape (S,)."""
     names: tuple[str, ...]
-    """The deviations: "misalignment" and ``gear.quantity``."""
+    """Names of the deviations: "misalignment" and ``gear.quantity``."""
     deviation: FloatArray = field(metadata=in_unit("m", "pair", "deviating"))
-    """m. Shape (N, d)."""
+    """Deviations of the pairs, m. Shape (N, d)."""
     before: DesignLevels
     after: DesignLevels
     requirement: float | None
@@ -81,12 +82,12 @@ class FlankChange:
 
     @property
     def nominal_change(self) -> FloatArray:
-        """As designed (L, K), dB; > 0: louder."""
+        """The change of level with nominal flanks (L, K), dB; > 0: louder."""
         return np.asarray(self.after.nominal - self.before.nominal)
 
     @property
     def change(self) -> FloatArray:
-        """Of each pair (N, L, K), dB; > 0: louder."""
+        """The change of level of each pair (N, L, K), dB; > 0: louder."""
         return np.asarray(self.after.pairs - self.before.pairs)
 
     @cached_property
@@ -118,7 +119,7 @@ class FlankChange:
         return bool(np.all(self.after.quantiles()[2, :, 0] <= self.requirement))
 
     def verdict(self) -> str:
-        """Return what the change brings of all orders of the mesh, in a sentence."""
+        """Return a sentence on the change of all orders of the mesh together."""
         low, median, high = self.change_quantiles[:, :, 0]
         at = int(np.argmax(median))
         band = f"{median[at]:+.1f} dB ({low[at]:+.1f} to {high[at]:+.1f} dB) at {self.torque[at]:.4g} N m"
@@ -133,7 +134,7 @@ class FlankChange:
         return f"{said}: {band}, {100.0 * self.louder_share[at, 0]:.0f} % of the pairs get louder."
 
     def required(self) -> str:
-        """Return whether the requirement is met, in a sentence; empty where there is none."""
+        """Return a sentence on whether the requirement is met; empty without a requirement."""
         if self.requirement is None:
             return ""
         high = self.after.quantiles()[2, :, 0]
@@ -158,7 +159,7 @@ class FlankChange:
                 )
 
     def partings(self) -> Iterator[str]:
-        """Yield where flanks would part, so that no linear response holds."""
+        """Yield sentences on load cases in which flanks part, so that no linear response holds."""
         for name, design in (("before", self.before), ("after", self.after)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
                 torque = f"{self.torque[load]:.4g} N m"

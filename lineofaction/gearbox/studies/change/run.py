@@ -1,4 +1,4 @@
-"""What a change of flanks brings in a scene, over one sample of tolerances."""
+"""Study of a change of flanks in a scene, over one sample of tolerances."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ from model_studies.progress import announce
 from model_studies.stage_clock import StageClock
 
 IN_A_TASK = 5
-"""Pairs of a task: some seconds. It does not depend on who does the tasks."""
+"""Number of pairs in a task, which takes some seconds. The number is the same for any executor."""
 MAX_PAIRS = 10_000
-"""Of a job: two contact solutions each."""
+"""Most pairs of a job: each takes two contact solutions."""
 _TABLE = 0.08
 """CPU seconds of errors and forces of the table of a pair, measured 0.11 at 12 loads and 192 positions."""
 GEARS = ("pinion", "wheel")
@@ -69,7 +69,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
             _designs(mesh.case, inputs)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what transfer functions and pairs take; gears are condensed with the scene's table."""
+        """Return the cost of transfer functions and pairs; gears are condensed with the scene's table."""
         mesh = flank_mesh(scene, inputs.mesh)
         if mesh.case is None:
             return None

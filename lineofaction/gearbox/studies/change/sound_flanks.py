@@ -71,7 +71,7 @@ _AT_REST, _LEVEL = (6e-3, 1.2e-6), 0.01
 
 
 class FlankLevels(NamedTuple):
-    """Levels (L, K), dB, and by what share of the mesh force flanks part (L,), 0: not at all."""
+    """Levels (L, K), dB, and share of the mesh force by which flanks part (L,), 0: they do not."""
 
     level: FloatArray
     parting: FloatArray
@@ -79,11 +79,11 @@ class FlankLevels(NamedTuple):
 
 @dataclass(frozen=True)
 class HeardLoad:
-    """A load case: its transfer functions, the form of what is heard, and the lines of its harmonics."""
+    """A load case: transfer functions, quantity of sound or vibration, and lines of the harmonics."""
 
     load: LoadCase
     others: OtherFlanks = field(repr=False)
-    """Of the mesh, about the flanks about which the transfer functions are."""
+    """Scene at rest with other flanks of the mesh, linear about the flanks of the transfer functions."""
     transfer: FlankTransfer
     form: QuantityForm
     lines: FloatArray
@@ -94,7 +94,7 @@ class HeardLoad:
         return self.others.with_table(table.force_table())
 
     def power(self, flanks: FlankExcitation) -> FloatArray:
-        """Return what is heard of flanks at each speed and harmonic (S, H)."""
+        """Return the power of the quantity with these flanks at each speed and harmonic (S, H)."""
         return self.form.weighted(self.transfer.inputs(flanks))
 
     def parting(self, flanks: FlankExcitation) -> float:
@@ -108,15 +108,15 @@ class HeardLoad:
         return self.form.decibels(lines.max(axis=0) if worst_speed else lines.mean(axis=0))
 
     def errors(self, table: SteDatabase, worst_speed: bool) -> FloatArray:
-        """Return how far the levels may be below and above for the errors of a table, (2, K) dB.
+        """Return the errors of the levels below and above by the errors of a table, (2, K) dB.
 
         Those of transmission error, load arm and friction are independent; each adds in phase at worst. A
         stiffness that varies with position, which the levels leave out, comes on top.
         """
         scene = self.with_table(table)
         flanks = scene.excitation
-        torque = abs(float(flanks.mean_force[scene.mesh])) * table.facts.base_radius[0]
-        errors = excitation_errors(table, table.facts.normal_force(torque))
+        torque = abs(float(flanks.mean_force[scene.mesh])) * table.geometry.base_radius[0]
+        errors = excitation_errors(table, table.geometry.normal_force(torque))
         known = np.minimum(np.arange(len(self.lines) - 1), errors.load_arm.size - 1)
         of_table = errors.transmission_error, errors.load_arm, errors.friction
         parts = tuple(level[known] @ self.lines[1:] for level in of_table)
@@ -136,20 +136,20 @@ class HeardLoad:
 
 @dataclass(frozen=True)
 class HeardFlanks:
-    """A scene in which flanks of one mesh are heard."""
+    """A scene prepared to compute levels for other flanks of one mesh."""
 
     known: SteDatabase = field(repr=False)
-    """Table of the mesh in the scene: at its forces, misalignment and center distance flanks are solved."""
+    """Table of the mesh in the scene: flanks are solved at its forces, misalignment and center distance."""
     bodies: CondensedPair
-    """Of the mesh: both designs are flanks on them."""
+    """Condensed gears of the mesh, on which the flanks of both designs are solved."""
     worst_speed: bool
     load_cases: tuple[HeardLoad, ...] = ()
 
     @property
     def torque(self) -> FloatArray:
-        """On the driving gear of the mesh (L,), N m."""
+        """The torque on the driving gear of the mesh (L,), N m."""
         force = [case.others.excitation.mean_force[case.others.mesh] for case in self.load_cases]
-        return np.array(force) * self.known.facts.base_radius[0]
+        return np.array(force) * self.known.geometry.base_radius[0]
 
     def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
         """Return the table of flanks, at a misalignment beside that of the scene, m."""
@@ -169,7 +169,7 @@ class HeardFlanks:
         return FlankLevels(np.stack(level), np.array(parting))
 
     def errors(self, table: SteDatabase) -> FloatArray:
-        """Return how far levels may be below and above by the errors of a table, (2, L, K) dB."""
+        """Return the errors of the levels below and above by the errors of a table, (2, L, K) dB."""
         return np.stack([case.errors(table, self.worst_speed) for case in self.load_cases], axis=1)
 
     def of_pair(self, pair: ParallelAxes, names: Sequence[str], deviation: FloatArray) -> FlankLevels:
@@ -212,7 +212,7 @@ class LevelsCost(NamedTuple):
 
 
 def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> LevelsCost | None:
-    """Return what levels by the flanks of a mesh take; None: nothing predicts it.
+    """Return the cost of levels by the flanks of a mesh; None: nothing predicts it.
 
     Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
     """
@@ -230,7 +230,7 @@ def levels_cost(scene: SceneInput, mesh: str, question: HeardQuestion) -> Levels
 
 
 def period_orders(system: System, mesh: str, orders: int) -> int:
-    """Return how many orders of the first mesh that turns orders of a mesh reach to."""
+    """Return the number of orders of the first turning mesh that reach as far as orders of a mesh."""
     period, index = common_period(system), mesh_index(system.scene, mesh)
     if not period.pitches[index]:
         raise InputError("mesh", mesh, "one that turns")
@@ -271,7 +271,7 @@ def system_with(subject: TabledScene, mesh: str, table: SteDatabase, load: LoadC
 def _sound_model(
     subject: TabledScene, scene: Scene, hertz: FloatArray, quantity: str, means: Means
 ) -> SoundModel:
-    """Return what moves and radiates; of sound power with the estimate of its radiation."""
+    """Return the model of motion and radiation; for sound power with the estimate of its radiation."""
     bodies = {name: body for name, body in subject.housings.items() if body.surface is not None}
     sounding = bodies if quantity == SOUND_POWER else {}
     radiation = {

@@ -1,4 +1,4 @@
-"""What is complained of, over what case or scene says of it."""
+"""Inputs and figures of the study of a complaint about a sound."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from lineofaction.gearbox.schemas.figures import Equilibrium, Figures, Ledger, P
 
 
 class Inputs(ComplaintFields):
-    """What is complained of; what is left out is taken from case or scene."""
+    """Fields of a complaint; case or scene supply the fields that are left out."""
 
 
 class ComplaintFigures(Figures):
-    """What passes where it is complained of, the likeliest first, and the modes within reach."""
+    """Excitations near the order of the complaint by likelihood, and modes near its frequency."""
 
     class PassingFigures(Part):
         """A harmonic of a mesh, a shaft or a bearing, or a sideband of one.

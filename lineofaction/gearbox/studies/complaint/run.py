@@ -1,4 +1,4 @@
-"""A complaint: which mesh and harmonic it is, what else passes, which modes are within reach."""
+"""Study of a complaint: the likely mesh and harmonic, other excitations near it, modes within reach."""
 
 from __future__ import annotations
 
@@ -44,16 +44,18 @@ from lineofaction.gearbox.studies.figures import figures_of
 from lineofaction.gearbox.studies.modes.run import modes_cost
 from lineofaction.gearbox.studies.scene_before_tables import scene_before_tables, sized
 from model_studies import in_unit
+from model_studies.record import under_key
 
 REACH = 2.0
 """Least amplification by a mode within reach: 6 dB."""
 RESOLVED = 1.5
-"""Frequency to which shafts that bend are resolved, over that of the complaint: modes above have less."""
+"""Frequency up to which flexible shafts are resolved, over that of the complaint. A mode above it amplifies
+less than `REACH`."""
 MAX_ORDERS = 100
 _OF_PAIR, _ASSEMBLED = 1e-3, 3
-"""CPU seconds of the answer about a case; how often a scene is assembled."""
+"""CPU seconds of the answer about a case, and number of assemblies of a scene."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
-"""Facts of the answer about a case: teeth and speeds say it."""
+"""Facts of the answer about a case: it has no equilibrium, no effects and no parting."""
 
 
 @dataclass(frozen=True)
@@ -78,14 +80,14 @@ class OrderForce:
 @brief
 @dataclass(frozen=True)
 class AnsweredComplaint:
-    """The answer."""
+    """The answer to a complaint: forces and modes near its order."""
 
     complaint: Complaint
     forces: tuple[OrderForce, ...]
-    """Of all that passes within the tolerance, in its sequence."""
+    """Forces of the orders within the tolerance, in the sequence of the complaint."""
     modes: tuple[NearMode, ...]
-    """The most amplified first; empty without a speed, and of a case."""
-    facts: Json
+    """Modes near the frequency, the most amplified first; empty without a speed, and for a case."""
+    metadata: Json = field(metadata=under_key("facts"))
 
 
 class _ComplaintStudy(
@@ -123,7 +125,7 @@ class _ComplaintStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, _inputs: Inputs, _cache: Path | None
     ) -> StudyCost | None:
-        """Return what the modes and the lines at one speed take; of a case it is a count of teeth."""
+        """Return the cost of the modes and the lines at one speed; for a case it is a count of teeth."""
         if isinstance(subject, CheckedCase):
             return StudyCost((Work("orders", _OF_PAIR),))
         with boundary_errors():
@@ -157,7 +159,7 @@ class _ComplaintStudy(
         means.report("modes", 1.0)
         response = _response(system, complaint, speed)
         forces = tuple(_force(response, order, complaint.bearing) for order in _orders(complaint))
-        metadata = modes.facts | {"parting": _parting(response)}
+        metadata = modes.metadata | {"parting": _parting(response)}
         answer = AnsweredComplaint(complaint, forces, _near_modes(modes, complaint), metadata)
         return with_scene_metadata(answer, subject)
 
@@ -167,11 +169,11 @@ class _ComplaintStudy(
         return figures_of(
             ComplaintFigures,
             complaint,
-            result.facts,
+            result.metadata,
             words=sentence(complaint),
             tolerance_percent=100.0 * complaint.tolerance,
             torque=complaint.torques,
-            parting_percent=100.0 * result.facts.get("parting", 0.0),
+            parting_percent=100.0 * result.metadata.get("parting", 0.0),
             passing=[(force, _figures_of(line, complaint)) for line, force in within],
             nearest=[
                 (OrderForce("", np.nan), _figures_of(line, complaint)) for line in complaint.passing[:5]

@@ -147,7 +147,7 @@ class DeflectFigures(Figures):
             flanks: Flanks | None
 
         class Bearing(Part):
-            """A bearing under a load case, in the axes x, y, z; no life in hours: `rating_life` says why."""
+            """A bearing under a load case, in x, y, z; without a life `rating_life` has the reason."""
 
             name: str
             shaft: str
@@ -189,5 +189,5 @@ class DeflectFigures(Figures):
     meshes: list[MeshOverCases]
     bearings: list[BearingOverCases]
     cpu_seconds: Annotated[float, Source("seconds")] = Field(
-        description="With the tables and housings that were made for it"
+        description="CPU time, including the tables and housings that were made for the study"
     )

@@ -1,4 +1,4 @@
-"""Load cases of a scene from what a caller states of them."""
+"""Load cases of a scene from the inputs of a caller."""
 
 from __future__ import annotations
 

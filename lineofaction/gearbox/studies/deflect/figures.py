@@ -26,11 +26,11 @@ from lineofaction.gearbox.units import RPM, UM
 
 HOUR = 3600.0  # s
 ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
-"""Parts of the largest force of a bearing, and of all bearings: smaller ones are zero. Moments: times 1 m.
-Displacements as forces of all bearings."""
+"""Shares of the largest force of a bearing, and of the largest force of all bearings, below which a force is
+zero. Moments are compared times 1/m. Displacements are compared as forces of all bearings."""
 
 DIGITS = 3
-"""Of a misalignment in um behind the point."""
+"""Number of decimals of a misalignment in um."""
 
 
 def _loads_by_case(cases: Sequence[CaseDeflection]) -> list[list[BearingLoad]]:
@@ -92,7 +92,7 @@ def _over_cases(loads: Sequence[BearingLoad], weights: Sequence[float]) -> Defle
 
 
 class _Life(NamedTuple):
-    """The life of a bearing over load cases in h, not finite without a number; `rating_life` says why."""
+    """Life of a bearing over load cases in h; without a number `rating_life` has the reason."""
 
     rating_life_hours: float
     rating_life: RatingLife

@@ -44,12 +44,12 @@ class MeshContact:
     pair: ParallelAxes
     bodies: CondensedPair
     torques: FloatArray
-    """Torques on the case's pinion, N m: those of the load cases, a lower and a higher one. Shape (F,)."""
+    """Torques on the case's pinion, N m: torques of the load cases, a lower and a higher one. Shape (F,)."""
     tables: dict[float, SteDatabase] = field(default_factory=dict, repr=False)
     """Tables computed so far, by misalignment, m."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return how to copy the contact for a task: without the tables, which no task needs."""
+        """Return the recipe to copy the contact for a task: without the tables, which no task needs."""
         return type(self), (self.pair, self.bodies, self.torques)
 
     @property

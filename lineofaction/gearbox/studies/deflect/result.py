@@ -13,20 +13,21 @@ from dynamics.effects.ledger import mechanism_of
 from dynamics.scene import Scene
 from dynamics.shafts import Shaft
 from model_studies import in_unit
+from model_studies.record import under_key
 
 HARMONICS = 5
 RIGID_DIAMETER = 0.08
-"""Of a shaft without sections over its length: it is drawn as a line of some width."""
+"""Diameter over length with which a shaft without sections is drawn."""
 
 
 @dataclass(frozen=True)
 class MeshFlanks:
-    """A mesh on its flanks under a load case, at the alignment that was found."""
+    """A mesh on its flanks under a load case, at the alignment of the deflected shafts."""
 
     mesh: str
     case: str
     torque: float = field(metadata=in_unit("n_m"))
-    """On the pinion, N m."""
+    """Torque on the pinion, N m."""
     mean: float = field(metadata=in_unit("m"))
     """`mean`, `peak_to_peak`: Static transmission error, m."""
     mean_error: float = field(metadata=in_unit("m"))
@@ -41,18 +42,18 @@ class MeshFlanks:
     face_load_factor: float
     """K_Hbeta over the cycle; NaN in the plane."""
     load_arm_difference: float = field(metadata=in_unit("m"))
-    """Arm of the load on the flanks less that of the table by which the shafts were deflected, m; NaN in the
-    plane.
+    """Arm of the load on the flanks less the arm in the table by which the shafts were deflected, m; NaN in
+    the plane.
     """
     largest_pressure: float = field(metadata=in_unit("pa"))
-    """Pa."""
+    """Largest pressure on the flanks, Pa."""
     face_position: FloatArray = field(metadata=in_unit("m", "along_face"))
     face_load: FloatArray = field(metadata=in_unit("n_per_m", "along_face"))
-    """`face_position`, `face_load`: Along the face from the pinion's mid-face, m; mean load over the cycle
-    there, N/m. Shape (41,) each.
+    """`face_position`, `face_load`: Positions along the face from the pinion's mid-face, m, and mean load
+    over the cycle there, N/m. Shape (41,) each.
     """
     roll_length: FloatArray = field(metadata=in_unit("m", "along_profile"))
-    """Of the pinion, m. Shape (40,)."""
+    """Roll length of the pinion, m. Shape (40,)."""
     pattern: FloatArray = field(metadata=in_unit("pa", "along_profile", "along_face"))
     """Contact pattern: largest pressure over the cycle, Pa. Shape (40, 41)."""
 
@@ -65,19 +66,20 @@ class Outline:
     gears: tuple[str, ...]
     bearings: tuple[str, ...]
     origin: FloatArray = field(metadata=in_unit("m", "shaft", "axis"))
-    """Left ends of the axes. Shape (s, 3)."""
+    """Left ends of the shafts' axes. Shape (s, 3)."""
     length: FloatArray = field(metadata=in_unit("m", "shaft"))
-    """Shape (s,)."""
+    """Length of each shaft. Shape (s,)."""
     piece_shaft: IntArray = field(metadata={"dimensions": ("piece",)})
     """Index of the shaft of each piece. Shape (c,)."""
     piece: FloatArray = field(metadata=in_unit("m", "piece", "measure"))
-    """Its start along the shaft, its length, its diameters at the left and the right end. Shape (c, 4)."""
+    """Start of a piece along the shaft, its length, its diameters at the left and the right end. Shape (c,
+    4)."""
     gear_shaft: IntArray = field(metadata={"dimensions": ("gear",)})
     gear: FloatArray = field(metadata=in_unit("m", "gear", "size"))
     """Position of mid-face along the shaft, face width, operating pitch diameter. Shape (g, 3)."""
     bearing_shaft: IntArray = field(metadata={"dimensions": ("bearing",)})
     bearing: FloatArray = field(metadata=in_unit("m", "bearing"))
-    """Position along the shaft. Shape (b,)."""
+    """Position of a bearing along its shaft. Shape (b,)."""
 
     @staticmethod
     def of(scene: Scene) -> Outline:
@@ -104,25 +106,25 @@ class Outline:
 @brief
 @dataclass(frozen=True)
 class GearboxDeflection:
-    """The deflection of a gearbox and what it makes of its meshes."""
+    """The deflection of a gearbox and the results of its meshes at the deflected alignment."""
 
     deflection: Deflection
     flanks: tuple[MeshFlanks, ...]
-    """By load case, then by mesh; meshes in closed form have none."""
+    """Results on the flanks by load case, then by mesh; meshes in closed form have none."""
     passes: int
-    """Of tables and deflections until they agreed."""
+    """Number of passes of tables and deflections until they agreed."""
     change: float
-    """Of the misalignments by the last pass, relative."""
+    """Relative change of the misalignments by the last pass."""
     agreed: bool
     outline: Outline
     cases: Json
     """The cases of the meshes as they were written, by mesh."""
     seconds: float
-    """CPU time, with that of the tables and housings that were made for it."""
+    """CPU time, including the tables and housings that were made for the study."""
     scene: Json = field(default_factory=dict)
     """The scene as it was written, without the cases; empty in files of versions that did not keep it."""
-    facts: Json = field(default_factory=dict)
-    """The bodies that its `unit` is drawn as; empty in files of versions that did not keep it."""
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
+    """Facts, among them the bodies of the picture; empty in files of versions that did not store them."""
 
 
 def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:

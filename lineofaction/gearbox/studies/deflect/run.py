@@ -1,4 +1,4 @@
-"""Deflection of a scene: bodies and meshes in agreement, and what happens on the flanks."""
+"""Deflection of a scene: bodies and meshes in agreement, and the results on the flanks."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
         check_cases(scene, inputs.load_cases)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the tables of usual passes and the flanks of every load case take, by mesh."""
+        """Return the cost of the tables of usual passes and the flanks of every load case, by mesh."""
         count, cost = len(inputs.load_cases), StudyCost(())
         cases = [case for mesh in scene.meshes if isinstance(case := mesh.case, Case)]
         for case in {case.model_dump_json(): case for case in cases}.values():
@@ -146,7 +146,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
         for mesh in case.meshes:
             if mesh.name in inputs:
                 name = inputs[mesh.name].name
-                radius = tabled.databases[name].facts.base_radius[0]
+                radius = tabled.databases[name].geometry.base_radius[0]
                 torques.setdefault(name, []).append(mesh.force * radius)
     made: dict[str, MeshContact] = {}
     for mesh_input in {known.name: known for known in inputs.values()}.values():
@@ -165,7 +165,7 @@ def _usual_seconds(tabled: TabledScene) -> float:
 def _flanks(
     agreed: Agreement, contacts: Mapping[str, MeshContact], means: Means, seconds: float
 ) -> Iterator[MeshFlanks]:
-    """Yield what happens on the flanks; each is predicted to take so many CPU seconds."""
+    """Yield the results on the flanks; each is predicted to take so many CPU seconds."""
     items = [
         (case.name, mesh) for case in agreed.deflection.cases for mesh in case.meshes if mesh.name in contacts
     ]
@@ -176,7 +176,7 @@ def _flanks(
 
 
 def _on_flanks(contacts: Mapping[str, MeshContact], of: tuple[str, MeshAlignment]) -> MeshFlanks:
-    """Return what happens on the flanks of a mesh under a load case: one task."""
+    """Return the results on the flanks of a mesh under a load case: one task."""
     case, mesh = of
     contact = contacts[mesh.name]
     across = contact.across_face

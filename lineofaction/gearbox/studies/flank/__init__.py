@@ -12,7 +12,7 @@ from lineofaction.gearbox.units import boundary_ledger
 
 
 class Inputs(FlankPoint):
-    """One load and one alignment; what is left out is taken from the case."""
+    """One load and one alignment; the case supplies the fields that are left out."""
 
 
 class FlankFigures(Figures):
@@ -30,10 +30,10 @@ class FlankFigures(Figures):
     largest_face_load_factor: float
     largest_face_load_factor_error: float | None = None
     load_centroid_mm: tuple[float, float]
-    largest_line_load_n_per_mm: float = Field(description="Where no strip reaches an edge of a flank")
+    largest_line_load_n_per_mm: float = Field(description="Largest line load away from edges of a flank")
     largest_line_load_error_n_per_mm: float | None = None
     edge_line_load_n_per_mm: float | None = Field(
-        default=None, description="At edges, mean over `edge_length_mm`; 0: no edge is reached"
+        default=None, description="Line load at edges, mean over `edge_length_mm`; 0: no edge is reached"
     )
     edge_line_load_error_n_per_mm: float | None = None
     edge_length_mm: Annotated[float | None, Source("edge_length")] = Field(
@@ -42,12 +42,14 @@ class FlankFigures(Figures):
     peak_length_mm: Annotated[float | None, Source("slice_width")] = Field(
         default=None, description="Length along the face over which line load and K_Hbeta take their peak"
     )
-    largest_pressure_mpa: float = Field(description="Where no strip reaches an edge of a flank")
+    largest_pressure_mpa: float = Field(description="Largest pressure away from edges of a flank")
     largest_pressure_error_mpa: float | None = None
     error_reason: Annotated[str, Source("errors.reason")] = Field(
-        default="", description="Why errors that are null are not estimated"
+        default="", description="Reason why errors that are null are not estimated"
     )
-    edge_pressure_mpa: float = Field(description="At edges as if the flank went on; the true one is singular")
+    edge_pressure_mpa: float = Field(
+        description="Pressure at edges as if the flank continued beyond them; the true pressure is singular"
+    )
     effect_ledger: Annotated[
         list[Json] | Json, Source("metadata.effect_ledger", document=True, turned=boundary_ledger)
     ]

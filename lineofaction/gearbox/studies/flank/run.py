@@ -1,4 +1,4 @@
-"""Flank results of a case: from one load and one alignment to what happens on the flanks."""
+"""Flank results of a case at one load and one alignment."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from lineofaction.gearbox.units import MM, MPA, UM, as_typed
 
 
 def flanks_of(checked: CheckedCase, run: Run) -> LoadDistribution:
-    """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
+    """Return the results on the flanks of a case of one load and one alignment, over a mesh cycle.
 
     Its warnings are in the fields and units of the case. Raises `BadInput`: no such pair, or a request that
     no plan can meet; `JobFailed`: no mesh, or positions without a solution.
@@ -41,7 +41,7 @@ class _FlankStudy(PointStudy[FlankFigures, LoadDistribution]):
     )
 
     def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
-        """Return what the bodies and one solution with its errors take."""
+        """Return the cost of the bodies and of one solution with its errors."""
         with boundary_errors():
             predicted = predicted_designs(case.at_point, cache)
         contact = Work("contact", predicted.design), Work("its errors", predicted.errors)

@@ -13,7 +13,7 @@ MAX_FULL_CONTACT = 64
 
 
 class Inputs(BoundaryModel):
-    """The fidelities to run, and full contact beside those of a case."""
+    """The fidelities to run, and whether full contact is run too for a case."""
 
     rungs: Row[Name] | None = Field(
         default=None,
@@ -43,7 +43,7 @@ class FrontierFigures(Figures):
     """Error against time; the reference is the finest fidelity, the knee where time buys least."""
 
     class FidelityFigures(Part):
-        """One fidelity: its CPU time, and its errors against the finest one, relative."""
+        """One fidelity: its CPU time, and its relative errors against the finest fidelity."""
 
         name: str
         title: str

@@ -53,7 +53,7 @@ class _FrontierStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
     ) -> StudyCost | None:
-        """Return what the valid fidelities take; of a scene its runs, by the steps of their tolerances."""
+        """Return the cost of the valid fidelities; of a scene's runs by the steps of their tolerances."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         if isinstance(subject, SceneInput):
             return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")

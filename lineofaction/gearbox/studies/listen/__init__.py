@@ -1,4 +1,4 @@
-"""A run that is heard through the housings of a scene, and where."""
+"""Inputs and figures of a run that is heard through the housings of a scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TONE = ("frequency", "tone_to_noise")
 
 
 class Inputs(BoundaryModel):
-    """A run that is heard through the housings of a scene, and where."""
+    """A run, the scene whose housings it moves, and the microphone or point."""
 
     model_config = ConfigDict(json_schema_extra=all_of(at_most_one_of(*_PLACES)))
 
@@ -28,8 +28,8 @@ class Inputs(BoundaryModel):
     )
     microphone_mm: Position | None = Field(
         default=None,
-        description="Where the sound pressure is heard, in mm in the frame of the scene: free field; default "
-        "without a point: the microphone of the scene's complaint",
+        description="Microphone of the sound pressure in a free field, in mm in the frame of the scene; "
+        "default without a point: the microphone of the scene's complaint",
         examples=[[40.0, 60.0, 1000.0]],
     )
     point: str | None = Field(
@@ -51,7 +51,7 @@ class Inputs(BoundaryModel):
 
 
 class SoundPressure(Part):
-    """What the ear makes of a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
+    """Figures of hearing a sound pressure; loudness and sharpness need the extra `psychoacoustics`."""
 
     class Tone(Part):
         """A prominent tone of a steady sound."""

@@ -1,4 +1,4 @@
-"""Runs as they are heard through the housings of a scene: recording, and what the ear makes of it."""
+"""Sound of runs through the housings of a scene: a recording, and its figures as the ear rates them."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from lineofaction.gearbox.units import MM
 PRINCIPAL = "principal"
 DIRECTIONS = ("x", "y", "z", PRINCIPAL)
 KIND, SCHEMA = "recording", "lineofaction recording"
-"""Of its files: kind of the result, and attribute."""
+"""Kind of the result, and attribute of its files."""
 NO_LOUDNESS = "loudness is that of a sound pressure alone"
 FREE_FIELD = (
     "free field: no room, floor or attached parts; the air is at rest and does not act back. Each mode has "
@@ -38,7 +38,7 @@ FREE_FIELD = (
     "monopoles, which neither scatter nor shadow: at one place it may be off by more"
 )
 POINTS = 200
-"""Of the way along an axis."""
+"""Number of times of the speed in a result, equally spaced over the run."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class SceneHousings:
 
     @classmethod
     def of(cls, subject: HousedScene, means: Means) -> SceneHousings:
-        """Return those of a scene."""
+        """Return the housings of a scene."""
         return cls(subject.housings, {part.name: part.bushings for part in subject.inputs.housings}, means)
 
     def pressure(self, run: RunResult, microphone_mm: tuple[float, ...]) -> Recording:
@@ -103,9 +103,9 @@ def _require_point(point: str, names: Sequence[str]) -> None:
 
 @dataclass(frozen=True)
 class Receiver:
-    """Where a run is heard: at a microphone (mm) in the frame of the scene, or at a point of a housing.
+    """Place where a run is heard: a microphone (mm) in the frame of the scene, or a point of a housing.
 
-    `direction` is one of `DIRECTIONS`; empty: in which the point moves most.
+    `direction` is one of `DIRECTIONS`; empty: the direction of the largest motion of the point.
     """
 
     microphone_mm: tuple[float, ...] = ()
@@ -131,19 +131,19 @@ class HeardRun:
     """A run through the housings of a scene."""
 
     run: str
-    """Its name, or its content hash."""
+    """Name of the run, or its content hash."""
     recording: Recording
     figures: SoundFigures | None
-    """Of a sound pressure."""
+    """Figures of a sound pressure; None for a motion."""
     other_housings: tuple[str, ...]
-    """Housings that the scene of the run did not have so."""
+    """Names of housings that the scene of the run did not have, or had with other data."""
     time: FloatArray
     speed: FloatArray
-    """`time`, `speed`: s; of the driving gear of the first mesh, rad/s. Shape (n,) each."""
+    """`time`, `speed`: Times, s, and speed of the driving gear of the first mesh, rad/s. Shape (n,) each."""
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What the recording leaves out."""
+        """The remarks on effects that the recording leaves out."""
         remark_on_sound = NO_LOUDNESS if self.figures is None else FREE_FIELD
         return (remark_on_sound, *(warning["message"] for warning in self.warnings))
 
@@ -179,7 +179,7 @@ def received_run(name: str, run: RunResult, housings: SceneHousings, receiver: R
 
 
 def recording_metadata(recording: Recording) -> Json:
-    """Return what a recording holds, in its unit."""
+    """Return the facts of a recording, in its unit."""
     return {
         "quantity": recording.quantity,
         "unit": recording.unit,

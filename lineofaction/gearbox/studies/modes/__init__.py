@@ -12,7 +12,7 @@ from lineofaction.gearbox.schemas.studied import MAX_SPEEDS, Orders, OverSpeeds,
 
 
 class Inputs(OverSpeeds):
-    """Speeds at which modes are looked for, beside those at rest."""
+    """Speeds at which modes are computed, in addition to modes at rest."""
 
     at_rest: ClassVar[bool] = True
     speed_rpm: Row[Speed] = Field(
@@ -32,7 +32,7 @@ class Inputs(OverSpeeds):
 
 
 class Mode(Part):
-    """What a mode is: where its strain and kinetic energy are, in parts; parts below 0.1 % are left out."""
+    """Shares of the strain and the kinetic energy of a mode by part; shares below 0.1 % are left out."""
 
     mode: int
     kind: str

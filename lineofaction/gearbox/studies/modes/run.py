@@ -37,7 +37,7 @@ MAX_GROUPS = 12
 
 
 def modes_cost(system: System, speeds: int) -> StudyCost:
-    """Return what the modes of a system at rest and at so many speeds take."""
+    """Return the cost of the modes of a system at rest and at a number of speeds."""
     freedoms = system.freedoms.column.size
     at_rest, per_speed = _AT_REST * freedoms**2, _LINEAR * freedoms + _CUBIC * freedoms**3
     return StudyCost((Work("modes at rest", at_rest), Work("modes at speed", per_speed, speeds)))
@@ -47,7 +47,7 @@ class _ModesStudy(SceneStudy[Inputs, ModesFigures, ModalAnalysis]):
     inputs, answer, file = Inputs, ModesFigures, array_file(ModalAnalysis)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the modes at rest and at every speed take, by the number of freedoms.
+        """Return the cost of the modes at rest and at every speed, by the number of freedoms.
 
         Modes that a solid housing keeps are not known before and do not count.
         """
@@ -122,7 +122,7 @@ def surface_shape(modes: ModalAnalysis, shape: Any) -> SurfaceShape | None:
 
     if not modes.surface_motion.size:
         return None
-    hulls = [Hull.of(part) for part in modes.facts[UNIT] if part["kind"] == HOUSING]
+    hulls = [Hull.of(part) for part in modes.metadata[UNIT] if part["kind"] == HOUSING]
     first = np.cumsum([0] + [len(hull.points) for hull in hulls])
     facets = [hull.facets + start for hull, start in zip(hulls, first[:-1], strict=True)]
     motion = np.asarray(modes.surface_motion @ shape, dtype=complex)

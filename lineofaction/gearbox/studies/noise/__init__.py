@@ -44,14 +44,14 @@ class Inputs(NoiseRanges, OverSpeedsOrRun):
     )
     microphone_mm: Point | None = Field(
         default=None,
-        description="Where the sound pressure is found too, x, y, z in mm in the frame of the scene: free "
-        "field; default: the microphone of the scene's complaint, if it has one",
+        description="Microphone of the sound pressure in a free field, x, y, z in mm in the frame of the "
+        "scene; default: the microphone of the scene's complaint, if it has one",
         examples=[[40.0, 60.0, 1000.0]],
     )
 
 
 class ExactLineFigures(Part):
-    """A line that boundary elements correct: its level by the estimate and by them, and what it cost."""
+    """A line that boundary elements correct: its level by the estimate, its corrected level, and the cost."""
 
     frequency_hz: float
     estimate_db: Annotated[float, Source("estimate")]
@@ -61,7 +61,7 @@ class ExactLineFigures(Part):
 
 
 class HousingSound(Part):
-    """How a housing radiates: outer hull, radiation model, the models where it is loudest, and what it cost.
+    """Radiation of a housing: outer hull, radiation model, models at the loudest lines, and their cost.
 
     Stated error and predicted cost are those of all models, computed or not.
     """
@@ -135,7 +135,7 @@ class SoundBandFigures(Part):
 
 
 class SensitivityFigures(Part):
-    """What steps of a figure change of the largest level; None: without end."""
+    """Changes of the largest level by steps of a figure; None: without limit."""
 
     figure: Annotated[str, Source("figure.name")]
     unit: Annotated[str, Source("figure.unit")]
@@ -191,13 +191,13 @@ class NoiseFigures(Figures):
     """
 
     class BearingSound(Part):
-        """Levels by order, then by speed: by the force of a bearing alone, and of what is left without it."""
+        """Levels by order, then by speed: by the force of a bearing alone, and without this force."""
 
         alone_db_a: Annotated[list[list[float]], Source("bearing_alone_level")]
         without_db_a: Annotated[list[list[float]], Source("level_without_bearing")]
 
     class LoudPoint(Part):
-        """An order at a speed at which it is louder than at the speeds beside it."""
+        """An order at a speed at which it is louder than at the neighboring speeds."""
 
         order: float
         speed_rpm: float

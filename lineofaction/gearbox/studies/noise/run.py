@@ -43,7 +43,11 @@ from lineofaction.gearbox.studies.housings import (
     require_surface,
 )
 from lineofaction.gearbox.studies.noise import Inputs, NoiseFigures
-from lineofaction.gearbox.studies.noise.facts import pressure_metadata, sound_metadata, uncertainty_metadata
+from lineofaction.gearbox.studies.noise.metadata import (
+    pressure_metadata,
+    sound_metadata,
+    uncertainty_metadata,
+)
 from lineofaction.gearbox.studies.noise.uncertainty import uncertainty
 from lineofaction.gearbox.units import MM
 from model_studies.workers import spent
@@ -78,7 +82,7 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         require_surface(subject)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what the response, those of its band, and a usual radiation take.
+        """Return the cost of the response, of the responses of its band, and of a usual radiation.
 
         How many panels a housing has its mesh says, which is not made before: of one that is larger or finer
         than a usual gear case the panels take more. Contacts of sensitivities are not predicted.
@@ -108,8 +112,8 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
         with boundary_errors():
             surfaces = _surfaces(subject)
             sound = scene_sound(response, surfaces, _radiation(inputs, means), means.run)
-        seconds = {**response.facts["seconds"], "sound": spent(means.workers) - began}
-        metadata = sound_metadata(sound, response.facts, scene_metadata(subject)) | {"seconds": seconds}
+        seconds = {**response.metadata["seconds"], "sound": spent(means.workers) - began}
+        metadata = sound_metadata(sound, response.metadata, scene_metadata(subject)) | {"seconds": seconds}
         known = uncertainty(subject, sound, inputs, means)
         metadata |= uncertainty_metadata(known)
         if known.seconds is not None:
@@ -119,10 +123,10 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
             with boundary_errors():
                 pressure = microphone_pressure(response, sound.housings, np.array(microphone) * MM, bands)
             metadata["pressure"] = pressure_metadata(pressure)
-        return replace(sound.power, facts=metadata)
+        return replace(sound.power, metadata=metadata)
 
     def _derived(self, sound: RadiatedSound) -> Json:
-        metadata = sound.facts
+        metadata = sound.metadata
         center, bands = sound.orders.third_octaves()
         radiation, models, regions = (metadata[name] for name in ("radiation", "models", "regions"))
         points = zip(loudest(sound), regions, strict=True)
@@ -139,12 +143,12 @@ class _NoiseStudy(SceneStudy[Inputs, NoiseFigures, RadiatedSound]):
 
 
 def _usual_lines(points: int) -> int:
-    """Return how many lines boundary elements usually correct: 1 of 4 points, 3 of 36."""
+    """Return the usual number of lines that boundary elements correct: 1 of 4 points, 3 of 36."""
     return min(LINES, math.ceil(0.5 * math.sqrt(points)))
 
 
 def _microphone(scene: SceneInput, inputs: Inputs) -> tuple[float, ...] | None:
-    """Return where the sound pressure is found, mm; None: nowhere."""
+    """Return the position of the microphone, mm; None: no microphone."""
     if inputs.microphone_mm is not None or scene.complaint is None or inputs.radiation == PLANE.model_name:
         return inputs.microphone_mm
     return scene.complaint.microphone_mm

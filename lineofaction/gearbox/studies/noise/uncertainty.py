@@ -1,4 +1,4 @@
-"""Bands of the levels of a scene, and what 1 dB costs where."""
+"""Bands of the levels of a scene, and the changes of its figures that lower the largest level by 1 dB."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ from lineofaction.gearbox.studies.study.scenes import VariedScene, places_of
 GEARS = ("pinion", "wheel")
 AMOUNTS = ("tip_relief_um", "profile_crowning_um", "helix_crowning_um")
 STEP = 2.0
-"""um; a tolerance of class 5 is about as much."""
+"""Step of an amount of relief or crowning, um; about the tolerance of class 5."""
 
 
 class KnownDamping(NamedTuple):
-    """Where the damping of housings comes from, and the factors between which it then lies."""
+    """Source of the damping of housings, and the factors between which the true damping lies."""
 
     source: str
     factors: tuple[float, float]
 
 
 GUESSED = KnownDamping("guessed", (0.4, 2.0))
-"""About ratios of 0.005: cast iron with bolted joints has 0.002 to 0.01."""
+"""Factors about ratios of 0.005: cast iron with bolted joints has 0.002 to 0.01."""
 SPECIFIED = KnownDamping("stated", (0.7, 1.4))
-"""One figure for all modes, which differ."""
+"""Factors of one stated figure for all modes, whose damping differs by mode."""
 MEASURED = KnownDamping("measured by mode", (0.85, 1.2))
-"""What one assembly differs from the next."""
+"""Factors between one assembly and the next."""
 
 
 def damping_of(scene: SceneInput, housings: Collection[str]) -> KnownDamping:
@@ -70,16 +70,16 @@ def _known_damping(housing: HousingInput) -> KnownDamping:
 
 @dataclass(frozen=True)
 class SoundUncertainty:
-    """How far levels may be off by what is guessed, and what a step of each figure changes."""
+    """Bands of the levels by guessed figures, and the changes of the largest level by steps of figures."""
 
     damping: KnownDamping
-    """Of the housings."""
+    """Damping of the housings."""
     band: SoundBand | None
-    """None: not requested."""
+    """Band of the levels; None: not requested."""
     sensitivities: tuple[Sensitivity, ...]
-    """Of the largest level; none where they are not requested."""
+    """Sensitivities of the largest level; empty: not requested."""
     left_out: Mapping[str, str]
-    """Why figures have no sensitivity, by name."""
+    """Reasons why figures have no sensitivity, by name of the figure."""
     seconds: float | None
     """CPU time; None: nothing was requested."""
 
@@ -115,7 +115,7 @@ def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
 def _sensitivities_of(
     subject: TabledScene, model: SoundModel, speed: FloatArray, orders: int, means: Means
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return what steps of damping, stiffness and flanks change, and why others have no result."""
+    """Return changes by steps of damping, stiffness and flanks, and reasons why others have none."""
 
     def scenes(flank: DesignFigure) -> Callable[[float], Scene]:
         varied = _flank_scenes(subject, flank.name, means.home)

@@ -21,7 +21,7 @@ from lineofaction.gearbox.studies.scatter import ToleranceInputs
 
 TRIALS, SOUND_TRIALS = 3, 8
 PAIRS = 32
-"""Over which start and optimum are told: a few CPU seconds."""
+"""Number of pairs over which start and optimum are compared: a few CPU seconds."""
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 _LIST = (Strict(False), Field(min_length=1, max_length=64))
 Torques = Annotated[tuple[Load, ...], *_LIST]
@@ -63,11 +63,11 @@ class GearVariablesInput(BoundaryModel):
 
 @with_fields({figure.field: _deviation(figure) for figure in _FREE})
 class GearScatterInput(BoundaryModel):
-    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+    """Standard deviations of one gear's modifications as manufactured; one that is left out is 0."""
 
 
 class ScatterInput(BoundaryModel):
-    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+    """Independent normal deviations from the design, and the quadrature rule of their expectation."""
 
     misalignment_um: float = Field(
         default=0.0,
@@ -97,7 +97,7 @@ class ScatterInput(BoundaryModel):
 
 
 class SearchInput(BoundaryModel):
-    """How the best design is searched."""
+    """Method and settings of the search for the best design."""
 
     method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
         default="sequential_linear_programming",
@@ -148,7 +148,7 @@ class SearchInput(BoundaryModel):
 
 
 class HeardObjectiveInput(OverOrders, HeardInput):
-    """What is heard of a scene: a level over speeds and load cases, which is minimized."""
+    """Level of a scene over speeds and load cases, which is minimized."""
 
     mesh: Name | None = Field(
         default=None,
@@ -188,7 +188,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
     @property
     def heard(self) -> HeardInput:
-        """What is made of the scene's vibration."""
+        """The quantity of the scene's vibration whose level is minimized."""
         return self
 
     @model_validator(mode="after")
@@ -205,7 +205,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
 
 class Inputs(BoundaryModel):
-    """An optimization of flank modifications: of a case by its ripple, of a scene by what is heard."""
+    """Inputs of an optimization of flank modifications: of a case by its ripple, of a scene by its level."""
 
     class VariablesInput(BoundaryModel):
         """Design variables of both gears."""
@@ -228,7 +228,7 @@ class Inputs(BoundaryModel):
         )
 
     class ObjectiveInput(BoundaryModel):
-        """What is made of the expected peak-to-peak at the torques."""
+        """Objective from the expected peak-to-peak at the torques."""
 
         kind: Literal["weighted_mean", "worst"] = Field(
             default="weighted_mean", description="Mean over the torques, or the largest", examples=["worst"]
@@ -241,7 +241,7 @@ class Inputs(BoundaryModel):
         )
 
     class LimitsInput(BoundaryModel):
-        """What a design has to keep at every torque and deviation."""
+        """Limits that a design keeps at every torque and deviation."""
 
         max_pressure_mpa: float | None = Field(
             default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
@@ -292,7 +292,7 @@ class Inputs(BoundaryModel):
     limits: LimitsInput = Field(default=LimitsInput(), description="Limits to meet")
     heard: HeardObjectiveInput | None = Field(
         default=None,
-        description="Of a scene: what is heard, and is minimized in place of the peak-to-peak",
+        description="Level of a scene that is minimized in place of the peak-to-peak",
         examples=[None],
         exclude_if=lambda value: value is None,
     )
@@ -341,7 +341,7 @@ class HeardDesignFigures(Part):
 
 
 class WithinFigures(Part):
-    """Levels of pairs within tolerances: what 5, 50 and 95 % are below, and the share that gets louder."""
+    """Levels of pairs within tolerances: quantiles of 5, 50 and 95 %, and the share that gets louder."""
 
     tolerance_class: int
     pairs: int
@@ -352,7 +352,7 @@ class WithinFigures(Part):
 
 
 class HeardFigures(Part):
-    """What is heard before and after, by load case then by order ("all": all of them together)."""
+    """Levels before and after, by load case then by order ("all": all orders together)."""
 
     class LineFigures(Part):
         """An order of the mesh, or all orders together."""
@@ -382,10 +382,10 @@ class HeardFigures(Part):
 
 
 class OptimizeFigures(Figures):
-    """The start and the optimum, what was free, and how the search ended; of a scene what is heard."""
+    """The start and the optimum, the variables, and the end of the search; for a scene the levels."""
 
     class VariableFigures(Part):
-        """What was free, between bounds in the unit of its name."""
+        """A variable of the search, with bounds in the unit of its name."""
 
         name: str
         bounds: tuple[float, float]

@@ -1,4 +1,4 @@
-"""Flanks that are heard least in a scene: levels before and after, and what gets worse."""
+"""Quietest flanks of a mesh in a scene: levels before and after the search, and figures that get worse."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from model_studies import in_unit
 from model_studies.spread import quantiles
 
 FALL = 25.0
-"""dB below the loudest line: what is lower is not told."""
+"""Level in dB below the loudest line from which a line is not mentioned."""
 MORE = 0.01
-"""Parts by which a pressure or a face load factor has to rise to be told."""
+"""Relative rise of a pressure or a face load factor from which the rise is mentioned."""
 
 
 @dataclass(frozen=True)
@@ -29,91 +29,95 @@ class HeardDesign:
     """A design under L load cases in K lines."""
 
     values: dict[str, float]
-    """``gear.quantity`` to m."""
+    """Values of the variables in m, by ``gear.quantity``."""
     objective: Estimate
-    """dB."""
+    """Level that is minimized, with its error, dB."""
     level: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
     level_error: FloatArray = field(metadata=in_unit("dB", "load_case", "line"))
-    """`level`, `level_error`: dB; the error is that of the discretization of the contact. Shape (L, K) each.
+    """`level`, `level_error`: Levels and the errors of the contact's discretization in them, dB. Shape (L, K)
+    each.
     """
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "load_case"))
     peak_to_peak_error: FloatArray = field(metadata=in_unit("m", "load_case"))
-    """`peak_to_peak`, `peak_to_peak_error`: Of the transmission error without scatter, m. Shape (L,) each."""
+    """`peak_to_peak`, `peak_to_peak_error`: Peak-to-peak of the transmission error without scatter, and its
+    error, m. Shape (L,) each."""
     pressure: FloatArray = field(metadata=in_unit("pa", "load_case"))
     """Largest Hertzian pressure at any node of the scatter, Pa. Shape (L,)."""
     face_load_factor: FloatArray
     edge_load_share: FloatArray
-    """`face_load_factor`, `edge_load_share`: Shape (L,) each."""
+    """`face_load_factor`, `edge_load_share`: K_Hbeta, and share of the load at edges. Shape (L,) each."""
     parting: FloatArray
     """Largest share of the static mesh force by which flanks part at a speed, 0: they do not. Shape (L,)."""
     violation: float
-    """Of the limits, in parts of them."""
+    """Relative amount by which the limits are exceeded; 0: all limits hold."""
     root_stress: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     root_stress_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
-    """`root_stress`, `root_stress_error`: Largest in the tension roots at any node of the scatter, Pa; NaN
-    without a limit of it. Shape (L,) each.
+    """`root_stress`, `root_stress_error`: Largest stress in the tension roots at any node of the scatter, and
+    its error, Pa; NaN without a limit on root stress. Shape (L,) each.
     """
     pressure_error: FloatArray = field(
         default_factory=lambda: np.full(1, np.nan), metadata=in_unit("pa", "load_case")
     )
     face_load_factor_error: FloatArray = field(default_factory=lambda: np.full(1, np.nan))
-    """`pressure_error`, `face_load_factor_error`: Of the discretization; NaN: not estimated. Shape (L,) each.
+    """`pressure_error`, `face_load_factor_error`: Errors of the discretization; NaN: not estimated. Shape
+    (L,) each.
     """
 
 
 @brief
 @dataclass(frozen=True)
 class HeardOptimization:
-    """The start and the optimum of a search by what is heard."""
+    """The start and the optimum of a search for the quietest flanks."""
 
     mesh: str
     quantity: str
     unit: str
     over_speeds: str
     over_loads: str
-    """`mesh`, `quantity`, `unit`, `over_speeds`, `over_loads`: What is minimized, in words; the unit with its
-    reference.
+    """`mesh`, `quantity`, `unit`, `over_speeds`, `over_loads`: Words for the minimized figure; the unit with
+    its reference.
     """
     lines: tuple[str, ...]
-    """`ALL` orders that count together, then the orders of the mesh."""
+    """Names of the lines: `ALL` orders that count together, then the orders of the mesh."""
     variables: tuple[DesignVariable, ...]
     load_case: tuple[str, ...]
     torque: FloatArray = field(metadata=in_unit("n_m", "load_case"))
     misalignment: FloatArray = field(metadata=in_unit("m", "load_case"))
-    """`torque`, `misalignment`: On the driving gear of the mesh, N m, and of the mesh, m. Shape (L,) each."""
+    """`torque`, `misalignment`: Torque on the driving gear of the mesh, N m, and misalignment of the mesh, m.
+    Shape (L,) each."""
     speed: FloatArray = field(metadata=in_unit("rad s-1", "speed"))
-    """Of the leading shaft, rad/s. Shape (S,)."""
+    """Speed of the leading shaft, rad/s. Shape (S,)."""
     start: HeardDesign
     optimum: HeardDesign
     runs: tuple[SearchRun, ...]
     best_run: int
     tolerance_class: int
     pairs: FloatArray = field(metadata=in_unit("dB", "design", "pair"))
-    """Levels of start and optimum with the same deviations within that class, dB; none where it has none.
-    Shape (2, N).
+    """Levels of start and optimum with the same deviations within the tolerance class, dB; empty without a
+    class. Shape (2, N).
     """
     case: Json
-    """Of the mesh, as a case file has it."""
+    """Case of the mesh, as a case file has it."""
     cost: Json
     """Evaluations, and CPU seconds by stage."""
 
     @property
     def gain(self) -> Estimate:
-        """By how much the level falls, dB; the errors are added, although both designs have one mesh."""
+        """The fall of the level, dB; the errors of both designs are added, although they share a mesh."""
         return gain_of(self.start, self.optimum)
 
     @property
     def evaluations(self) -> int:
-        """Designs that the search evaluated."""
+        """The number of designs that the search evaluated."""
         return sum(run.evaluations for run in self.runs)
 
     @property
     def outcome(self) -> Outcome:
-        """What came of it: ties within the errors are ties."""
+        """The outcome of the search; designs whose levels differ by less than the errors are tied."""
         return outcome_of(self.start, self.optimum)
 
     @property
@@ -134,7 +138,7 @@ class HeardOptimization:
         return sentences[self.outcome]
 
     def ended(self) -> str:
-        """Return how the search ended, and how many of its starts agree, in a sentence."""
+        """Return a sentence on the end of the search, and on the number of its starts that agree."""
         run, ends = self.runs[self.best_run], np.array([end for start in self.runs for end in start.ends])
         ended = "The search converged" if run.converged else f"The search ended: {run.ended.value}"
         same = max(AUDIBLE, self.optimum.objective.error)
@@ -158,7 +162,7 @@ class HeardOptimization:
         return float(np.mean(self.pairs[1] > self.pairs[0]))
 
     def within_tolerances(self) -> str:
-        """Return what the flanks bring of pairs as they are made, in a sentence; empty where none are."""
+        """Return a sentence on the change for pairs as made; empty without a tolerance class."""
         if not self.pairs.size:
             return ""
         (_, _, before), (_, _, after), (low, median, high) = self.bands
@@ -169,7 +173,7 @@ class HeardOptimization:
         )
 
     def worse(self) -> Iterator[str]:
-        """Yield what gets worse: orders by load case, largest first, then ripple, pressure, K_Hbeta."""
+        """Yield figures that get worse: orders by load case, largest first, ripple, pressure, K_Hbeta."""
         before, after = self.start, self.optimum
         change, error = after.level - before.level, before.level_error + after.level_error
         floor = max(before.level.max(), after.level.max()) - FALL
@@ -196,12 +200,12 @@ class HeardOptimization:
             yield f"{name} at {self.torque[load]:.4g} N m {ends}"
 
     def costs(self) -> str:
-        """Return what gets worse, in a sentence."""
+        """Return a sentence on the figures that get worse."""
         worse = list(self.worse())
         return f"Gets worse: {'; '.join(worse)}." if worse else "Nothing gets worse beyond its error."
 
     def partings(self) -> Iterator[str]:
-        """Yield where flanks would part, so that no linear response holds."""
+        """Yield sentences on load cases in which flanks part, so that no linear response holds."""
         for name, design in (("the start", self.start), ("the optimum", self.optimum)):
             for load in np.flatnonzero(design.parting > 0.0).tolist():
                 yield f"Flanks of {name} would part at {self.torque[load]:.4g} N m: no linear level holds."

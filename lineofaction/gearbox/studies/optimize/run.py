@@ -58,7 +58,7 @@ from lineofaction.gearbox.units import UM, factor, in_um
 
 MPA = 1e6
 OF_CASE = ("torque_n_m", "misalignment_um", "objective")
-"""Fields that a scene has in its load cases, and in what is heard."""
+"""Fields of a case that a scene has in its load cases and its objective."""
 
 
 def _write_case(
@@ -107,7 +107,7 @@ class _OptimizeStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, study: Inputs, cache: Path | None
     ) -> StudyCost | None:
-        """Return what the gears, the designs of a usual search and both analyses at the end take."""
+        """Return the cost of the gears, the designs of a usual search, and both analyses at the end."""
         if isinstance(subject, SceneInput):
             question, mesh = _question_of(subject, study)
             check_receiver(subject, question)
@@ -196,7 +196,7 @@ class _OptimizeStudy(
 
 
 def _question_of(scene: SceneInput, study: Inputs) -> tuple[HeardObjectiveInput, MeshInput]:
-    """Return what is heard of a scene, and the mesh; raises `BadInput`."""
+    """Return the objective on the sound of a scene, and the mesh; raises `BadInput`."""
     if study.heard is None:
         remedy = "For example heard = { speed_rpm = [1000, 2000, 3000] }."
         raise BadInput.of("heard", None, "given with a scene", remedy)
@@ -345,7 +345,7 @@ def _search(search: SearchInput, *, of_sound: bool) -> Search:
 
 
 def _scattering(result: Optimization) -> Json:
-    """Return what scatters, by the fields of a case file."""
+    """Return the scattering variables by the fields of a case file."""
     scatter = result.asked["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
     spread = {

@@ -1,4 +1,4 @@
-"""The search for flanks that are heard least: levels by the tables of a design, and their merit."""
+"""The search for the quietest flanks of a scene: levels by the tables of a design, and their merit."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ from model_studies.spread import quantiles
 from model_studies.workers import InProcess, Workers, divided
 
 LOAD_FACTORS = np.array([1.0 - 1e-3, 1.0, 1.0 + 1e-3])
-"""Loads of a table in parts of that of a load case: beside it, for how arm and stiffness change with it."""
+"""Loads of a table over the load of a load case. The neighbors give the change of load arm and stiffness with
+load."""
 STEP = 2e-9
 """Largest change of a transmission error, m, over which the derivative of an excitation is a difference."""
 CUTS, CLOSE = 40, 1e-3
-"""Linear programs of a step at most, and where they end, in parts of the merit."""
+"""Most linear programs of a step, and relative change of the merit at which they end."""
 FOLLOWED = 12
-"""Rows that each of them takes cuts of: the largest."""
+"""Number of rows, the largest ones, of which each linear program takes cuts."""
 
 _Node = tuple[list[LoadFigures], FloatArray]
 
@@ -49,20 +50,20 @@ class Powers(NamedTuple):
 
 @dataclass(frozen=True)
 class HeardAt:
-    """A load case of the scene, and what other flanks excite there."""
+    """A load case of the scene, with the excitation of its other flanks."""
 
     case: HeardLoad
     counted: FloatArray
-    """1 where a harmonic of the common period counts. Shape (H,)."""
+    """1 for each harmonic of the common period that counts, else 0. Shape (H,)."""
     share: float
-    """Of the duration; those of all load cases add up to 1."""
+    """Share of the duration; the shares of all load cases add up to 1."""
 
     def power(self, table: SteDatabase) -> FloatArray:
-        """Return what is heard of a table at each speed (S,)."""
+        """Return the counted power of a table at each speed (S,)."""
         return np.asarray(self.case.power(self.case.with_table(table).excitation) @ self.counted)
 
     def powers(self, tabled: TabledLoads) -> Powers:
-        """Return what is heard of designs about a table, to first order of what excites."""
+        """Return the counted powers of designs about a table, to first order of the excitation."""
         transfer, form = self.case.transfer, self.case.form
         largest = np.abs(tabled.by["static_transmission_error"]).max(axis=(1, 2))
         steps = STEP / np.where(largest > 0.0, largest, 1.0)
@@ -94,7 +95,7 @@ class HeardObjective:
     worst_load: bool
 
     def rows(self, values: FloatArray) -> FloatArray:
-        """Return what is the largest of (R, ...): of values (L, S, ...) by load case and speed."""
+        """Return the rows (R, ...) whose largest counts, from values (L, S, ...) by load case and speed."""
         if not self.worst_load:
             share = np.array([load.share for load in self.at])
             values = np.tensordot(share, values, 1)[None]
@@ -114,7 +115,7 @@ class HeardMerit:
     powers: Powers
     """R rows, of which the largest counts, over the power of the start."""
     limits: tuple[Rows, ...]
-    """Of each limit: by how much it is exceeded."""
+    """Amount by which each limit is exceeded."""
     penalty: float
 
     def minimum(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:

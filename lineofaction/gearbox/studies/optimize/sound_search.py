@@ -1,4 +1,4 @@
-"""Search the flanks of a mesh that are heard least in a scene."""
+"""Search for the quietest flanks of a mesh in a scene."""
 
 from __future__ import annotations
 
@@ -69,16 +69,16 @@ WALK, FINISH, LINEARIZED = 20, 8, 2.5
 
 @dataclass(frozen=True)
 class SoundSearch:
-    """What a search and its confirmation work on."""
+    """Problem, bodies and load cases that a search and its confirmation work on."""
 
     problem: HeardProblem
     sample: HeardProblem | None
-    """The same problem over pairs within tolerances; None where the standard has none for these gears."""
+    """The same problem over pairs within tolerances; None: the standard has no tolerances for these gears."""
     bodies: CondensedPair
     torque: FloatArray
     misalignment: FloatArray
-    """`torque`, `misalignment`: Of the load cases on the driving gear, N m, and of the mesh, m. Shape (L,)
-    each.
+    """`torque`, `misalignment`: Torque of the load cases on the driving gear, N m, and misalignment of the
+    mesh, m. Shape (L,) each.
     """
 
 
@@ -159,7 +159,7 @@ def _expected_seconds(problem: HeardProblem, values: dict[str, float], search: S
 
 
 def usual_sound_designs(search: Search) -> tuple[float, float]:
-    """Return what a usual search takes, in values of designs at few positions and of designs in full."""
+    """Return the numbers of designs of a usual search, at few positions and in full."""
     method, few, many = search.method, 0.0, float(search.evaluations)
     if isinstance(method, StagedLinearProgramming):
         few = min(method.sample + LINEARIZED * WALK * (method.trials + 1 + MISSES), EXPLORED * many)
@@ -174,7 +174,7 @@ def sound_cost(
     request: OptimizationRequest,
     cache: Path | None,
 ) -> StudyCost | None:
-    """Return what a usual search takes; None: nothing predicts it.
+    """Return the cost of a usual search; None: nothing predicts it.
 
     Neither modes nor the radiation of a solid housing are known before; they do not count. Raises `BadInput`.
     """
@@ -283,7 +283,7 @@ def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -
 
 def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> FloatArray:
     """Return the torque on the driving gear of the mesh under each load case (L,), N m."""
-    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].facts.base_radius[0]
+    index, radius = mesh_index(subject.scene, mesh), subject.databases[mesh].geometry.base_radius[0]
     systems = [assemble(with_loads(subject.scene, load)) for load in load_cases(question.load_cases)]
     forces = [float(excited(system).linear.equilibrium.mesh_force[index]) for system in systems]
     return np.array(forces) * radius

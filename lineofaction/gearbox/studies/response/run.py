@@ -33,7 +33,7 @@ class _ResponseStudy(SceneStudy[Inputs, ResponseFigures, ForcedResponse]):
         force, power = response.bearing_force, response.power
         sinks = zip(power.sink, power.kind, power.loss, strict=True)
         return {
-            "order_name": order_names(response.order, response.facts),
+            "order_name": order_names(response.order, response.metadata),
             "meshes": {name: _mesh(row) for name, row in rows(response, response.mesh).items()},
             "bearings": {
                 name: {"force": np.sqrt(np.sum(np.abs(force[b, :3]) ** 2, axis=0)).T, **_rms(response, b)}

@@ -9,7 +9,7 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 
 
 class Inputs(FlankPoint):
-    """One load and one alignment; what is left out is taken from the case."""
+    """One load and one alignment; the case supplies the fields that are left out."""
 
 
 class RootStressFigures(Figures):
@@ -19,7 +19,7 @@ class RootStressFigures(Figures):
         """The roots of one gear."""
 
         class PeakFigures(Part):
-            """The largest stress of a root, and where it is; the position is that of the tooth's own pair."""
+            """The largest stress of a root, its place, and the position of the tooth's pair at that time."""
 
             stress_mpa: Annotated[float, Source("stress.value")]
             error_mpa: Annotated[float, Source("stress.error")]

@@ -45,20 +45,20 @@ class Roots:
     wheel: _GearRoots
     torque: float = field(metadata=in_unit("n_m"))
     normal_force: float = field(metadata=in_unit("n"))
-    """`torque`, `normal_force`: On the driving gear, N m; F_bn, N."""
+    """`torque`, `normal_force`: Torque on the driving gear, N m; normal force F_bn, N."""
     misalignment: float = field(metadata=in_unit("m"))
     center_distance_change: float = field(metadata=in_unit("m"))
-    """`misalignment`, `center_distance_change`: m."""
+    """`misalignment`, `center_distance_change`: Alignment of the gears, m."""
     receipt: Json
     warnings: list[Json]
-    """In the fields and units of the case."""
+    """Warnings in the fields and units of the case."""
 
 
 class _RootStressStudy(PointStudy[RootStressFigures, Roots]):
     inputs, answer, file = Inputs, RootStressFigures, record_file(("tooth-root stress", Roots))
 
     def predicted(self, case: CheckedCase, _inputs: FlankPoint, cache: Path | None) -> StudyCost:
-        """Return what the gears, one solution with its errors, and the stresses on two meshes take."""
+        """Return the cost of the gears, one solution with its errors, and the stresses on two meshes."""
         with boundary_errors():
             checked = case.at_point
             plan = checked.planned(cache)

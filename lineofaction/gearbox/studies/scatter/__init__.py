@@ -32,8 +32,8 @@ class ToleranceInputs(BoundaryModel):
     )
     finishing: Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"] = Field(
         default="any",
-        description="How flanks are finished, from which follows, as an assumption, the part of their "
-        "tolerances that all teeth have in common; any: the whole",
+        description="Finishing of the flanks. The part of the tolerances that all teeth have in common "
+        "follows from it, as an assumption; any: the whole",
         examples=["generating_grinding"],
     )
     drawing: Row[Drawn] = Field(
@@ -74,7 +74,7 @@ class ToleranceInputs(BoundaryModel):
 
 
 class Inputs(ToleranceInputs):
-    """Tolerances of both gears, the sample, how many of it are analyzed whole, and a limit."""
+    """Tolerances of both gears, the sample, the number of pairs that are analyzed in full, and a limit."""
 
     exact: int = Field(
         default=300,
@@ -98,7 +98,7 @@ class Inputs(ToleranceInputs):
 
 
 class ScatterFigures(Figures):
-    """Peak-to-peak STE of the sampled pairs (rows) by torque, and by what they deviate (`names`)."""
+    """Peak-to-peak STE of the sampled pairs (rows) by torque, and their deviations (`names`)."""
 
     class QuantileFigures(Part):
         """A quantile by torque with its confidence bounds; None: the sample is too small for one."""
@@ -115,14 +115,14 @@ class ScatterFigures(Figures):
         ]
 
     class AboveFigures(Part):
-        """Pairs above a limit by torque; what decides and what cures them at the torque with most of them."""
+        """Pairs above a limit by torque; deciding deviations and cures at the worst torque."""
 
         name: Annotated[str, Source("limit.name")]
         order: Annotated[int, Source("limit.order")]
         gear: Annotated[str, Source("limit.gear")]
         turns: Annotated[int, Source("limit.turns")]
-        """`name`, `order`, `gear`, `turns`: The order that is limited: as the inputs name it; and by its mesh
-        order, the gear, and the number of turns of that gear by which it lies beside the mesh order.
+        """`name`, `order`, `gear`, `turns`: Limited order as the inputs name it; its mesh order; the gear and
+        the number of its turns by which a sideband differs from the mesh order.
         """
         names: list[str]
         """Names of the deviations, the axis of `first_order`, `total` and `cured`."""
@@ -162,7 +162,8 @@ class ScatterFigures(Figures):
     # `solved` is 0 in a result without a model, in which all pairs are analyzed whole
     exact: Annotated[int, Source(lambda study: study.solved or len(study.peak_to_peak))]
     held: int
-    """`exact`, `held`: Numbers of pairs analyzed whole, and of those among them that measure the model."""
+    """`exact`, `held`: Number of pairs analyzed in full, and number of pairs among them that measure the
+    model's error."""
     missed_um: list[float]
     missed_largest_um: list[float]
     """`missed_um`, `missed_largest_um`: Error of the model in the peak-to-peak of the measured pairs, by
@@ -173,8 +174,8 @@ class ScatterFigures(Figures):
     deviation_um: list[list[float]]
     peak_to_peak_um: list[list[float]]
     first_order_um: list[list[float]]
-    """`deviation_um`, `peak_to_peak_um`, `first_order_um`: One row a pair. Deviations by name; peak-to-peak
-    by torque; and the same from the design and its derivatives alone, by torque.
+    """`deviation_um`, `peak_to_peak_um`, `first_order_um`: One row a pair: deviations by name; peak-to-peak
+    by torque; peak-to-peak by torque from the design and its derivatives alone.
     """
     cost: Json
     """CPU and wall seconds by stage."""

@@ -28,20 +28,23 @@ from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures, Toleran
 from lineofaction.gearbox.units import UM, factor, in_um
 
 _TANGENT, _ADDED = 0.4, 1e-9
-"""CPU time of the tangent about a pair over that of its solution; CPU seconds of a point by a deviation."""
+"""CPU time of the tangent about a pair over that of its solution, and CPU seconds to add one deviation at one
+point."""
 _DRAWN_TEETH = 2.2
-"""CPU time of a pitch between drawn teeth over one of a table: their slopes and forms move where they touch.
+"""CPU time of a pitch between drawn teeth over the time of a pitch of a table: slopes and forms of drawn
+teeth change the contact.
 
-2.1 and 2.4 of a helical pair 23/67, hobbed, over its revolutions, 2.3 of a spur pair 19/28 in the plane."""
+2.1 and 2.4 of a helical pair 23/67, hobbed, over its revolutions, 2.3 of a spur pair 19/28 in the plane.
+"""
 MAX_SAMPLES = 100_000
-"""Of a job: its result holds every pair, 10 to 100 MB."""
+"""Most samples of a job: its result holds every pair, 10 to 100 MB."""
 
 _TOLERATED = {
     f"{gear}.{figure.field}": f"{gear}.{figure.name}"
     for gear in GEARS
     for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 }
-"""Figures that a drawing may bound: those of the case file, by their names in the library."""
+"""Figures of the case file that a drawing may bound, by their names in the library."""
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
@@ -63,7 +66,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         return super().normalized(case, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies, the pairs analyzed whole, the model of the others and the table take."""
+        """Return the cost of bodies, pairs analyzed in full, the model of the others, and the table."""
         with boundary_errors():
             request = case.request(scatter_request, inputs)
             predicted = predicted_designs(request.checked, cache)

@@ -41,7 +41,7 @@ class Inputs(BoundaryModel):
 
 
 class PairFigures(Part):
-    """One pair."""
+    """The curves of one pair."""
 
     class DeviationCurves(Part):
         """Both curves with or without corner contact."""
@@ -55,12 +55,12 @@ class PairFigures(Part):
             change_percent: Annotated[list[float], Source(lambda curve: 100.0 * curve.relative_change)]
 
         class MisalignmentRipple(Ripple):
-            """Over the misalignment."""
+            """Peak-to-peak over the misalignment."""
 
             misalignment_um: Annotated[list[float], Source("deviation")]
 
         class CenterDistanceRipple(Ripple):
-            """Over the change of the center distance."""
+            """Peak-to-peak over the change of the center distance."""
 
             center_distance_change_percent: list[float]
 

@@ -34,12 +34,14 @@ _USUAL: tuple[tuple[float, ...], ...] = (
     (0.0, 0.05, 0.1, 0.15, 0.2),
     (-0.2, -0.15, -0.1, -0.05, 0.0),
 )
-"""Changes of the center distance in per cent where none are named: the first at which a pair meshes.
+"""Changes of the center distance in per cent if none are named: the first row at which a pair meshes.
+
+All rows have equally many changes, so that the pairs of one study have equally many.
 
 As many of each: pairs of one study have equally many.
 """
 TABLES = 4
-"""Of a pair: over each deviation, without and with corner contact."""
+"""Number of tables of a pair: over each of two deviations, without and with corner contact."""
 
 
 @brief
@@ -50,9 +52,9 @@ class PairStudy:
     name: str
     normal_force: float = field(metadata=in_unit("n"))
     center_distance: float = field(metadata=in_unit("m"))
-    """`normal_force`, `center_distance`: N; m."""
+    """`normal_force`, `center_distance`: Normal force of the curves, N; center distance, m."""
     curves: tuple[Sensitivity, ...]
-    """Without and with corner contact."""
+    """Curves over each deviation, without and with corner contact."""
 
 
 Studies = tuple[PairStudy, ...]
@@ -96,7 +98,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
         _ = case.request(_tables, inputs)
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the gears and the tables over each deviation take, without and with corner contact."""
+        """Return the cost of the gears and the tables over each deviation, with and without corners."""
         with boundary_errors():
             checked = case.request(_tables, inputs)
             skewed = replace(checked.request, center_distance_change=np.zeros(1))  # a table has one axis
@@ -128,7 +130,7 @@ class _SensitivityStudy(CaseStudy[Inputs, SensitivityFigures, Studies]):
 
 
 class _TableByTable:
-    """Turns the progress of each table into that of the study."""
+    """Progress of the study from the progress of each table."""
 
     def __init__(self, report: Progress) -> None:
         self._report, self._tables = report, list[TableFraction]()

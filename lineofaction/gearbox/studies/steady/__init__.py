@@ -75,13 +75,13 @@ class SteadyFigures(Figures):
         points: list[SteadyMotion]
 
     class Bifurcation(Part):
-        """Where a motion changes its stability."""
+        """A speed at which a motion changes its stability."""
 
         kind: str
         speed_rpm: float
 
     class Jump(Part):
-        """Between which speeds a sweep jumps."""
+        """The speeds between which a sweep jumps."""
 
         sweep: Literal["up", "down"]
         between_rpm: tuple[float, float]

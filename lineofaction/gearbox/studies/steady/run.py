@@ -33,7 +33,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
     inputs, answer, file = Inputs, SteadyFigures, array_file(SteadyStates)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the motions of both sweeps and the points of a branch without folds take.
+        """Return the cost of the motions of both sweeps and of the points of a branch without folds.
 
         A few steps of the scene say what a period takes. Modes that a solid housing keeps are not known
         before and do not count. Of a scene whose motion does not repeat nothing predicts it.
@@ -71,7 +71,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
             name: [_motion(states, int(index)) for index in np.flatnonzero(states.curve == curve)]
             for curve, name in enumerate(CURVES)
         }
-        ended = states.facts["branch"].lower().replace("_", " ")
+        ended = states.metadata["branch"].lower().replace("_", " ")
         changes = zip(states.bifurcation_kind, states.bifurcation_speed, strict=True)
         jumps = zip(states.jump_curve, states.jump_speed, strict=True)
         return {
@@ -123,7 +123,7 @@ def _study_cost(cost: SteadyCost) -> StudyCost:
 
 
 def _advice(single: SteadyCost, rpm: float) -> str:
-    """Say what a motion that is not afforded at many speeds takes at one, and what else answers."""
+    """Return advice on a motion that is too expensive at many speeds: its cost at one, alternatives."""
     pitches = " and ".join(map(str, single.pitches))
     repeats = f"repeats after {pitches} base pitches of the meshes and " if pitches else ""
     return (

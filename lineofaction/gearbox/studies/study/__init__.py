@@ -110,7 +110,7 @@ class FactorInput(BoundaryModel):
 
 
 class Inputs(BoundaryModel):
-    """A study of a scene: what is varied, and what is taken from every run."""
+    """Inputs of a study of a scene: factors that are varied, and responses of every run."""
 
     class ResponseInput(BoundaryModel):
         """A figure that is taken from every run."""
@@ -118,7 +118,7 @@ class Inputs(BoundaryModel):
         quantity: QuantityName = Field(description="Name of the response", examples=["bearing_force"])
         part: Name | None = Field(
             default=None,
-            description="Its mesh or bearing; left out: the largest over all",
+            description="Mesh or bearing of the response; left out: the largest over all",
             examples=["input left"],
         )
         order: int | None = Field(
@@ -200,7 +200,7 @@ class StudyFigures(Figures):
     """Factors, statistics of all responses, worst and failed points."""
 
     class FactorFigures(Part):
-        """What was varied, and how."""
+        """A factor by its path, and the kind of its values."""
 
         path: str
         kind: str
@@ -222,15 +222,17 @@ class StudyFigures(Figures):
         unit: str
         mean: list[float | None]
         standard_error: list[float | None]
-        """`mean`, `standard_error`: Of the response over the samples, one entry a combination."""
+        """`mean`, `standard_error`: Mean of the response over the samples and its standard error, one entry a
+        combination."""
         confidence: float
         """Confidence level of the bounds of the quantiles."""
         quantiles: list[QuantileFigures]
         spread_of_level_means: dict[str, float | None]
-        """By factor of the grid or the list: largest less smallest mean of the response at one of its values.
+        """Largest less smallest mean of the response over the values of a factor, by factor of the grid or
+        the list.
         """
         rank_correlation: dict[str, float | None]
-        """By factor with a distribution: rank correlation of its values with the response, -1..1."""
+        """Rank correlation of a factor's values with the response, -1..1, by factor with a distribution."""
 
     class PointFigures(Part):
         """A point: the values of the factors and its responses."""
@@ -245,7 +247,7 @@ class StudyFigures(Figures):
         point: int
         """Number of the point, from 0."""
         values: dict[str, float]
-        """By path of the factor."""
+        """Values of the factors by path."""
         responses: dict[str, PointResponse]
 
     class FailedPoint(Part):
@@ -275,4 +277,4 @@ class StudyFigures(Figures):
     design: Json
     """Inputs of the study, as JSON."""
     runs: dict[str, str]
-    """Content hashes of the runs that are kept in full, by point."""
+    """Content hashes of the runs that are stored in full, by point."""

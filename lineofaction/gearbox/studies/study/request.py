@@ -28,7 +28,7 @@ from lineofaction.gearbox.studies.study.scenes import (
 
 
 def responses_of(inputs: Inputs) -> tuple[Response, ...]:
-    """Return what is taken from every run; raises `BadInput`."""
+    """Return the responses of every run; raises `BadInput`."""
     responses = []
     for index, entry in enumerate(inputs.responses):
         with named(f"responses[{index}]"):
@@ -62,7 +62,7 @@ def names_with_planets(scene: SceneInput) -> tuple[list[str], list[str]]:
 
 
 def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Location, ...]]:
-    """Return where every factor stands in the scene.
+    """Return the locations of every factor in the scene.
 
     Raises `BadInput`: a path that names no number, a value that its field does not accept, or too many
     points.

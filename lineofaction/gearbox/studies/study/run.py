@@ -1,4 +1,4 @@
-"""Study of a scene: its runs, and where they are kept."""
+"""Study of a scene: its runs, and their storage."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
         check_parts(scene, responses_of(inputs))
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost | None:
-        """Return what its runs take, by some steps of a few of them, and the tables of other flanks.
+        """Return the cost of the runs, by some steps of a few of them, and of the tables of other flanks.
 
         None: nothing predicts one of these runs.
         """
@@ -91,7 +91,8 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
             if means.folder is not None and result.worst.size:
                 keep_runs(task, result, means.folder, means.report)
         runs = {str(k): content_digest((task, tuple(map(float, result.value[k])))) for k in result.worst}
-        return replace(result, facts={**result.facts, "design": inputs.model_dump(mode="json"), "runs": runs})
+        echoed = inputs.model_dump(mode="json")
+        return replace(result, metadata={**result.metadata, "design": echoed, "runs": runs})
 
     def _derived(self, result: Study) -> Json:
         integration = float(np.nanmean(result.seconds[:, 1])) if result.usable else None
@@ -112,7 +113,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
     def stored_runs(self, result: Study, means: Means) -> Mapping[str, Path]:
         if means.folder is None:
             return {}
-        files = {key: means.folder / f"point_{point}.nc" for point, key in result.facts["runs"].items()}
+        files = {key: means.folder / f"point_{point}.nc" for point, key in result.metadata["runs"].items()}
         return {key: file for key, file in files.items() if file.is_file()}
 
     def failure(self, result: Study) -> str:
@@ -122,7 +123,7 @@ class _ScenesStudy(SceneStudy[Inputs, StudyFigures, Study]):
 def _flank_tables(
     scene: SceneInput, design: Design, places: Mapping[str, tuple[Location, ...]], cache: Path | None
 ) -> StudyCost:
-    """Return what the tables of all different flanks of the points take."""
+    """Return the cost of the tables of all different flanks of the points."""
     meshes = {name: {mesh_of_case(location) for location in at} - {None} for name, at in places.items()}
     columns = [k for k, name in enumerate(design.names) if meshes[name]]
     if not columns:

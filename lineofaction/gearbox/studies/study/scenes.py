@@ -142,9 +142,9 @@ class VariedScene:
     written: str
     """The scene as JSON, its cases written out."""
     databases: Mapping[str, SteDatabase]
-    """By name of the mesh."""
+    """STE databases by name of their mesh."""
     places: Mapping[str, tuple[Location, ...]]
-    """Of every factor, where it stands in the scene."""
+    """Locations of every factor in the scene, by path of the factor."""
     home: str
     """Folder of the caches."""
 

@@ -1,4 +1,4 @@
-"""Inputs of a sweep: one or two things that a case declares, and which figures are shown over them."""
+"""Inputs of a sweep: one or two variables of a case, and the figures that are shown over them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ Axis = Annotated[str, Field(min_length=1, max_length=90)]
 Quantity = Literal[
     "peak_to_peak", "harmonic_1", "harmonic_2", "harmonic_3", "max_pressure", "face_load_factor"
 ]
-"""Of `fe_contact.microgeometry.sweep.SWEPT`, which takes longer to load than a service to start."""
+"""Copy of the names in `fe_contact.microgeometry.sweep.SWEPT`. Importing that module takes longer than a
+service takes to start."""
 
 
 class Inputs(BoundaryModel):
-    """What is swept, and what is shown of it."""
+    """Axes of a sweep, and the figures that are shown over them."""
 
     over: Row[Axis] = Field(
         default=("torque", "tip_relief"),
@@ -40,8 +41,9 @@ class Inputs(BoundaryModel):
         ),
         min_length=1,
         max_length=6,
-        description="What is drawn, the first in the table of the terminal too: peak_to_peak, harmonic_1, "
-        "harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in the plane)",
+        description="Figures that are drawn, the first in the table of the terminal too: peak_to_peak, "
+        "harmonic_1, harmonic_2, harmonic_3, max_pressure, face_load_factor (K_Hbeta; not in "
+        "the plane)",
         examples=[["peak_to_peak", "max_pressure"]],
     )
 
@@ -61,6 +63,6 @@ class SweepFigures(Figures):
     shown: list[str]
     points: list[dict[str, float]]
     least: dict[str, dict[str, float]]
-    """By figure: the point where it is least, and the number of points that are as low within the errors."""
+    """Point at which a figure is least, and the number of points as low within the errors, by figure."""
     failed: list[dict[str, float | str]]
     cost: Annotated[Json, Source("sweep.cost")]

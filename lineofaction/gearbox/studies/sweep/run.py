@@ -39,15 +39,15 @@ _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 @dataclass(frozen=True)
 class _Swept:
-    """Something of a case that can be swept."""
+    """A variable of a case that can be swept."""
 
     name: str
-    """Of a `SweepAxis`."""
+    """Name of the `SweepAxis`."""
     path: str
-    """As in the case file; ``*`` stands for both gears."""
+    """Path of the field in the case file; ``*`` stands for both gears."""
     description: str
     what: Figure | None = None
-    """The declaration of a figure of the flanks."""
+    """Declaration of the figure of the flanks; None for torque, misalignment and center distance."""
 
     @property
     def unit(self) -> str:
@@ -66,7 +66,7 @@ class _Swept:
 
     @property
     def spellings(self) -> set[str]:
-        """What it may be called: the path, its last names, and these without the unit."""
+        """The accepted names: the path, the ends of the path, and both without the unit."""
         names = self.path.split(".")
         minimum = 2 if self.what is not None and "*" not in names else 1
         tails = {".".join(names[-count:]) for count in range(minimum, len(names) + 1)}
@@ -91,7 +91,7 @@ SWEEPABLE = {
         ),
     )
 }
-"""By the name of their `SweepAxis`."""
+"""Variables by the name of their `SweepAxis`."""
 
 
 def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
@@ -154,11 +154,11 @@ class _Quantity:
 
     description: str
     unit: str
-    """`description`, `unit`: As drawn."""
+    """`description`, `unit`: Words and unit as plots show them."""
     one: float
     """The SI value of one unit."""
     field: str
-    """In JSON and CSV, with ``{}`` where ``_error`` stands in the name of the error."""
+    """Name of the field in JSON and CSV; ``{}`` stands where the name of the error has ``_error``."""
 
     @property
     def label(self) -> str:
@@ -175,15 +175,15 @@ QUANTITIES = {
     "max_pressure": _Quantity("largest flank pressure", "MPa", 1e6, "max_pressure{}_mpa"),
     "face_load_factor": _Quantity("K_Hbeta of the cycle", "", 1.0, "k_h_beta{}"),
 }
-"""By name in `fe_contact.microgeometry.sweep.SWEPT`."""
+"""Quantities by their name in `fe_contact.microgeometry.sweep.SWEPT`."""
 
 
 @brief
 @dataclass(frozen=True)
 class SweepResult:
-    """A sweep, and which of its quantities are shown.
+    """A sweep, and the quantities that are shown.
 
-    `shown`: of `QUANTITIES`, those that there are.
+    `shown` are names of `QUANTITIES` that the sweep has values of.
     """
 
     sweep: Sweep
@@ -191,7 +191,7 @@ class SweepResult:
 
     @property
     def axes(self) -> tuple[_Swept, ...]:
-        """What is swept."""
+        """The swept variables."""
         return tuple(SWEEPABLE[name] for name in self.sweep.axes)
 
     @property
@@ -235,7 +235,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
             _ = case.request(_request, inputs).checked
 
     def predicted(self, case: CheckedCase, inputs: Inputs, cache: Path | None) -> StudyCost:
-        """Return what the bodies and every design at all torques take."""
+        """Return the cost of the bodies and of every design at all torques."""
         with boundary_errors():
             request = case.request(_request, inputs)
             predicted = predicted_designs(request.checked, cache)

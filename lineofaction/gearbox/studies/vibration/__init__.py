@@ -47,7 +47,7 @@ class Inputs(OverSpeedsOrRun):
 
 
 class VibrationFigures(Figures):
-    """Velocities by order and speed, and what makes the motion at one of them."""
+    """Velocities by order and speed, and contributions to the motion at one order and speed."""
 
     class PointVelocity(Part):
         """Velocity of a point, root mean square, by order, then by speed; x, y, z in the scene's frame.
@@ -68,7 +68,7 @@ class VibrationFigures(Figures):
         """Contributions at one speed and order."""
 
         class Contribution(Part):
-            """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+            """Share of a bearing or mode in the mean square of points and hull; the shares sum to 1."""
 
             name: str
             frequency_hz: float | None

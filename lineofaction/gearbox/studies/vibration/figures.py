@@ -1,4 +1,4 @@
-"""What a vibration tells of each point, and of what contributes at one speed and order, in SI."""
+"""Figures of a vibration at each point, and contributions to it at one speed and order, in SI."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ class PointVelocity:
     """Velocity of a point at S speeds in H orders, root mean square, m/s."""
 
     velocity: FloatArray
-    """Shape (H, S)."""
+    """Velocity of all axes together. Shape (H, S)."""
     velocity_xyz: FloatArray
-    """Along x, y, z. Shape (3, H, S)."""
+    """Velocity along x, y, z. Shape (3, H, S)."""
     overall: FloatArray
-    """All orders together. Shape (S,)."""
+    """Velocity of all orders together. Shape (S,)."""
     left_out: FloatArray
     overall_error: FloatArray
-    """`left_out`, `overall_error`: The part of `overall` in orders that are not listed, and what it may be
-    off for them. Shape (S,) each.
+    """`left_out`, `overall_error`: Part of `overall` in orders that are not listed, and the error of
+    `overall` for these orders. Shape (S,) each.
     """
     level: FloatArray
-    """dB. Shape (H, S)."""
+    """Level of `velocity`, dB. Shape (H, S)."""
 
 
 def root_mean_square(velocity: ComplexArray) -> FloatArray:
@@ -37,19 +37,19 @@ def root_mean_square(velocity: ComplexArray) -> FloatArray:
 
 @dataclass(frozen=True)
 class Contribution:
-    """What a bearing or a mode contributes to the mean square of points and outer hull; sums to 1."""
+    """Share of a bearing or mode in the mean square of points and hull; the shares sum to 1."""
 
     name: str
     frequency: float
-    """Natural frequency, Hz; NaN of what is no mode."""
+    """Natural frequency, Hz; NaN for a bearing."""
     points: dict[str, float]
     surface: float
-    """NaN without a surface."""
+    """Share in the mean square of the outer hull; NaN without a surface."""
 
 
 @dataclass(frozen=True)
 class Contributions:
-    """What contributes at one speed, rad/s, and order, of a frequency, Hz."""
+    """Contributions at one speed, rad/s, and order, whose frequency is in Hz."""
 
     speed: float
     order: float

@@ -35,6 +35,7 @@ from lineofaction.gearbox.studies.vibration.figures import (
     root_mean_square,
 )
 from lineofaction.gearbox.units import RPM
+from model_studies.record import under_key
 
 _NO_SHAPE = "Responses from seats to points hold no shapes of modes; a housing by its solid has them."
 
@@ -58,11 +59,11 @@ class MeasuredHousingVibration:
     bearing: tuple[str, ...]
     """e bearings whose seats were pushed."""
     share: FloatArray
-    """What each contributes there to the mean square velocity of each point; NaN of one at rest. Shape (e,
-    k).
+    """Share of each bearing, at this speed and order, in the mean square velocity of each point; NaN for a
+    point at rest. Shape (e, k).
     """
-    facts: Json = field(default_factory=dict)
-    """Plain JSON, of the response."""
+    metadata: Json = field(default_factory=dict, metadata=under_key("facts"))
+    """Facts of the response as plain JSON."""
 
     @property
     def axes(self) -> dict[str, str]:
@@ -165,7 +166,7 @@ def measured_result(
         vibration = measured_vibration(response, mobility)
         at = _point_indices(vibration, mobility, inputs)
         shares = bearing_shares(response, mobility)[(..., *at)]
-    metadata = response.facts
+    metadata = response.metadata
     seconds = {**metadata["seconds"], "vibration": cpu_seconds() - began}
     result = MeasuredHousingVibration(
         housing.name,
@@ -216,8 +217,8 @@ def measured_figures(result: MeasuredHousingVibration) -> Json:
         VibrationFigures,
         result,
         vibration,
-        result.facts,
-        order_name=order_names(vibration.order, result.facts),
+        result.metadata,
+        order_name=order_names(vibration.order, result.metadata),
         natural_frequency=np.empty(0),
         highest_valid_frequency=result.highest_frequency,
         points={name: _point(vibration, k) for k, name in enumerate(vibration.point)},

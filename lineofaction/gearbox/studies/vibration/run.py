@@ -1,4 +1,4 @@
-"""Vibration of a scene's housing: by order over speed, and what makes it."""
+"""Vibration of a scene's housing: levels by order over speed, and their causes."""
 
 from __future__ import annotations
 
@@ -62,19 +62,19 @@ class HousingVibrationResult:
 
     analysis: VibrationAnalysis
     natural_frequency: FloatArray
-    """Of the housing with its seats free, Hz; those kept. Shape (m,)."""
+    """Natural frequencies of the modes of the reduced housing with free seats, Hz. Shape (m,)."""
     mode: int = 0
-    """From 1; 0: none is drawn."""
+    """Number of the drawn mode from 1; 0: no mode is drawn."""
     mode_shape: SurfaceShape | None = None
 
     @property
-    def facts(self) -> Json:
-        """Return those of the analysis."""
-        return self.analysis.facts
+    def metadata(self) -> Json:
+        """Return the facts of the analysis."""
+        return self.analysis.metadata
 
     @property
     def shape(self) -> SurfaceShape | None:
-        """Return what is drawn: the mode, or the velocity of the operating deflection; None: no surface."""
+        """Return the drawn shape: the mode, or the velocity of the operating deflection; None: no surface."""
         return self.mode_shape or self.analysis.deflection
 
 
@@ -110,7 +110,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
             raise BadInput.of("housings", value, "one with mass, a surface or points", _REMEDY)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, _cache: Path | None) -> StudyCost | None:
-        """Return what the forces on bearings take, with which the motion of the housing is a product."""
+        """Return the cost of the forces on bearings, with which the motion of the housing is a product."""
         seen = any(map(_vibrates, scene.housings))
         return predicted_forces(scene, inputs) if seen else None
 
@@ -136,8 +136,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
                 bound = f"from 1 to {len(housing.frequency)}, the modes kept"
                 raise BadInput.of("mode", inputs.mode, bound, "Keep more modes of the housing.")
             mode = None if inputs.mode is None else mode_shape(housing, inputs.mode)
-        seconds = {**analysis.facts["seconds"], "vibration": cpu_seconds() - began}
-        analysis = replace(analysis, facts={**analysis.facts, "seconds": seconds})
+        seconds = {**analysis.metadata["seconds"], "vibration": cpu_seconds() - began}
+        analysis = replace(analysis, metadata={**analysis.metadata, "seconds": seconds})
         analysis = with_scene_metadata(analysis, tabled)
         return HousingVibrationResult(analysis, housing.frequency, inputs.mode or 0, mode)
 
@@ -168,8 +168,8 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
         return figures_of(
             VibrationFigures,
             vibration,
-            analysis.facts,
-            order_name=order_names(vibration.order, analysis.facts),
+            analysis.metadata,
+            order_name=order_names(vibration.order, analysis.metadata),
             housing=analysis.housing,
             natural_frequency=result.natural_frequency,
             orders_beyond=vibration.order[~np.all(vibration.valid, axis=0)],

@@ -250,7 +250,7 @@ def test_the_examples_run(tmp_path, monkeypatch: pytest.MonkeyPatch, capsys) -> 
     names: dict = {}
     for script in re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL):
         exec(compile(script, str(PAGE), "exec"), names)
-    assert 0.0 < names["radiation"].facts.interpolation_error < 0.3
+    assert 0.0 < names["radiation"].metadata.interpolation_error < 0.3
     assert "[" in capsys.readouterr().out
     assert read_wav("run-up.wav").peak == pytest.approx(names["heard"].peak)
 

@@ -263,7 +263,7 @@ def test_modes_resolve_to_a_frequency_of_their_own():
     coarse, fine = (
         modal_analysis(assemble(scene), [0.0, 100.0], orders=3, highest_frequency=f) for f in (1e3, 4e4)
     )
-    assert coarse.facts["highest_frequency"] == 1e3
+    assert coarse.metadata["highest_frequency"] == 1e3
     assert len(coarse.freedom) < len(fine.freedom)
     low = fine.natural_frequency[fine.natural_frequency < 1e3]
     np.testing.assert_allclose(coarse.natural_frequency[: low.size], low, rtol=2e-2, atol=1e-3)

@@ -51,7 +51,7 @@ def test_with_the_floor_mean_squares_are_those_of_all_lines_within_the_stated_er
         whole.setattr("dynamics.linearize.strongest_lines.ALWAYS", 100_000)
         true = every(name).bearing_mean_square
     found = some(name)
-    assert found.facts["lines_left_out"]["in_totals"]
+    assert found.metadata["lines_left_out"]["in_totals"]
     assert found.bearing_floor.size and np.max(found.bearing_floor / true) > 0.5
     assert np.all(np.abs(found.bearing_mean_square - true) <= found.bearing_floor_error)
     floor = replace(found.floor, changed=np.zeros_like(found.floor.changed))
@@ -84,7 +84,7 @@ def test_what_is_stated_falls_with_the_square_of_the_steps(few, monkeypatch):
 
 def test_where_nothing_is_left_out_there_is_no_floor():
     found = every("pair")
-    assert found.floor is None and found.bearing_floor.size == 0 and "lines_left_out" not in found.facts
+    assert found.floor is None and found.bearing_floor.size == 0 and "lines_left_out" not in found.metadata
     listed = 0.5 * np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=(1, 3))
     np.testing.assert_array_equal(found.bearing_mean_square, listed)
 
@@ -123,6 +123,6 @@ def test_totals_lack_the_lines_left_out_where_shafts_gyrate_and_say_so(few, choi
     effects = {"lateral": "on", "tilt": "on", "gyroscopic": choice}
     made = forced_response(assemble(gear_pair_scene(table, effects=effects)), SPEED[:3], ORDERS)
     there = choice == "off"
-    assert made.facts["lines_left_out"]["in_totals"] == there == (made.floor is not None)
-    assert 0.0 < made.facts["lines_left_out"]["force"] < 1.0
+    assert made.metadata["lines_left_out"]["in_totals"] == there == (made.floor is not None)
+    assert 0.0 < made.metadata["lines_left_out"]["force"] < 1.0
     assert bool(made.bearing_floor.size) == there

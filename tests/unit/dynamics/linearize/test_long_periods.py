@@ -39,7 +39,7 @@ def few(monkeypatch):
 def test_a_long_table_that_repeats_a_short_one_has_its_response(few):
     short, long = response(ripple()), response(repeated(ripple(), LONG))
     assert LONG * 10 > ALWAYS
-    assert 0.0 <= long.facts["lines_left_out"]["force"] <= 1.0
+    assert 0.0 <= long.metadata["lines_left_out"]["force"] <= 1.0
     shared = np.isin(np.round(long.order, 9), np.round(short.order, 9))
     assert np.count_nonzero(shared) == short.order.size
     for name in ("static_transmission_error", "dynamic_transmission_error", "mesh_force", "displacement"):
@@ -52,14 +52,14 @@ def test_a_long_table_that_repeats_a_short_one_has_its_response(few):
 def test_of_a_long_period_every_mesh_order_keeps_its_strongest_lines_and_says_what_it_leaves_out(few):
     errors = 1e-6 * np.random.default_rng(1).normal(size=LONG)
     found = response(repeated(ripple(), LONG, errors))
-    whole = found.order.size + found.facts["lines_left_out"]["count"]
+    whole = found.order.size + found.metadata["lines_left_out"]["count"]
     assert 9.8 * LONG < whole <= 10 * LONG  # a pitch alone has no mesh orders but that of the ripple
     assert 0.9 * ALWAYS < found.order.size <= ALWAYS + 10
-    assert 0.0 < found.facts["lines_left_out"]["force"] < 0.5
+    assert 0.0 < found.metadata["lines_left_out"]["force"] < 0.5
     assert 1.0 in found.order
     in_order = np.bincount(np.rint(found.order).astype(int), minlength=11)
     assert in_order[1:-1].min() >= 0.6 * LONG
-    assert "lines_left_out" not in response(repeated(ripple(), 3, errors[:3])).facts
+    assert "lines_left_out" not in response(repeated(ripple(), 3, errors[:3])).metadata
 
 
 def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
@@ -67,7 +67,7 @@ def test_its_lines_are_those_of_the_same_response_in_all_lines(monkeypatch):
     every = response(table)
     monkeypatch.setattr("dynamics.linearize.strongest_lines.MAX_AMPLITUDES", 0.0)
     some = response(table)
-    assert every.order.size > ALWAYS and "lines_left_out" not in every.facts
+    assert every.order.size > ALWAYS and "lines_left_out" not in every.metadata
     own = np.isin(np.round(every.order * LONG), np.round(some.order * LONG))
     for field in fields(ForcedResponse):
         if field.metadata.get("stored") and field.metadata["stored"].dimensions[-1:] == ("order",):
@@ -88,7 +88,7 @@ def test_fewer_speeds_hold_more_lines(monkeypatch):
 
 
 def _held(found):
-    return found.order.size, found.facts.get("lines_left_out", {"force": 0.0})["force"]
+    return found.order.size, found.metadata.get("lines_left_out", {"force": 0.0})["force"]
 
 
 def peak_of(work):

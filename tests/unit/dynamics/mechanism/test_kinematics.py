@@ -366,7 +366,7 @@ def test_radii_as_printed_run_and_the_correction_is_stated(ratio: float) -> None
     assert wheel.base_radius / scene.gears[1].base_radius - 1.0 == pytest.approx(-0.2 * ratio, rel=2e-3)
     assert pinion.base_radius / BASE_RADIUS - 1.0 == pytest.approx(0.8 * ratio, rel=2e-3)
     run = simulate(scene)
-    for said in (run.receipt, modal_analysis(system).facts):
+    for said in (run.receipt, modal_analysis(system).metadata):
         stated = said["base_radius_corrected"]
         assert stated[wheel.name] == {"given": scene.gears[1].base_radius, "used": wheel.base_radius}
         assert set(stated) == {pinion.name, wheel.name}

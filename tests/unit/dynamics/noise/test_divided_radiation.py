@@ -53,9 +53,9 @@ def test_workers_compute_the_same_resistance_and_their_time_counts(monkeypatch: 
             for workers in (InProcess(), pool)
         )
         assert pool.cost.tasks == here.frequency.size > 10
-        assert there.facts.cost.seconds > pool.cost.cpu_seconds > 0.0
+        assert there.metadata.cost.seconds > pool.cost.cpu_seconds > 0.0
     np.testing.assert_array_equal(there.frequency, here.frequency)
     np.testing.assert_array_equal(there.matrix, here.matrix)
-    assert there.facts.interpolation_error == here.facts.interpolation_error
+    assert there.metadata.interpolation_error == here.metadata.interpolation_error
     half = len(seen) // 2
     assert seen[:half] == seen[half:] == sorted(seen[:half]) and 0.5 < seen[half - 1] <= 1.0

@@ -85,7 +85,7 @@ def test_every_mode_alone_lies_in_its_band_and_takes_power(estimate: EstimatedRa
     shape = housing().modes[1]
     plane = 10.0 * np.log10(AIR.impedance * np.einsum("mk,mn,nk->k", shape, radiation().surface, shape))
     ka = 2.0 * np.pi / AIR.sound_speed * estimate.frequency * outer_hull(housing()).hull.equivalent_radius
-    resolved = estimate.frequency <= estimate.facts.resolved_frequency
+    resolved = estimate.frequency <= estimate.metadata.resolved_frequency
     lowest, highest, _ = allowed_levels(monopoles, plane[None], ka, resolved)
     np.testing.assert_allclose(own - high, lowest, atol=1e-6)
     np.testing.assert_allclose(own - low, highest, atol=1e-6)
@@ -95,7 +95,7 @@ def test_every_mode_alone_lies_in_its_band_and_takes_power(estimate: EstimatedRa
 
 def test_panels_add_up_to_the_power_of_the_estimate(estimate: EstimatedRadiation) -> None:
     sound = radiated_sound(response(), housing(), None, estimate)
-    assert sound.facts["radiation"]["housing"]["model_name"] == "estimate"
+    assert sound.metadata["radiation"]["housing"]["model_name"] == "estimate"
     for at in ((0, 0), (2, 1)):
         panels = panel_sound(response(), housing(), None, estimate, at, ElementalRadiators(), AIR)
         assert panels.power.sum() == pytest.approx(sound.power[at], rel=1e-9)
@@ -107,5 +107,5 @@ def test_modes_at_interior_resonances_are_named(estimate: EstimatedRadiation) ->
     natural = housing().frequency
     assert estimate.replaced(natural).size == 0
     object.__setattr__(estimate, "by_velocity", np.ones_like(estimate.by_velocity))
-    inside = (natural >= estimate.frequency[0]) & (natural <= estimate.facts.resolved_frequency)
+    inside = (natural >= estimate.frequency[0]) & (natural <= estimate.metadata.resolved_frequency)
     np.testing.assert_array_equal(estimate.replaced(natural), natural[inside])

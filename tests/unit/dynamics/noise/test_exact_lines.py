@@ -89,7 +89,7 @@ def test_panels_between_the_line_and_the_octave_below_are_those_of_the_finer_oct
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The line takes the knot between two octaves out; panels of the lower one do not resolve it."""
-    known, model = radiation().facts.resolved_frequency, ElementalRadiators()
+    known, model = radiation().metadata.resolved_frequency, ElementalRadiators()
     point = (0, 0)
     hertz = float(response().frequency[point])
     between, high = 1.012 * hertz, 1.8 * hertz

@@ -17,7 +17,7 @@ SIDES = np.array([0.3, 0.2, 0.1])
 
 def test_panels_add_up_to_the_power_at_every_speed_and_order() -> None:
     """Below and above the frequency that the panels resolve, and between computed frequencies."""
-    resolved, power = radiation().facts.resolved_frequency, sound().power
+    resolved, power = radiation().metadata.resolved_frequency, sound().power
     beyond = sound().frequency > resolved
     assert 0 < beyond.sum() < beyond.size
     for at in np.ndindex(power.shape):

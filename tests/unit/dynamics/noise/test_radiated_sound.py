@@ -125,7 +125,7 @@ def test_a_result_comes_back_from_its_file_as_it_was(tmp_path) -> None:
     again = RadiatedSound.from_netcdf(tmp_path / "sound.nc")
     for name in RadiatedSound.arrays():
         np.testing.assert_array_equal(getattr(again, name), getattr(sound(), name))
-    assert (again.housing, again.bearing, again.facts) == (("housing",), PAIR, sound().facts)
+    assert (again.housing, again.bearing, again.metadata) == (("housing",), PAIR, sound().metadata)
 
 
 def test_what_does_not_belong_together_is_refused() -> None:
@@ -149,6 +149,6 @@ def test_a_mesh_that_resolves_no_more_gives_way_to_the_plane_whatever_is_rounded
     cubes = (box((length, length, length), (2, 2, 2)) for length in np.linspace(0.2, 0.3, 100))
     coarse = rigid_housing(10.0, 1e6, 0.02, next(hull for hull in cubes if rounds_up(hull)))
     found = housing_radiation(coarse, ElementalRadiators(), [100.0, 5000.0], AIR)
-    limit = found.facts.resolved_frequency
+    limit = found.metadata.resolved_frequency
     assert 100.0 < limit < 5000.0
     assert limit == pytest.approx(found.frequency[np.searchsorted(found.frequency, limit)], rel=1e-9)

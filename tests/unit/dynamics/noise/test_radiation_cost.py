@@ -60,7 +60,7 @@ def test_an_octave_costs_that_of_its_frequencies_and_octaves_add_up() -> None:
 
 
 def test_it_is_told_before_and_kept_with_the_result() -> None:
-    cost = radiation().facts.cost
+    cost = radiation().metadata.cost
     assert [tuple(each) for each in TOLD] == [(cost.predicted_seconds, cost.predicted_bytes)]
     assert cost.seconds > 0.0
 

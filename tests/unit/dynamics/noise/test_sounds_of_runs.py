@@ -288,7 +288,7 @@ def test_forces_that_go_with_the_speed_as_in_a_steady_state():
     vibration = housing_vibration(found, housing())
     assert vibration.mean_square_velocity.shape == found.frequency.shape
     analysis = analyze_vibration(found, housing(), "case")
-    assert analysis.facts["pitches"] == found.facts["pitches"]
+    assert analysis.metadata["pitches"] == found.metadata["pitches"]
 
 
 def test_bearings_of_the_run_that_are_not_those_of_the_seats_are_refused():
@@ -487,7 +487,7 @@ def test_the_second_time_comes_from_the_cache_to_the_last_bit(tmp_path, monkeypa
     monkeypatch.setattr(module, "housing_radiation", None)
     again = cached_radiation(body, ElementalRadiators(), [200.0, 400.0], cache=tmp_path)
     np.testing.assert_array_equal(again.matrix, first.matrix)
-    assert (again.area, again.impedance, again.facts) == (first.area, first.impedance, first.facts)
+    assert (again.area, again.impedance, again.metadata) == (first.area, first.impedance, first.metadata)
     others = (
         (replace(body, mass=2.0 * body.mass), ElementalRadiators(), [200.0, 400.0], AIR),
         (body, EquivalentRadiatedPower(), [200.0, 400.0], AIR),

@@ -97,7 +97,7 @@ def test_orders_of_a_second_mesh_are_told_apart_in_windows_that_are_long_enough(
     orders = np.sort([1.0, 2.0, 3.0, *(ratio * np.arange(1, 6))])
     np.testing.assert_allclose(found.order, orders)
     np.testing.assert_allclose(found.frequency, np.outer(found.frequency[:, 1], orders))
-    assert found.facts["pitches"] == 40  # 2 cycles of the distance 0.05
+    assert found.metadata["pitches"] == 40  # 2 cycles of the distance 0.05
     np.testing.assert_allclose(found.bearing_force[1, 2, :, 2], second, rtol=1e-6)
     np.testing.assert_allclose(found.bearing_force[1, 2, :, 4], AMPLITUDES[1, 2, 1], rtol=1e-6)
     with pytest.raises(InputError, match="at least 40"):
@@ -118,7 +118,7 @@ def test_a_window_in_which_flanks_part_is_marked():
 
 def test_standstill_and_reversal_have_no_windows():
     found = bearing_orders(swept_run(-600.0, 900.0, 2.0, order_forces(AMPLITUDES)), 3)
-    assert found.facts["windows_left_out"] > 0
+    assert found.metadata["windows_left_out"] > 0
     assert found.frequency.min() > 0.0 and found.sweep.max() <= 0.2
     np.testing.assert_allclose(found.bearing_force[..., -1, :], AMPLITUDES, rtol=1e-6)
 

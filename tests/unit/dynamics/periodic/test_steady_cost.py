@@ -107,7 +107,7 @@ def test_the_periods_announced_around_folds_are_integrated(marched, monkeypatch)
     announced = motions + cost.points * point_periods(cost.freedoms)
     marched.clear()
     states = steady_states(system, LIGHT, periods=USUAL)
-    taken = marched.total() / states.facts["steps_per_period"]
+    taken = marched.total() / states.metadata["steps_per_period"]
     assert np.sum(states.bifurcation_kind == 1) > 1
     assert 1.0 / 1.5 < announced / taken < 1.5, (announced, taken, cost)
 

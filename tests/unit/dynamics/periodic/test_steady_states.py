@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
+import h5netcdf
 import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
@@ -47,7 +49,7 @@ def on(found: SteadyStates, curve: int) -> np.ndarray:
 
 
 def test_sweeps_jump_at_the_folds_of_the_branch(light):
-    assert light.facts["branch"] == "COMPLETED"
+    assert light.metadata["branch"] == "COMPLETED"
     folds = light.bifurcation_speed[light.bifurcation_kind == 1]
     jumps = {int(curve): ends for curve, ends in zip(light.jump_curve, light.jump_speed, strict=True)}
     assert set(jumps) == {UP, DOWN}
@@ -77,7 +79,7 @@ def test_a_pair_that_turns_the_other_way_does_the_same(light):
     found = steady_states(assemble(light_pair(-1.0)), SPEEDS[:1])
     np.testing.assert_allclose(found.rms_error[0], light.rms_error[on(light, UP)[0]], rtol=1e-6)
     assert found.speed[0] == pytest.approx(SPEEDS[0])
-    assert found.facts["branch"] == "none" and not np.any(found.curve != UP)
+    assert found.metadata["branch"] == "none" and not np.any(found.curve != UP)
 
 
 def test_a_small_ripple_gives_the_harmonic_response():
@@ -168,6 +170,9 @@ def test_progress_of_a_sweep_is_that_of_its_steps():
 
 def test_a_file_gives_back_every_bit(light, tmp_path):
     light.to_netcdf(tmp_path / "steady.nc")
+    with h5netcdf.File(tmp_path / "steady.nc") as file:
+        fields = json.loads(file.attrs["documents"])["fields"]
+    assert fields["facts"]["branch"] == "COMPLETED" and "metadata" not in fields
     again = SteadyStates.from_netcdf(tmp_path / "steady.nc")
     for name, value in vars(light).items():
         if isinstance(value, np.ndarray):

@@ -64,9 +64,11 @@ def test_friction_that_drives_is_found():
 def test_loads_beyond_the_table_end_every_study(study):
     make = {
         "run": lambda scene: simulate(scene).effect_ledger,
-        "modes": lambda scene: modal_analysis(assemble(scene)).facts["effect_ledger"],
-        "response": lambda scene: forced_response(assemble(scene), [90.0], 1).facts["effect_ledger"],
-        "steady": lambda scene: steady_states(assemble(scene), [40.0], branch=False).facts["effect_ledger"],
+        "modes": lambda scene: modal_analysis(assemble(scene)).metadata["effect_ledger"],
+        "response": lambda scene: forced_response(assemble(scene), [90.0], 1).metadata["effect_ledger"],
+        "steady": lambda scene: steady_states(assemble(scene), [40.0], branch=False).metadata[
+            "effect_ledger"
+        ],
     }[study]
     scene = gear_pair_scene(square_wave_table(8), duration=0.002)
 

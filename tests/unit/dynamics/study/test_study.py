@@ -231,13 +231,13 @@ def test_errors_are_those_that_the_runs_state() -> None:
     assert np.isnan(minimal.error[0, 0])  # not stated is not none
     assert minimal.error[0, 1] == 1e-9  # the tolerance
     assert np.isnan(full.error[0, 2])
-    assert len(minimal.facts["neglected"]) == 3 and len(full.facts["neglected"]) == 1
+    assert len(minimal.metadata["neglected"]) == 3 and len(full.metadata["neglected"]) == 1
 
 
 def test_the_file_gives_the_study_back(found: Study, tmp_path: Path) -> None:
     found.to_netcdf(tmp_path / "study.nc")
     read = Study.from_netcdf(tmp_path / "study.nc")
-    for name in ("value", "figure", "error", "worst", "factor", "response", "reason", "facts"):
+    for name in ("value", "figure", "error", "worst", "factor", "response", "reason", "metadata"):
         np.testing.assert_equal(getattr(read, name), getattr(found, name))
 
 

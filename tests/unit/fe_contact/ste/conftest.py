@@ -13,13 +13,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste import Metadata, PairGeometry, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 
 EXPONENT = 1.1
 CONTACT_RATIO = 1.5568
-FACTS = PairFacts((20, 20), (37.588e-3, 37.588e-3), 11.809e-3, 0.0, 80e-3, np.radians(20.0), 25e-3, 0)
-HELICAL = PairFacts(
+FACTS = PairGeometry((20, 20), (37.588e-3, 37.588e-3), 11.809e-3, 0.0, 80e-3, np.radians(20.0), 25e-3, 0)
+HELICAL = PairGeometry(
     (39, 40), (60.3e-3, 61.9e-3), 9.0e-3, np.radians(24.0), 134.5e-3, np.radians(22.0), 25e-3, 1
 )
 
@@ -56,7 +56,7 @@ def synthetic(
     misalignment=(0.0,),
     center_distance_change=(0.0,),
     pair=(-2, -1, 0, 1),
-    facts=FACTS,
+    geometry=FACTS,
     error=1e-9,
     **changes,
 ) -> SteDatabase:
@@ -72,7 +72,7 @@ def synthetic(
     arrays = {
         "position": position,
         "force": force,
-        "torque": force * facts.base_radius[0] * np.cos(facts.base_helix_angle),
+        "torque": force * geometry.base_radius[0] * np.cos(geometry.base_helix_angle),
         "misalignment": across,
         "center_distance_change": spread,
         "pair": pair,
@@ -86,7 +86,7 @@ def synthetic(
         "status": np.zeros(ste.shape, dtype=int),
         "error_estimate": np.full(ste.shape, error),
         "residuals": np.full((*ste.shape, 4), 1e-12),
-        "facts": facts,
+        "geometry": geometry,
         "metadata": Metadata(
             case={"pair": {"normal_module_mm": 4.0}, "load": {"torque_n_m": [10, 50.5]}},
             effect_ledger=[{"effect": "corner_contact", "on": True, "because": "sharp tips at 100 N m"}],
@@ -126,7 +126,7 @@ def spur() -> SteDatabase:
 
 @pytest.fixture(scope="session")
 def helical() -> SteDatabase:
-    return synthetic(facts=HELICAL, relief=5e-6)
+    return synthetic(geometry=HELICAL, relief=5e-6)
 
 
 @pytest.fixture(scope="session")
@@ -140,5 +140,5 @@ def four_axes() -> SteDatabase:
 
 
 @pytest.fixture(scope="session")
-def helical_facts() -> PairFacts:
+def helical_facts() -> PairGeometry:
     return HELICAL

@@ -9,7 +9,7 @@ import pytest
 from held_out import held_out_error
 
 from fe_contact.errors import DatabaseError, InputError, SolveError
-from fe_contact.ste import Metadata, PairFacts
+from fe_contact.ste import Metadata, PairGeometry
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.ste.metadata import content_hash
 from fe_contact.ste.table_repair import without_failed_rows
@@ -102,18 +102,18 @@ def test_identical_looks_at_every_bit(make, spur):
     ste = spur.static_transmission_error.copy()
     ste[3, 3] = np.nextafter(ste[3, 3], 1.0)
     assert not spur.identical(replace(spur, static_transmission_error=ste))
-    assert not spur.identical(replace(spur, facts=replace(spur.facts, face_width=26e-3)))
+    assert not spur.identical(replace(spur, geometry=replace(spur.geometry, face_width=26e-3)))
     assert not spur.identical(replace(spur, metadata=replace(spur.metadata, content_hash="1")))
 
 
 def test_facts_come_back_from_json_and_carry_the_torque(helical_facts):
-    assert PairFacts.from_json(helical_facts.to_json()) == helical_facts
+    assert PairGeometry.from_json(helical_facts.to_json()) == helical_facts
     expected = 100.0 / 60.3e-3 / math.cos(math.radians(24.0))
     assert helical_facts.normal_force(100.0) == pytest.approx(expected, rel=1e-15)
     content = helical_facts.to_json()
     del content["base_pitch"]
     with pytest.raises(DatabaseError, match="base_pitch"):
-        PairFacts.from_json(content)
+        PairGeometry.from_json(content)
 
     wrong = {"base_pitch": 0.0, "base_radius": (0.03, -1.0), "base_helix_angle": 1.6}
     for name, value in {**wrong, "helix_hand": 2, "internal": 1, "face_width": math.nan}.items():

@@ -45,9 +45,9 @@ def test_levels_gather_in_steps_with_a_kink(make):
 
 def test_a_helical_pair_comes_into_contact_gradually(make):
     """A corner of a flank that touches first adds no stiffness at once: no kink, a smooth curve."""
-    facts = make().facts
-    straight, steep = (replace(facts, base_helix_angle=angle) for angle in (0.0, 0.35))
-    slight = replace(facts, base_helix_angle=0.001)
+    geometry = make().geometry
+    straight, steep = (replace(geometry, base_helix_angle=angle) for angle in (0.0, 0.35))
+    slight = replace(geometry, base_helix_angle=0.001)
     assert gradual_contact(straight) == 0.0
     assert gradual_contact(steep) == 1.0
     assert gradual_contact(slight) < 0.05

@@ -63,7 +63,7 @@ def test_stored_points_come_back_and_the_force_is_the_inverse(table):
     assert np.array_equal(asked, table.static_transmission_error[:, :, 0, 0])
     deflection = table.ste(X, F)
     sample = table.force_at(X, deflection)
-    to_transverse = np.cos(table.facts.base_helix_angle)
+    to_transverse = np.cos(table.geometry.base_helix_angle)
     # a deflection is a float: its rounding times the stiffness is beyond any inverse
     rounding = 4.0 * np.spacing(np.abs(deflection)) * sample.stiffness
     assert np.all(np.abs(sample.force - F * to_transverse) <= 1e-10 * F + rounding)
@@ -226,8 +226,8 @@ OPTIONAL = {"sliding_share", "sliding_lever", "load_arm"} | {
 
 def stored(made, database):
     """Indices of the stored loads among the levels."""
-    index = np.searchsorted(made.level, database.force * np.cos(database.facts.base_helix_angle))
-    assert np.array_equal(made.level[index], database.force * np.cos(database.facts.base_helix_angle))
+    index = np.searchsorted(made.level, database.force * np.cos(database.geometry.base_helix_angle))
+    assert np.array_equal(made.level[index], database.force * np.cos(database.geometry.base_helix_angle))
     return index
 
 
@@ -279,7 +279,7 @@ def test_levels_are_transverse_forces_from_lift_off(helical):
     assert not made.stiffness[..., 0].any()
     assert not made.stiffness_slope[..., 0].any()
     compliance = np.moveaxis(helical.tangent_compliance, 1, -1)[:, 0, 0]
-    expected = np.cos(helical.facts.base_helix_angle) / compliance
+    expected = np.cos(helical.geometry.base_helix_angle) / compliance
     assert np.allclose(made.stiffness[0, 0][:, stored(made, helical)], expected, rtol=1e-14)
 
 
@@ -293,7 +293,7 @@ def test_stiffness_is_cut_to_three_times_the_secant(make):
     at = stored(made, database)[2]
     # between the knots the bound is tighter than at them
     assert made.stiffness[0, 0, 7, at] > 0.75 * 3.0 * secant[7, at - 1 : at + 1].min()
-    assert made.stiffness[0, 0, 7, at] < np.cos(database.facts.base_helix_angle) / wild[7, 2]
+    assert made.stiffness[0, 0, 7, at] < np.cos(database.geometry.base_helix_angle) / wild[7, 2]
     assert np.all(made.stiffness[0, 0, :, 1:] <= 3.0 * secant * (1.0 + 1e-9))
 
 

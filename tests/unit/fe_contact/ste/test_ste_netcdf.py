@@ -45,15 +45,15 @@ def test_round_trips_are_bit_exact(stored, tmp_path):
 
 def test_a_ring_gear_is_remembered_and_an_external_pair_says_nothing_of_it(stored, tmp_path):
     database, path = stored
-    ring = replace(database, facts=replace(database.facts, internal=True))
+    ring = replace(database, geometry=replace(database.geometry, internal=True))
     ring.to_netcdf(tmp_path / "ring.nc")
     back = SteDatabase.from_netcdf(tmp_path / "ring.nc")
-    assert back.facts.internal
+    assert back.geometry.internal
     assert back.identical(ring)
     assert not back.identical(database)
     with xarray.open_dataset(path, engine="h5netcdf") as dataset:
         assert "internal" not in json.loads(dataset.attrs["facts"])
-    assert not SteDatabase.from_netcdf(path).facts.internal
+    assert not SteDatabase.from_netcdf(path).geometry.internal
 
 
 def test_large_receipts_survive(make, tmp_path):
@@ -79,7 +79,7 @@ def test_other_programs_read_names_units_and_documents(stored):
         assert dataset.status.attrs["flag_meanings"].split()[2] == "singular"
         assert dataset.attrs["schema_version"] == SCHEMA_VERSION
         assert json.loads(dataset.attrs["case"]) == database.metadata.case
-        assert json.loads(dataset.attrs["facts"])["base_pitch"] == database.facts.base_pitch
+        assert json.loads(dataset.attrs["facts"])["base_pitch"] == database.geometry.base_pitch
         assert "1 of 1440 points FAILED" in dataset.attrs["summary"]
         point = dataset.static_transmission_error.sel(
             force=2660.0, misalignment=0.0, center_distance_change=0.0

@@ -1,4 +1,4 @@
-"""The facts that the file of a sound has beside its arrays, as plain JSON."""
+"""Facts in the file of a sound, in addition to its arrays, as plain JSON."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from lineofaction.gearbox.studies.noise import (
 from lineofaction.gearbox.studies.noise.uncertainty import SoundUncertainty
 
 RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_left_out")
-"""What a sound takes over from its response or run."""
+"""Facts that a sound copies from its response or run."""
 
 
 def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
     """Return the facts of a sound: what it takes over from its response and its scene, regions, models."""
     return {
-        **sound.power.facts,
+        **sound.power.metadata,
         "regions": [[_region(region) for region in regions] for regions in sound.regions],
         **{name: response.get(name) for name in RESPONSE},
         "excitations": response.get("excitations", []),
