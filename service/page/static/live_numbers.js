@@ -9,7 +9,7 @@ export const edgeWords = ({ edge_pressure_mpa: edge }) => (edge ? `${number(edge
 
 /** What each source states of the errors of a curve. */
 export function sourcesOf({ error_by_source_um: errors }) {
-  const row = ([name, of]) => [name.replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
+  const row = ([name, of]) => [name.replace("discretisation", "discretization").replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
   return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: Object.entries(errors).map(row) };
 }
 

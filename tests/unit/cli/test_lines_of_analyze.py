@@ -175,7 +175,7 @@ def test_a_bias_is_stated_beside_the_errors_and_not_in_them(tmp_path: Path) -> N
     assert f"over the face at 5 N m: mean {load['mean_over_face_um']:.4g} " in printed
     sources = printed[printed.index("Errors by source at 5 N m") :].partition("\n\n")[0]
     rows = sources.splitlines()
-    assert {"discretisation", "method"} <= {row.split()[0] for row in rows[1:]}
+    assert {"discretization", "method"} <= {row.split()[0] for row in rows[1:]}
     assert not any(row.strip().startswith("finite width") for row in rows)
 
 
