@@ -1,4 +1,4 @@
-"""Do stated errors of runs hold what accumulates? Impacts, reversals, light damping, and steady contact.
+"""Do stated errors of runs cover accumulated ones? Impacts, reversals, light damping, steady contact.
 
 Each scene runs as a caller runs it, at 1 nm. The truth is a run at 1e-4 of the tolerance; where the motion is
 chaotic, of the level of the transmission error.

@@ -1,4 +1,4 @@
-"""Stated errors beside true ones: how often they cover them, and by how much they exceed them."""
+"""Stated errors against true ones: how often they cover them, and by how much they exceed them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Estimated and measured changes side by side: when an estimate is right, how often it is, how it is told."""
+"""Estimated against measured changes: criterion of a right estimate, share of right ones, and tables."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class AssessedEffect:
 
     @property
     def decided_by(self) -> float:
-        """Largest measured change of what "auto" decides by."""
+        """Largest measured change of the quantities by which "auto" decides."""
         return max(map(abs, self.measured))
 
     @property

@@ -1,4 +1,4 @@
-"""A browser that nobody watches: scripts are run in its page through a pipe, what it fetches is not kept.
+"""A browser without a driver: scripts run in its page through a pipe, responses are not stored.
 
 A driver of browser tests has every response kept in the process of the page, to hand it out later: memory
 that grows with each answer though the page has let it go.
@@ -19,7 +19,9 @@ from typing import Any
 _END = b"\0"
 _CHUNK, _PATIENCE_S = 1 << 20, 120.0
 _OWN = re.compile(r"^Pss_(?:Anon|Shmem):\s+(\d+)", re.MULTILINE)
-"""Without files: of those the share falls as another browser of the machine maps them too."""
+"""Pattern of the lines of anonymous and shared memory. Mapped files are left out: their share falls as
+another browser of the machine maps them too.
+"""
 
 
 class BareBrowser:
@@ -71,7 +73,7 @@ class BareBrowser:
         self.page("Page.navigate", url=address)
 
     def evaluate(self, function: str) -> Any:
-        """Return what a function of the page returns, or resolves to."""
+        """Return the result of a function of the page, or of its promise."""
         call = f"({function})()"
         found = self.page("Runtime.evaluate", expression=call, awaitPromise=True, returnByValue=True)
         if problem := found.get("exceptionDetails"):
@@ -88,7 +90,7 @@ class BareBrowser:
 
 
 def _own_mb(pid: int) -> float:
-    """Return what a process holds, with its part of what it shares; 0 if it ended."""
+    """Return the memory of a process with its part of shared memory, MB; 0 if it ended."""
     with suppress(OSError):
         text = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
         return sum(map(int, _OWN.findall(text))) / 1024.0

@@ -70,6 +70,6 @@ def _cost(program: list[str], folder: str) -> tuple[float, float]:
 
 
 def own_microseconds(line: str) -> int:
-    """Return what one module took by itself, of a line of Python's own record; 0 for other lines."""
+    """Return the time of one module alone, from a line of Python's import record; 0 for other lines."""
     first = line.removeprefix("import time:").split("|")[0].strip()
     return int(first) if line.startswith("import time:") and first.isdigit() else 0

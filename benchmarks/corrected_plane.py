@@ -1,4 +1,4 @@
-"""The plane corrected for a finite width against three dimensions: agreement, and what either costs."""
+"""The plane corrected for a finite width against three dimensions: agreement, and costs of both."""
 
 from __future__ import annotations
 

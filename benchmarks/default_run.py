@@ -12,7 +12,7 @@ from benchmarks.housed_run import in_housing
 from dynamics.influence import neglected_check
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -86,7 +86,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def difference(bodies: CondensedPair, name: str, by: FloatArray) -> float:
-    """Median over the positions of what central differences say otherwise, over the largest derivative."""
+    """Return the median difference from central differences over positions, over the largest derivative."""
     pair = bodies.checked.request.pair
     gear, _, quantity = name.partition(".")
     value = getattr(getattr(pair, gear).modification, quantity)

@@ -38,12 +38,14 @@ CLASSES = (4, 5, 6, 7, 8)
 OPTIONS = AnalysisOptions(level="draft")
 HUNTING = "23/67, 22 deg"
 ASSESSED = [MEAN, PEAK_TO_PEAK, OFF_MESH, *range(FIRST_HARMONIC, FIRST_HARMONIC + 5)]
-"""Mean, peak-to-peak, the order beside the mesh that differs most, five mesh harmonics."""
+"""Assessed quantities: mean, peak-to-peak, the order of the largest error that is no mesh order, five mesh
+harmonics.
+"""
 T = TypeVar("T")
 
 
 class AssessedCycle(NamedTuple):
-    """One cycle by derivatives: what is stated of it, what is true, and CPU seconds."""
+    """One cycle by derivatives: stated and true errors, and CPU seconds."""
 
     name: str
     ripple: float
@@ -60,7 +62,7 @@ class AssessedCycle(NamedTuple):
 
 
 def figures() -> list[Figure]:
-    """Return what is covered, and what it costs."""
+    """Return the coverage and the cost."""
     cycles = [assessed(name, pair, torque) for name, pair, torque in drawn_gears()]
     beyond = np.mean([each.true > each.stated for each in cycles])
     parts = [each.seconds / each.exact_seconds for each in cycles]

@@ -1,4 +1,4 @@
-"""Gear pairs drawn at random from one recipe: what stated errors and tolerances are assessed on."""
+"""Gear pairs drawn at random from one recipe, on which stated errors and tolerances are assessed."""
 
 from __future__ import annotations
 

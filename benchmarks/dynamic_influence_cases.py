@@ -30,7 +30,7 @@ from dynamics.noise import EquivalentSoundPower, QuantityLevel, SoundModel
 from dynamics.scene import Outputs, Scene, pair_scene
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from fe_contact import GearPair, analyze
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

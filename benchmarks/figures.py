@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Figure:
-    """A measured value beside its target: at most `limit`, or no target."""
+    """A measured value with its target: at most `limit`, or no target."""
 
     subject: str
     what: str

@@ -1,4 +1,4 @@
-"""Spur pairs whose tables are held against full contact, by regime; half of them set no constant."""
+"""Spur pairs whose tables are compared with full contact, by regime; half of them set no constant."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ NOT_LEVELS = ("band", "outside", "CPU s")
 
 
 def figures() -> list[Figure]:
-    """Return what the models are off on each case, at its loudest line and over all lines."""
+    """Return the differences of the models on each case, at its loudest line and over all lines."""
     of_cases = {name: case_errors(CASES[name].reduced(MODES)) for name in CASES}
     outside = [missed for errors in of_cases.values() for missed in errors["outside"]]
     what, share = f"outside the band, of {len(outside)} lines", 100.0 * float(np.mean(outside))

@@ -15,7 +15,7 @@ from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "flexible_shafts_scene.toml"

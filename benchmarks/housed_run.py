@@ -16,7 +16,7 @@ from dynamics.joints import Housing
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.vibration import motion_pieces, run_seat_forces
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "palermo_scene.toml"

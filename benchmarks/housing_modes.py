@@ -1,4 +1,4 @@
-"""Time and memory of the reduction of a cast box with four bored bosses, and what was predicted."""
+"""Time and memory of the reduction of a cast box with four bored bosses, measured and predicted."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ def figures() -> list[Figure]:
 
 
 def assessed(case: QuietPair) -> HeldQuantiles:
-    """Hold the quantiles of a pair by the model against those of pairs that are all solved."""
+    """Compare the quantiles of a pair by the model with those of pairs that are all solved."""
     model, seconds = _drawn(case, PAIRS_BY_MODEL, seed=1)
     solved, solved_seconds = _drawn(case, PAIRS_SOLVED, seed=2)
     ends = [quantile_bounds(solved.peak_to_peak, fraction, CONFIDENCE)[1:] for fraction in FRACTIONS]

@@ -1,4 +1,4 @@
-"""Do the errors that a table states between its nodes cover what is solved there? Drawn tables."""
+"""Do the errors that a table states between its nodes cover the solutions there? Drawn tables."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def drawn_tables(
 def between_nodes(
     case: PairCase, axes: dict[str, Any], at: FloatArray, cache_dir: Path | None
 ) -> BetweenNodes:
-    """Hold one table against a solution at each of its points."""
+    """Compare one table with a solution at each of its points."""
     options = {"tolerance": TOLERANCE, "cache": cache_dir}
     table = analyze(case.pair, **axes, **options)
     rows = []

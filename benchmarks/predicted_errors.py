@@ -1,4 +1,4 @@
-"""Does the plan predict what a run states? Errors of mean and peak-to-peak in um and in per cent."""
+"""Does the plan predict the stated errors of a run? Errors of mean and peak-to-peak in um and per cent."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def assessed() -> tuple[Predicted, ...]:
 
 
 def compare(case: PairCase, name: str, run: StoredRun) -> Predicted:
-    """Compare what a run states with what was predicted of it, at the worst load."""
+    """Compare the stated errors of a run with the predicted ones, at the worst load."""
     predicted, stated = run.receipt["prediction"]["error"], run.stated()[:2]
     scale = (ALLOWED if name == "tolerance" else RELATIVE).scale(run.value[:2])
     ratios = {"relative": predicted["total"] / float(np.max(stated / scale))}

@@ -1,4 +1,4 @@
-"""Predicted against measured peak memory of runs, each in a process of its own: peaks never fall."""
+"""Predicted against measured peak memory of runs, one process each, since peaks never fall."""
 
 from __future__ import annotations
 

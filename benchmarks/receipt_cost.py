@@ -67,7 +67,7 @@ def _helical() -> GearPair:
 
 
 def figures() -> list[Figure]:
-    """Return what estimates and ledger take of each run."""
+    """Return the costs of error estimates and ledger of each run."""
     warm_up(across_face=True)
     with tempfile.TemporaryDirectory() as folder:
         return [figure for case in cases() for figure in _case(case, Path(folder))]

@@ -61,7 +61,7 @@ class Recording:
 
 @dataclass(frozen=True)
 class Share:
-    """Who spent what on one table."""
+    """Shares of the cost of one table by process."""
 
     wall: float
     caller: float
@@ -109,7 +109,7 @@ def figures() -> list[Figure]:
 
 
 def _table(cache: Path, workers: Workers) -> Share:
-    """Compute the table, and return what it took."""
+    """Compute the table, and return its cost."""
     recording = workers if isinstance(workers, InProcess) else Recording(workers)
     began, cpu = time.perf_counter(), time.process_time()
     analyze(_pair(), torques=_TORQUES, misalignments=_MISALIGNMENTS, cache=cache, workers=recording)

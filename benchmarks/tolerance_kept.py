@@ -99,7 +99,7 @@ def assess(case: PairCase) -> ToleranceRun:
 
 
 def used(error: FloatArray, value: FloatArray) -> float:
-    """Return the largest error of mean and peak-to-peak in parts of what the tolerance allows."""
+    """Return the largest error of mean and peak-to-peak over the allowed error."""
     return float(np.max(np.abs(error[:2]) / ALLOWED.of(value[:2])))
 
 
@@ -170,7 +170,7 @@ def _row(one: ToleranceRun) -> str:
 
 
 def _per_cent(found: Iterable[bool]) -> float:
-    """Per cent of what is true."""
+    """Return the percentage of true values."""
     return 100.0 * float(np.mean(list(found)))
 
 

@@ -67,7 +67,7 @@ def inside(part: str) -> Iterator[None]:
 
 
 @cache
-def _left_out(kind: Any) -> frozenset[str]:
+def _optional_fields(kind: Any) -> frozenset[str]:
     """Return the fields of a dataclass whose default is None."""
     return frozenset(entry.name for entry in fields(kind) if entry.default is None)
 
@@ -132,8 +132,8 @@ class Checks:
         return [name for name in known if names is None or name in names]
 
     def declared_fields(self, thing: Any, beyond: Collection[str] = ()) -> None:
-        """Check declared fields, each alone; what is left out passes, what is in `beyond` if it is finite."""
-        may_miss = _left_out(cast("Hashable", type(thing)))
+        """Check declared fields, each alone; absent ones pass, those in `beyond` pass if they are finite."""
+        may_miss = _optional_fields(cast("Hashable", type(thing)))
         for field, fact in declarations(type(thing)).items():
             value = getattr(thing, field)
             if value is None and field in may_miss:

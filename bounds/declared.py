@@ -131,7 +131,7 @@ def required(declaration: Declared) -> Any:
 
 
 def written(thing: Any) -> Any:
-    """Return a dataclass and all in it as dictionaries, but for later fields at their defaults."""
+    """Return a dataclass and its parts as dictionaries, without later fields at their defaults."""
     if not is_dataclass(thing):
         return type(thing)(map(written, thing)) if isinstance(thing, list | tuple) else thing
     by_name = declarations(type(thing))
@@ -144,7 +144,7 @@ def written(thing: Any) -> Any:
 
 
 def described(kind: type[Thing]) -> type[Thing]:
-    """Append to the docstring of a dataclass what its declared fields are; a decorator."""
+    """Append the descriptions of the declared fields of a dataclass to its docstring; a decorator."""
     entries = []
     for name, fact in declarations(kind).items():
         plain = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")

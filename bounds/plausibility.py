@@ -31,7 +31,7 @@ SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
 def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, high: float) -> str:
-    """Return the unit in which a number makes sense that does not in its own; empty where there is none.
+    """Return the unit in which a number is plausible that is not in the field's unit; empty if there is none.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Finding:
     """Reason why the value is implausible, in words."""
     source: str
     """Source of the limit."""
-    whole: str = ""
+    unit_note: str = ""
     """Other fields that must have slipped with the field, in words; empty if it slipped alone."""
 
     def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
@@ -101,7 +101,7 @@ class Finding:
         unit = field_unit or SI_UNITS[self.unit]
         suspected = _suspected_unit(self.value, unit, self.unit, self.low, self.high)
         written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")
-        question = f" Did you give {suspected}{self.whole}?" if suspected else ""
+        question = f" Did you give {suspected}{self.unit_note}?" if suspected else ""
         return f"{field or self.field} = {written}: {self.reason} ({self.source}).{question}"
 
     def to_json(self) -> Json:
@@ -115,7 +115,7 @@ class Finding:
             "high": self.high if math.isfinite(self.high) else None,
             "reason": self.reason,
             "source": self.source,
-            "whole": self.whole,
+            "whole": self.unit_note,
             "message": self.message(),
         }
 
@@ -135,7 +135,7 @@ class Checklist:
         *,
         scale: float = 1.0,
         reason: str | None = None,
-        whole: str = "",
+        unit_note: str = "",
         skip_zero: bool = False,
     ) -> Iterator[Finding]:
         """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
@@ -144,7 +144,7 @@ class Checklist:
         high = math.inf if rule.high is None else rule.high * scale
         if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
             text = reason or f"implausible {rule.quantity}"
-            yield Finding(check, field, float(value), low, high, unit, text, rule.source, whole)
+            yield Finding(check, field, float(value), low, high, unit, text, rule.source, unit_note)
 
 
 def finding_of(content: Json) -> Finding:

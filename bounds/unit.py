@@ -46,7 +46,7 @@ class Unit:
 
 
 def leftover(value: float, digits: int = 1) -> str:
-    """Write what should be zero, a residual or an imbalance: below `MIN_LEFTOVER` only that it is.
+    """Write a number that should be zero, a residual or an imbalance: below `MIN_LEFTOVER` without digits.
 
     Rounding decides smaller numbers; their digits say nothing.
 

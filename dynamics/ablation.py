@@ -226,7 +226,7 @@ def ablate(
     estimates = estimate_influences(scene, settled=SETTLED)
     system = assemble(scene)
     states = {name: _EffectState.of(system, name) for name in names}
-    effects, left_out = run_variants(
+    effects, omitted = run_variants(
         stage="ablation",
         variants=states,
         compute=partial(_toggled, scene, nominal),
@@ -240,7 +240,7 @@ def ablate(
         replace(entry, estimate=estimates.get(name), level=levels.get(name, no_change))
         for name, entry in effects.items()
     )
-    return Ablation(nominal, tuple(entries), left_out, result.mesh, result.bearing)
+    return Ablation(nominal, tuple(entries), omitted, result.mesh, result.bearing)
 
 
 def runs_of_ablation(scene: Scene, only: Sequence[str] | None = None) -> tuple[list[float], float]:

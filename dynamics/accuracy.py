@@ -361,7 +361,7 @@ def frontier(
     system = assemble(scene)
     blocks, scene = BlockGrid.of(system), system.resolved(scene)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
-    outcomes, left_out = run_fidelities(
+    outcomes, omitted = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         scene,
         partial(_warm_up, scene, blocks),
@@ -381,7 +381,7 @@ def frontier(
     )
     return Frontier(
         results,
-        left_out,
+        omitted,
         knee_of_results(results),
         _chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,

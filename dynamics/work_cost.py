@@ -31,7 +31,7 @@ class Cost(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Say the cost: "about 25 CPU s, 1.2 GB"."""
+        """The cost in words: "about 25 CPU s, 1.2 GB"."""
         return f"about {engineering(self.seconds, 2)} CPU s, {engineering(self.bytes / 1e9, 2)} GB"
 
 

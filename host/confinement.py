@@ -86,12 +86,12 @@ def confine(folder: Path, limits: Limits = READING) -> None:
 
 
 def prepare_confinement() -> None:
-    """Find out once, in a process whose forks are confined, what is the same for all of them."""
+    """Prepare, in a process whose forks are confined, the data that are the same for all of them."""
     _readable()
 
 
 def _threads_and_addresses() -> tuple[int, int]:
-    """Return the number of threads of this process and the bytes of its addresses; 1 and 0 without /proc."""
+    """Return the number of threads and the bytes of address space of this process; 1 and 0 without /proc."""
     with suppress(OSError):
         fields = Path("/proc/self/stat").read_bytes().rpartition(b")")[2].split()
         return int(fields[17]), int(fields[20])
@@ -114,8 +114,8 @@ def _limit(limits: Limits, addresses: int) -> None:
     if limits.memory_mb is not None:
         limit_memory(limits.memory_mb * _MB)
     if limits.memory_mb is not None and addresses:
-        most_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
-        maximum[resource.RLIMIT_AS] = (most_addresses, most_addresses)
+        max_addresses = addresses + (limits.memory_mb + _LIBRARIES_MB) * _MB
+        maximum[resource.RLIMIT_AS] = (max_addresses, max_addresses)
     for kind, values in maximum.items():
         _, hard = resource.getrlimit(kind)
         soft, last = values if hard == resource.RLIM_INFINITY else (min(value, hard) for value in values)

@@ -44,7 +44,7 @@ def data_home() -> Path:
 
 
 def cache_home() -> Path:
-    """Return the directory for what can be computed or fetched again; our own alone where caches are off."""
+    """Return the directory for files that can be computed or fetched again; a private one without caches."""
     return default_cache_directory() or Path(_process_folder().name)
 
 
@@ -78,7 +78,7 @@ def private(directory: Path) -> Path:
 
 
 def keep_private() -> None:
-    """Let what this process and its children write be their owner's alone: 0600, folders 0700."""
+    """Make files of this process and its children readable by their owner alone: 0600, folders 0700."""
     os.umask(0o077)
 
 

@@ -37,7 +37,7 @@ from host.loop_sources import PACKAGES, PROJECT, Sources, sources
 
 SHIPPED = Path(__file__).parent / "shipped_loops"
 VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
-VERSIONS_KEPT = 4
+MAX_VERSIONS = 4
 """Number of versions of a loop that stay in a folder: those of other branches, of other Pythons."""
 
 _UNREADABLE = (AttributeError, ImportError, EOFError, pickle.UnpicklingError, TypeError, ValueError)
@@ -105,17 +105,17 @@ class LoopCache(FunctionCache):
         return None if data is None else self._impl.rebuild(context, data)
 
     def _save_overload(self, signature: Any, data: Any) -> None:
-        """Keep an entry, unless sources changed since this process looked at them: which it has is open."""
+        """Store an entry, unless sources changed since they were read: its version is then unknown."""
         if self._sources.unchanged():
             with suppress(OSError):  # a full disk costs the next process time, not this one its result
                 super()._save_overload(signature, data)
                 self._remove_old()
 
     def _remove_old(self) -> None:
-        """Remove what the loop was in the folder before its last few versions."""
+        """Remove all versions of the loop in the folder but the last few."""
         loop = self._loop.rpartition("-")[0]  # without its line
         indices = sorted(Path(self._cache_path).glob(f"{loop}-*.nbi"), key=lambda path: -path.stat().st_mtime)
-        for index in indices[VERSIONS_KEPT:]:
+        for index in indices[MAX_VERSIONS:]:
             for file in [index, *index.parent.glob(f"{index.stem}.*.nbc")]:
                 file.unlink(missing_ok=True)
 
@@ -139,5 +139,5 @@ def _manifest(folder: Path, package: str) -> Path:
     clone = hashlib.sha256(str(PROJECT).encode()).hexdigest()[:8]
     if config.CACHE_DIR:
         return Path(config.CACHE_DIR, f"{package}-{clone}.json")
-    beside = folder.name == "__pycache__"
-    return (PROJECT / package / "__pycache__" if beside else folder.parent) / f"{package}-{clone}.json"
+    in_pycache = folder.name == "__pycache__"
+    return (PROJECT / package / "__pycache__" if in_pycache else folder.parent) / f"{package}-{clone}.json"

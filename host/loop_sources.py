@@ -63,7 +63,7 @@ class Sources:
         return self._keys[name]
 
     def unchanged(self) -> bool:
-        """Whether all files that were looked at are as they were then."""
+        """Whether all files are in the state of their first reading."""
         files = (entry for entry in self._states.items() if entry[0].endswith(".py"))
         return all(_state(path) == state for path, state in files)
 
@@ -112,7 +112,7 @@ class Sources:
         return self._roots[package]
 
     def _read(self, manifest: Path) -> bool:
-        """Take the keys of a manifest if all of its files are as they were."""
+        """Read the keys of a manifest if all of its files are in the recorded state."""
         try:
             content = json.loads(manifest.read_bytes())
             states: dict[str, State | None] = {path: tuple(s) for path, s in content["states"].items()}

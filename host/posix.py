@@ -21,7 +21,7 @@ _MIB = 1 << 20
 
 
 def cpu_seconds() -> float:
-    """Return the CPU seconds of this process and of its finished children: what a cost is counted by."""
+    """Return the CPU seconds of this process and of its finished children, the measure of a cost."""
     return time.process_time() + children_cpu_seconds()
 
 
@@ -61,7 +61,7 @@ def keep_freed_memory() -> None:
         setting(_TRIM_THRESHOLD, 64 * _MIB)
 
 
-def most_open_files() -> float:
+def max_open_files() -> float:
     """Return how many files, sockets among them, this process may have open at once; infinite: no limit."""
     soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return math.inf if soft == resource.RLIM_INFINITY else soft

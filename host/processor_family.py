@@ -21,11 +21,11 @@ FAMILIES = {"x86-64-v4": _V4, "x86-64-v3": _V3}
 """Features of each family in LLVM's names, beyond the features that both have; the first match counts."""
 
 
-def family_of(features: Mapping[str, bool], machine: str) -> str | None:
+def family_of(flags: Mapping[str, bool], machine: str) -> str | None:
     """Return the family of a processor with some features, None where there is none."""
     if machine.lower() not in {"x86_64", "amd64"}:
         return None
-    return next((name for name, needs in FAMILIES.items() if all(features.get(each) for each in needs)), None)
+    return next((name for name, needs in FAMILIES.items() if all(flags.get(flag) for flag in needs)), None)
 
 
 def compile_for_family() -> None:

@@ -110,7 +110,7 @@ def njit(function: Callable[..., Any] | None = None, *, cache: bool = False, **o
 
 
 def inner(**options: Any) -> Callable[[Function], Function]:
-    """Compile a loop into those that call it, with options of `njit`; called from Python, once more."""
+    """Compile a loop into its callers, with options of `njit`; for Python it is compiled once more."""
 
     def compiled(function: Function) -> Function:
         if config.DISABLE_JIT:

@@ -44,7 +44,7 @@ def keep_freed_memory() -> None:
     """Do nothing: the system has no such setting."""
 
 
-def most_open_files() -> float:
+def max_open_files() -> float:
     """Return infinity: the system has no limit that a process can ask for."""
     return math.inf
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds.brief import brief
 from bounds.types import FloatArray, Json
-from model_studies.record import in_unit
+from model_studies.record import in_unit, under_key
 
 TRIFLE = 1e-3
 """Relative change below which a report lists effects together."""
@@ -96,5 +96,5 @@ class Ablation(Generic[F, A]):
     nominal: F
     """Figures of the request itself."""
     effects: tuple[A, ...]
-    left_out: dict[str, str]
+    omitted: dict[str, str] = field(metadata=under_key("left_out"))
     """Effects that were not toggled, and why."""

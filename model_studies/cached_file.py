@@ -38,14 +38,21 @@ def cached_in(
     """
     if file is None:
         return make()
-    with suppress(unreadable):
-        result = read(file)
-        with suppress(OSError):  # of another owner
-            os.utime(file)  # its last use, by which caches are kept small
-        return result
+    if (known := read_cached(file, read, unreadable)) is not None:
+        return known
     made = make()
     if keeps(made):
         with suppress(OSError):
             file.parent.mkdir(parents=True, exist_ok=True)
             write(made, file)
     return made
+
+
+def read_cached(file: Path, read: Callable[[Path], Cached], unreadable: type[Exception]) -> Cached | None:
+    """Return what a file keeps, None if it is absent or damaged; parameters as those of `cached_in`."""
+    with suppress(unreadable):
+        result = read(file)
+        with suppress(OSError):  # of another owner
+            os.utime(file)  # its last use, by which caches are kept small
+        return result
+    return None

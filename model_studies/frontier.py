@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from bounds.brief import brief
 from host import cpu_seconds
 from model_studies.progress import Progress
+from model_studies.record import under_key
 from model_studies.variants import run_variants
 
 R = TypeVar("R")
@@ -89,10 +90,10 @@ def run_fidelities(
 
     by_name = {fidelity.name: fidelity for fidelity in valid}
     outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
-    left_out = refused | failed
+    omitted = refused | failed
     if len(outcomes) < 2:
-        raise failures[-1](f"an error needs two fidelities to compare; left out: {left_out}")
-    return list(outcomes.values()), left_out
+        raise failures[-1](f"an error needs two fidelities to compare; left out: {omitted}")
+    return list(outcomes.values()), omitted
 
 
 def against_finest(
@@ -182,7 +183,7 @@ class Frontier(Generic[R_co]):
     """Results in the order of their usual cost. The last one is the reference: its errors are its own
     estimates.
     """
-    left_out: dict[str, str]
+    omitted: dict[str, str] = field(metadata=under_key("left_out"))
     """Name of a fidelity to the reason why it has no result."""
     knee: str | None
     """The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,

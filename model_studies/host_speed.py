@@ -31,7 +31,7 @@ _SLOWEST = 1000.0
 
 
 def host_slowness(cache: Path | None) -> float:
-    """Return the time that this host takes beside the reference, 1 = alike, 2 = twice as long.
+    """Return the time of this host over that of the reference: 1 = equal, 2 = twice as long.
 
     `cache`: as of `cached_speed`.
     """

@@ -80,7 +80,7 @@ def read_dataset(path: Path, **decoding: Any) -> xarray.Dataset:
 
 
 def _check(file: Any, maximum: int) -> None:
-    """Refuse what is no variable of the file itself, and more than so many bytes of values and texts."""
+    """Refuse members that are no variables of the file itself, and too many bytes of values and texts."""
     total = 0
     for size in _sizes(file):
         total += size
@@ -107,7 +107,7 @@ def _sizes(file: Any) -> Iterator[int]:
 
 
 def _names(root: Any) -> list[bytes]:
-    """Return the names of what a group holds; links to other places are refused."""
+    """Return the names of the members of a group; links to other places are refused."""
     from h5py import h5l  # noqa: PLC0415 - needed for files only
 
     if root.get_num_objs() > MAX_VARIABLES:
@@ -120,7 +120,7 @@ def _names(root: Any) -> list[bytes]:
 
 
 def value_size(variable: Any, kind: Any) -> int:
-    """Return the unpacked size of a variable's values; what is not in the file itself is refused."""
+    """Return the unpacked size of a variable's values; values outside the file itself are refused."""
     from h5py import h5d, h5z  # noqa: PLC0415 - needed for files only
 
     made = variable.get_create_plist()

@@ -101,7 +101,7 @@ class NetcdfContent:
         return dataset
 
     def _auxiliary(self, name: str) -> dict[str, str]:
-        """Return the attribute that names coordinates beside those along the dimensions of a variable."""
+        """Return the attribute that names further coordinates of a variable, not along its dimensions."""
         dimensions = set(self.variables[name].dimensions)
         along = [
             coordinate

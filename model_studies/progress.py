@@ -19,12 +19,12 @@ ANNOUNCED = 3.0
 
 
 def stage_name(reported: str) -> str:
-    """Return the name of a stage without what is said of it behind a semicolon."""
+    """Return the name of a stage without the remark behind a semicolon."""
     return reported.partition(";")[0]
 
 
 def announce(progress: Progress, stage: str, seconds: float, subject: str = "") -> None:
-    """Report what a stage will take before it begins, behind its name, if that is more than a moment.
+    """Report the predicted cost of a stage before it begins, behind its name, if it is more than a moment.
 
     `progress`: called as progress("pairs; 200 before and after: about 25 CPU s", 0.0).
     """

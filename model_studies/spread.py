@@ -10,7 +10,7 @@ from bounds.types import FloatArray
 
 
 def quantiles(sample: FloatArray, fractions: float | tuple[float, ...]) -> FloatArray:
-    """Return what further members of a population are below with these probabilities, by samples (N, ...).
+    """Return the values that further members are below with given probabilities, by samples (N, ...).
 
     NaN of the sample are left out; NaN where none is left.
 

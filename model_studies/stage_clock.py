@@ -56,7 +56,7 @@ class StageClock:
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time what happens inside."""
+        """Time the block as a stage; a context manager."""
         begun = TimeTaken.now(self._remote)
         try:
             yield

@@ -41,7 +41,7 @@ def run_variants(
     left_out : dict of str to str
         Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
     """
-    results, left_out = {}, {}
+    results, omitted = {}, {}
     outcomes = divided(workers, _attempted, (compute, failures), list(variants.values()), seconds)
     for count, name in enumerate(variants):
         progress(stage, count / len(variants))
@@ -49,9 +49,9 @@ def run_variants(
         if reason is None:
             results[name] = result
         else:
-            left_out[name] = reason
+            omitted[name] = reason
     progress(stage, 1.0)
-    return results, left_out
+    return results, omitted
 
 
 def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:

@@ -31,7 +31,7 @@ USUAL, UNLESS, AS_OF = 5, "Unless stated:", "As of"
 
 
 def page(text: str) -> str:
-    """Return the page with its lists anew; what an earlier list says of a field is not said again."""
+    """Return the page with renewed lists; a field that an earlier list describes is not described again."""
     said: dict[str, str] = {}
 
     def anew(found: re.Match[str]) -> str:

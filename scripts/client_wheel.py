@@ -1,4 +1,4 @@
-"""Build the client as a light distribution of its own, ``lineofaction-client``: what importing it loads.
+"""Build the client as a light distribution, ``lineofaction-client``: the modules that its import loads.
 
 Usage: client_wheel.py FOLDER
 """

@@ -1,4 +1,4 @@
-"""Writes what the page shows before anything is computed: the first example's answer of a running service."""
+"""Write the first result of the page: the answer of a running service to the first example."""
 
 from __future__ import annotations
 

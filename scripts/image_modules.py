@@ -1,4 +1,4 @@
-"""Load what the service and its workers load: Python writes the byte code of just that into the image."""
+"""Load the modules of the service and its workers, so that Python writes their byte code into the image."""
 
 from __future__ import annotations
 

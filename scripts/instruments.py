@@ -66,7 +66,7 @@ def instruments() -> Mapping[str, Instrument]:
 
 
 def with_dependents(names: Iterable[str]) -> list[str]:
-    """Return instruments and what stands on them, dependents first."""
+    """Return instruments and those that depend on them, dependents first."""
     order: list[str] = []
     for name in names:
         for one in (*with_dependents(instruments()[name].under), name):
@@ -80,7 +80,7 @@ def with_dependents(names: Iterable[str]) -> list[str]:
 
 @dataclass(frozen=True)
 class Modules:
-    """Python modules of a tree and what they import."""
+    """Python modules of a tree and their imports."""
 
     files: Mapping[str, Path]
     """File by module name; tests, benchmarks and scripts under their paths, which nobody imports by name."""
@@ -152,7 +152,7 @@ def is_row(module: str) -> bool:
 
 
 def retire(names: Iterable[str], tree: Path) -> list[str]:
-    """Remove instruments from a tree, with what stands on them and the tests that import them.
+    """Remove instruments from a tree, with their dependents and the tests that import them.
 
     Returns the names of the instruments, in order.
     """

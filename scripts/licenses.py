@@ -71,7 +71,7 @@ def askers() -> dict[str, str]:
 
 
 def _follow(requirement: str, group: str, found: dict[str, str]) -> None:
-    """Enter a requirement and what it asks for itself."""
+    """Add a requirement and its requirements."""
     match = re.match(r"([A-Za-z0-9._-]+)(?:\[([^\]]*)\])?", requirement)
     assert match is not None
     name, wanted = _plain(match[1]), (match[2] or "").split(",")

@@ -68,7 +68,7 @@ class Stale:
 
 
 def run_page(page: Path) -> Iterator[Stale]:
-    """Run the blocks of a page in the working directory and yield every line that is not what came out.
+    """Run the blocks of a page in the working directory and yield every line that no command printed.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def renew(page: Path, stale: list[Stale]) -> None:
 
 
 def needed(page: Path) -> list[Path]:
-    """Return a page after those whose files it goes on with, and after what these need."""
+    """Return a page after the pages whose files it needs, and their own needs first."""
     before = pages()[: pages().index(page)]
     named = set(re.findall(r"[\w.-]+", _run(page))) - _made(page)
     makers = [next((other for other in reversed(before) if name in _made(other)), page) for name in named]
@@ -133,7 +133,7 @@ def pictures(page: Path) -> list[str]:
 
 
 def _command(line: str) -> str:
-    """Run one command of `loa` and return what it printed."""
+    """Run one command of `loa` and return its output."""
     program, *arguments = shlex.split(line, comments=True)
     assert program == "loa", line
     done = CliRunner(env={"COLUMNS": "200"}).invoke(app, arguments, catch_exceptions=False)
@@ -142,7 +142,7 @@ def _command(line: str) -> str:
 
 
 def _python(text: str, page: Path) -> str:
-    """Execute a block and return what it printed."""
+    """Execute a block of Python and return its output."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(text, str(page), "exec"), {})
@@ -200,7 +200,7 @@ def _words(line: str) -> list[str]:
 
 @contextlib.contextmanager
 def folder() -> Iterator[Path]:
-    """Work in a folder of its own that has the examples beside it, on a cache of its own."""
+    """Work in a temporary folder with a copy of the examples and a separate cache."""
     before = Path.cwd()
     with tempfile.TemporaryDirectory() as name:
         shutil.copytree(ROOT / "examples", Path(name) / "examples")
@@ -213,7 +213,7 @@ def folder() -> Iterator[Path]:
 
 
 def main(arguments: list[str]) -> None:
-    """Run pages, say which lines are stale, and keep their pictures."""
+    """Run pages, list stale lines, and store their pictures."""
     names = {name for name in arguments if name != "--renew"}
     chosen = [page for page in pages() if not names or page.stem in names]
     unknown = names.difference(page.stem for page in chosen)

@@ -19,7 +19,7 @@ from lineofaction.hardcases import run_scenes
 
 
 def main(folder: Path, kind: str, count: int, first: int = 0) -> int:
-    """Run what is not yet recorded; return how many cases ended as none should."""
+    """Run cases that are not recorded; return how many ended in an unallowed way."""
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / f"sweep-{kind}.jsonl"
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []

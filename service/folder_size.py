@@ -27,10 +27,10 @@ def files_in(folder: Path) -> list[UsedFile]:
     return sorted(_files(folder))
 
 
-def evict(folder: Path, most_bytes: int, in_use_s: float = IN_USE_S) -> list[UsedFile]:
-    """Remove what was not used for longest until the rest fits, and return it; what is in use stays."""
+def evict(folder: Path, max_bytes: int, in_use_s: float = IN_USE_S) -> list[UsedFile]:
+    """Remove the longest unused files until the rest fits, and return them; files in use stay."""
     files = files_in(folder)
-    excess = sum(file.size for file in files) - most_bytes
+    excess = sum(file.size for file in files) - max_bytes
     removed = []
     for file in files:
         if excess <= 0 or time.time() - file.used < in_use_s:

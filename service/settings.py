@@ -102,7 +102,7 @@ class Settings(BaseSettings):
     @field_validator("keys_file", mode="before")
     @classmethod
     def _named_file(cls, name: object) -> object:
-        """Take an empty variable for none: as a name it would be that of the current folder."""
+        """Return None for an empty variable, which as a name would be the current folder."""
         return name or None
 
     @field_validator("results_secret_access_key")
@@ -116,7 +116,7 @@ class Settings(BaseSettings):
     @field_validator("webhook_origins")
     @classmethod
     def _listed_origins(cls, text: str) -> str:
-        """Refuse what is no list of origins."""
+        """Refuse a text that is no list of origins."""
         for entry in _entries(text):
             try:
                 bare = urlsplit(entry).path in ("", "/") and Origin.of(entry) is not None
@@ -151,7 +151,7 @@ class Settings(BaseSettings):
     @field_validator("scheduler")
     @classmethod
     def _reachable_scheduler(cls, address: str | None, info: ValidationInfo) -> str | None:
-        """Refuse what cannot be an address, and plain text to another machine; an empty variable is none."""
+        """Refuse an invalid address, and plain text to another machine; an empty variable is none."""
         if not address:
             return None
         if not _SCHEDULER.fullmatch(address):
@@ -206,7 +206,7 @@ class Settings(BaseSettings):
 
 
 def _host_of(address: str) -> str:
-    """Return the host of an address, that of version 6 without brackets."""
+    """Return the host of an address, of version 6 without brackets."""
     return address.partition("://")[2].rpartition(":")[0].strip("[]")
 
 

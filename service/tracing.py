@@ -91,7 +91,7 @@ def telemetry_options() -> TelemetryConfig:
 
 
 def flush_spans() -> None:
-    """Send what is left; a receiver that does not answer is not waited for."""
+    """Send the remaining spans, without waiting for a receiver that does not answer."""
     provider = span_provider()
     if provider is not None:
         thread = threading.Thread(target=provider.force_flush, daemon=True)

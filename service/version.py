@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import os
+from collections.abc import Iterator
 from contextlib import suppress
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
@@ -30,6 +32,17 @@ def modules_digest(root: Path) -> str:
     """Return a digest of the modules of the packages in a folder, 16 hexadecimal digits."""
     digest = hashlib.sha256()
     for package in _PACKAGES:
-        for path in sorted((root / package).rglob("*.py")):
-            digest.update(path.read_bytes())
+        for path in sorted(_modules(str(root / package))):
+            with open(path, "rb", buffering=0) as file:  # noqa: PTH123 (a third of the time)
+                digest.update(file.read())
     return digest.hexdigest()[:16]
+
+
+def _modules(folder: str) -> Iterator[str]:
+    """Yield the paths of the modules below a folder: a thousand, with every command."""
+    with os.scandir(folder) as entries:
+        for entry in entries:
+            if entry.name.endswith(".py"):
+                yield entry.path
+            elif entry.is_dir() and entry.name != "__pycache__":
+                yield from _modules(entry.path)

@@ -113,7 +113,7 @@ class BoundaryElements:
         return operators_cost(panels)
 
     def error_band(self, ka: float) -> tuple[float, float]:
-        """Return what the mesh is off: 1 % on spheres and boxes, 0.3 dB by the rounding of a coarse hull."""
+        """Return the error bounds of the mesh: 1 % on spheres and boxes, 0.3 dB by a coarse hull."""
         del ka
         return -0.3, 0.3
 

@@ -126,7 +126,7 @@ class LevelBand:
 
     @property
     def width(self) -> float:
-        """Return how far the ends lie apart, dB."""
+        """Return the distance of the ends, dB."""
         return self.high - self.low
 
     @property

@@ -1,4 +1,8 @@
-"""The radiation models side by side for one vibration: level, error, cost predicted and measured."""
+"""The radiation models side by side for one vibration: level, error, cost predicted and measured.
+
+Models differ in what they neglect. `ka` is the wavenumber times the radius of the sphere with the hull's
+volume.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +65,7 @@ class ElementalRadiators:
 
     @property
     def solid_angle(self) -> float:
-        """Return that into which each panel radiates, sr."""
+        """Return the solid angle into which each panel radiates, sr."""
         return 2.0 * np.pi if self.baffled else 4.0 * np.pi
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
@@ -164,7 +168,7 @@ class ModelComparison:
     """Results by the model's name, from coarse to fine, and why others have none."""
 
     results: Mapping[str, _ModelResult]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     predicted: Mapping[str, Cost]
     """Cost of every model at this frequency on this host, also of those that were not requested."""
     error_band: Mapping[str, tuple[float, float]]
@@ -221,7 +225,7 @@ def compare_models(
         )
         return _ModelResult(power, power / plane, cost)
 
-    results, left_out = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
+    results, omitted = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
     ka = wavenumber * hull.equivalent_radius
     bands = {name: model.error_band(ka) for name, model in listed.items()}
-    return ModelComparison(results, left_out, predicted, bands)
+    return ModelComparison(results, omitted, predicted, bands)

@@ -165,7 +165,7 @@ class OrderPower:
 
     @property
     def weighted_error(self) -> FloatArray:
-        """Return by how much the A-weighted power of all orders may be off for them, (B,), W."""
+        """Return the error of the A-weighted power of all orders by the floor, (B,), W."""
         return self._of_floor("missed")
 
     def _of_floor(self, name: str, weighted: bool = True) -> FloatArray:
@@ -186,7 +186,7 @@ class OrderPower:
 
     @property
     def total_error(self) -> FloatArray | None:
-        """Return by how much `total_weighted_level` may be off for them, (B,), dB; None without any."""
+        """Return the error of `total_weighted_level` by the floor, (B,), dB; None without a floor."""
         if self.floor is None:
             return None
         total = self.total_weighted_power

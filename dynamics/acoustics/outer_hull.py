@@ -198,8 +198,8 @@ def outer_hull(housing: ReducedHousing) -> OuterHull:
         motion = np.concatenate([motion, np.tensordot(weights, motion[rim], 1)])
     hull = Hull(points, np.concatenate(covers))
     a, b, c = (housing.surface.points[triangles[~outer][:, k]] for k in range(3))
-    left_out = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
-    return OuterHull(hull, motion, left_out, float(hull.areas[len(panels) :].sum()))
+    inner_area = float(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return OuterHull(hull, motion, inner_area, float(hull.areas[len(panels) :].sum()))
 
 
 def _outside(points: FloatArray, triangles: IntArray) -> BoolArray:

@@ -1,4 +1,9 @@
-"""The assembled system as plain arrays, which the compiled loops read."""
+"""The assembled system as plain arrays, which the compiled loops read.
+
+A law sets the speed of a shaft over time: a drive, or the free rotation of a train without a drive. The
+kinematic motion turns all shafts by exact ratios to the laws; freedoms q are the deviations from it. Local
+coordinates y = G q + y0 are those in which a force element has its law.
+"""
 
 from __future__ import annotations
 

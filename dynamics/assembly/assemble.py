@@ -1,4 +1,7 @@
-"""Assembly of a scene into a system: effects decided, bearings linear where they must be, arrays laid out."""
+"""Assembly of a scene into a system: effects decided, bearings linear where they must be, arrays laid out.
+
+A system is what integrators and linear theory solve: arrays for compiled loops with the names of their axes.
+"""
 
 from __future__ import annotations
 

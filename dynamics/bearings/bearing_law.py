@@ -40,7 +40,7 @@ class BearingLaw(Protocol):
         """
 
     def rows(self, duty: BearingDuty) -> FloatArray:
-        """Return its coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
+        """Return the coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
 
     def laid_out(self, duty: BearingDuty) -> Any:
         """Return the law as `packed` of its arrays takes it."""

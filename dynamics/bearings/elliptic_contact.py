@@ -57,7 +57,7 @@ class EllipticContact:
         return a, q * a
 
     def approach(self, load: float) -> float:
-        """Return how far the bodies approach under `load` (N, > 0), m."""
+        """Return the approach of the bodies under `load` (N, > 0), m."""
         from scipy.special import elliprf  # noqa: PLC0415 (start-up time)
 
         a, b = self.axes(load)

@@ -152,7 +152,7 @@ class _Row:
         return (1.0 - self.slenderness) / 2.0
 
     def check_row(self) -> None:
-        """Refuse what is no row.
+        """Refuse a value that is no row.
 
         Raises `InputError`: a field out of its bounds, or more elements than their circle holds.
         """
@@ -292,7 +292,7 @@ class RollerBearing(_Row):
         return self.laminae * self.lamina_stiffness
 
     def drop(self, coordinate: FloatArray) -> FloatArray:
-        """Return how far the profile lies below the middle at a `coordinate`, m; one contact."""
+        """Return the drop of the profile below the middle at a `coordinate`, m; one contact."""
         length, diameter, tapered = self.length, self.diameter, self.contact_angle != 0.0
         if self.profile != LOGARITHMIC:
             crown = self.crown if self.profile == CROWNED else 0.0

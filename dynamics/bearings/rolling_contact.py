@@ -101,7 +101,7 @@ class RollingContact(SceneBearingLaw):
         return self.bushing
 
     def displacement(self, force: float) -> float:
-        """Return how far a static radial `force` (N, > 0) moves the shaft, the clearance included, m."""
+        """Return the displacement of the shaft by a static radial `force` (N, > 0), with the clearance, m."""
         return self.clearance + self._press(force)
 
     def tangent(self, force: float) -> float:
@@ -122,11 +122,11 @@ class RollingContact(SceneBearingLaw):
         return float(max(load, self.stiffness * MIN_PRESS**self.exponent))
 
     def rows(self, duty: BearingDuty) -> FloatArray:
-        """Return its coordinates x and y per displacement x, y, z, tilt_x, tilt_y of the bearing, (2, 5)."""
+        """Return the coordinates x and y per displacement x, y, z, tilt_x, tilt_y of the bearing, (2, 5)."""
         return np.eye(2, 5)
 
     def laid_out(self, duty: BearingDuty) -> tuple[RollingContact, BearingDuty]:
-        """Return what `RollingContactLaws.packed` takes: the contact and the duty of its bearing."""
+        """Return the arguments of `RollingContactLaws.packed`: the contact and the duty of its bearing."""
         return self, duty
 
     def typical(self, duty: BearingDuty) -> FloatArray:
@@ -143,7 +143,7 @@ class RollingContact(SceneBearingLaw):
         return replace(self, stiffness=factor * self.stiffness)
 
     def plausible_values(self) -> tuple[PlausibleValue, ...]:
-        """Return its clearance, where it has one, and its damping ratio."""
+        """Return the clearance, where there is one, and the damping ratio."""
         clearance = PlausibleValue(
             "clearance", "rolling_contact.radial_clearance", self.clearance, "m", skip_zero=True
         )

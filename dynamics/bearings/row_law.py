@@ -107,7 +107,7 @@ class _RowLaw:
         return self.row, RowPlacement(copies, self.lever, self.shift, damping, self.bearing.locating)
 
     def passing_motion(self, duty: BearingDuty) -> float:
-        """Return how far the shaft moves as an element passes, from peak to peak along the load, m."""
+        """Return the motion of the shaft as an element passes, from peak to peak along the load, m."""
         loaded = LoadedBearing(self.row, 1, self.bearing.locating)  # one copy: the elements as they are
         pitch = 2.0 * math.pi / self.row.count
         angles = np.arange(PASSING_ANGLES) * pitch / PASSING_ANGLES

@@ -98,7 +98,7 @@ class SpringCurve(SceneBearingLaw):
         return self, duty
 
     def typical(self, duty: BearingDuty) -> FloatArray:
-        """Return its mean stiffness, (1,), N/m."""
+        """Return the mean stiffness of the curve, (1,), N/m."""
         return np.array([self.slope / self.lever(duty) ** 2])
 
     def tangent_error(self, duty: BearingDuty) -> float:
@@ -122,7 +122,7 @@ class SpringCurve(SceneBearingLaw):
 
     @property
     def holds_axially(self) -> bool:
-        """Whether it acts along z."""
+        """Whether the curve acts along z."""
         return self.direction == "z"
 
     @property

@@ -2,6 +2,6 @@
 
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect
 from dynamics.effects.ledger import EffectLedger
-from dynamics.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.effects.registry import EFFECTS, NEGLECTED
 
-__all__ = ["EFFECTS", "LEFT_OUT", "Effect", "EffectLedger", "MeshEffect", "RotorEffect"]
+__all__ = ["EFFECTS", "NEGLECTED", "Effect", "EffectLedger", "MeshEffect", "RotorEffect"]

@@ -23,7 +23,7 @@ class Axial(RotorEffect):
     cost = "one freedom per shaft"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where a helical mesh or a force pushes along an axis that bushings hold."""
+        """Call for the effect where a helical mesh or a force pushes along an axis that bushings hold."""
         stiffness = rotor.rotor.axial_stiffness
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)

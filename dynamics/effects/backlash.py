@@ -30,7 +30,7 @@ class Backlash(MeshEffect):
     linear = False
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the run can take the load off the driving flank.
+        """Call for the effect where the run can take the load off the driving flank.
 
         Flanks part when the dynamic force is as large as the mean. The mean is the least over the run that
         balances loads and the inertia of the imposed motion; half the peak-to-peak transmission error, met by

@@ -17,7 +17,7 @@ class BearingClearance(RotorEffect):
     linear = False
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it wherever a bearing states a law that is not linear.
+        """Call for the effect wherever a bearing states a law that is not linear.
 
         Its influence is the most that the tangent of a law misses of the displacement under the load.
         """

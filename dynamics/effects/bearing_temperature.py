@@ -33,7 +33,7 @@ class BearingTemperature(RotorEffect):
         return warmed_bearings(scene)
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it wherever temperatures change a bearing.
+        """Call for the effect wherever temperatures change a bearing.
 
         Its influence is how far the shaft moves at a mesh as its rows yield more, or less, under their loads.
         """
@@ -74,7 +74,7 @@ def _plays(rows: Sequence[WarmBearing]) -> Iterator[str]:
 
 
 def _pair(rows: Sequence[WarmBearing]) -> Iterator[str]:
-    """Say the play or the preload of rows with contact angles that hold the shaft against each other."""
+    """Return the play or preload of rows that hold the shaft against each other, in words."""
     angled = [row for row in rows if row.drawn.row.contact_angle]
     if len({row.drawn.row.contact_angle > 0.0 for row in angled}) == 2:
         names = ", ".join(f'"{row.drawn.name}"' for row in angled)

@@ -20,7 +20,7 @@ class DynamicCenterDistance(MeshEffect):
     cost = "a table look-up over one more axis, with twice the values"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the table has the axis and a shaft can move along the line of centers."""
+        """Call for the effect where the table has the axis and a shaft can move along the line of centers."""
         if np.size(mesh.mesh.table.center_distance_change) == 1:
             return Verdict(False, False, "the table has one center distance only", 0.0)
         if reason := mesh.not_read():

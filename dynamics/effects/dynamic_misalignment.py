@@ -20,7 +20,7 @@ class DynamicMisalignment(MeshEffect):
     cost = "a table look-up over one more axis, with twice the values"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the table has the axis and a shaft can tilt in the plane of action."""
+        """Call for the effect where the table has the axis and a shaft can tilt in the plane of action."""
         if np.size(mesh.mesh.table.misalignment) == 1:
             return Verdict(False, False, "the table has one misalignment only", 0.0)
         if reason := mesh.not_read():

@@ -55,7 +55,7 @@ class FlankInSpace:
     index: int
     """Index of the mesh in the scene."""
     coast: bool
-    """Whether it is the coast flank."""
+    """Whether the flank is the coast flank."""
 
     @property
     def driving(self) -> int:

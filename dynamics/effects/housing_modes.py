@@ -31,7 +31,7 @@ class HousingModes(RotorEffect):
     cost = "a freedom per row of the housing's matrices, a force element per bearing in it, implicit steps"
 
     def verdicts(self, rotors: Sequence[LoadedRotor]) -> Sequence[Verdict]:
-        """Call for it in housings whose first mode mesh orders wanted, loads or passing elements come near.
+        """Call for the effect where mesh orders, loads or passing elements come near a housing's first mode.
 
         All shafts in a housing have its verdict, and where one sits in two, that of the one it is on in.
         Static motions are the same without it.

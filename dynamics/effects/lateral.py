@@ -15,7 +15,7 @@ class Lateral(RotorEffect):
     cost = "two freedoms per shaft"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it wherever bushings with radial stiffness carry a mesh or a load across the axis."""
+        """Call for the effect where bushings with radial stiffness carry a mesh or a load across the axis."""
         stiffness = rotor.rotor.radial_stiffness
         if stiffness == 0.0:
             return Verdict(False, False, "no bushing with radial stiffness: held rigidly", 0.0)

@@ -1,4 +1,8 @@
-"""The ledger of the effects of a scene, and the mechanism with what they may add."""
+"""The ledger of the effects of a scene, and the mechanism with what they may add.
+
+A verdict says whether a part of the scene calls for an effect. The decision also takes the choice of the
+scene: "auto", "on" or "off".
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from functools import cached_property
 from bounds import engineering
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, MeshEffect, RotorEffect, Verdict
-from dynamics.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.effects.registry import EFFECTS, NEGLECTED
 from dynamics.identity_cache import cached_by
 from dynamics.mechanism.additions import Additions
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
@@ -179,7 +183,7 @@ class EffectLedger:
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
         entries = [entry.to_json() for entry in self.entries]
-        return {"entries": entries, "left_out": dict(LEFT_OUT)}
+        return {"entries": entries, "left_out": dict(NEGLECTED)}
 
 
 def mechanism_of(scene: Scene, registry: tuple[Effect, ...] = EFFECTS) -> Mechanism:

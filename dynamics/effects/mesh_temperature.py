@@ -24,7 +24,7 @@ class MeshTemperature(MeshEffect):
         return warmed_meshes(scene)
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it wherever temperatures change a mesh.
+        """Call for the effect wherever temperatures change a mesh.
 
         Its influence is the change of the mean transmission error by the operating point of the table, or of
         the backlash where the load reverses.

@@ -25,7 +25,7 @@ class MovingApplicationPoint(MeshEffect):
     cost = "one more row per flank and four more values per look-up"
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the load has an arm about the pitch point in mid-face and a shaft can tilt.
+        """Call for the effect where the load has an arm about the pitch point and a shaft can tilt.
 
         Its influence is the displacement along the line of action at the load that its moment makes.
         """

@@ -41,7 +41,7 @@ EFFECTS: tuple[Effect, ...] = (
     ToothDeviations(),
 )
 
-LEFT_OUT: dict[str, str] = {
+NEGLECTED: dict[str, str] = {
     "friction of bearings": "bearings turn without loss",
     "point of application of friction along the face": "friction acts at mid-face, at each pair of teeth",
     "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",

@@ -17,7 +17,7 @@ class Tilt(RotorEffect):
     cost = "two freedoms per shaft"
 
     def called_for(self, rotor: LoadedRotor) -> Verdict:
-        """Call for it where a mesh is off the supports' center, or has an axial force, which tilts.
+        """Call for the effect where a mesh is off the supports' center, or has an axial force, which tilts.
 
         A center of mass off the supports' center couples tilt to lateral motion and calls for it too, as do
         other loads off that center.

@@ -39,7 +39,7 @@ class ToothDeviations(MeshEffect):
         return _with_tables(scene, nominal_table)
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
-        """Call for it where the table covers more than one base pitch.
+        """Call for the effect where the table covers more than one base pitch.
 
         Its influence is how far a base pitch differs from their mean. For a table of one pitch the influence
         is the run-out of both gears of an assumed class, which nothing can switch on.

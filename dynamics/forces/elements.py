@@ -1,4 +1,8 @@
-"""Compiled force elements: one evaluation for all, which hands each to its law by kind."""
+"""Compiled force elements: one evaluation for all, which hands each to its law by kind.
+
+An element is one flank, bearing, load or coupling with its local coordinates y = G q + y0 in meters. Its law
+gives the force; `entry` is its place in the arrays of that law.
+"""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ class Face(Protocol):
     """Chooses triangles of a surface."""
 
     def triangles(self, mesh: TetrahedralMesh) -> IntArray:
-        """Return those of `mesh.surface` that are on the face, (t, 6).
+        """Return the triangles of `mesh.surface` that are on the face, (t, 6).
 
         Raises `InputError`: there are none.
         """

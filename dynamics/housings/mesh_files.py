@@ -98,7 +98,7 @@ def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
 
 
 def _content(file: Path) -> _Content:
-    """Return what a confined child reads from a file: its format is by the suffix, and never another."""
+    """Return the content that a confined child reads from a file; the suffix alone decides the format."""
     title = MESH_FORMATS[one_of(f"{FIELD}.suffix", file.suffix.lower(), MESH_SUFFIXES)]
     if not file.is_file():
         raise InputError(FIELD, file.name, "a file that exists")

@@ -52,7 +52,7 @@ def _separate_mesh(points: FloatArray, tetrahedra: IntArray) -> Any:
 
 
 def determinants(points: FloatArray, tetrahedra: IntArray) -> FloatArray:
-    """Return those of the map from the reference at the quadrature points, (e, p): not above 0 in a fold."""
+    """Return the Jacobian determinants at the quadrature points, (e, p): not above 0 in a fold."""
     from skfem.quadrature import get_quadrature  # noqa: PLC0415 (start-up time)
 
     mesh = _separate_mesh(points, tetrahedra)

@@ -1,4 +1,7 @@
-"""Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton."""
+"""Component mode synthesis: free modes and residual flexibility, in coordinates of Craig and Bampton.
+
+The reduced coordinates are the motions of the bearing seats, then amplitudes of modes with the seats held.
+"""
 
 from __future__ import annotations
 

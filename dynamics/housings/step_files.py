@@ -107,7 +107,7 @@ def _by_gmsh(
     seconds: float,
     command: Sequence[str] | None = None,
 ) -> Made:
-    """Return what is made of the answer of the child, who works on a copy of the file, and of its folder."""
+    """Return the result of `made` with the answer of the child, which works on a copy of the file."""
     one_of("step_file.suffix", file.suffix.lower(), STEP_SUFFIXES)
     if not file.is_file():
         raise InputError("step_file", file.name, "a file that exists")

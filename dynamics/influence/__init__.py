@@ -8,14 +8,14 @@ from dynamics.influence.neglected_check import (
     estimate_influences,
     response_influences,
 )
-from dynamics.influence.sized_ledger import left_out_effects, sized_ledger
+from dynamics.influence.sized_ledger import neglected_effects, sized_ledger
 
 __all__ = [
     "Decision",
     "Influence",
     "decide_effects",
     "estimate_influences",
-    "left_out_effects",
+    "neglected_effects",
     "response_influences",
     "sized_ledger",
     "with_assumed_phases",

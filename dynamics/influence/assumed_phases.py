@@ -1,4 +1,8 @@
-"""Phases that rest on assumptions, for the effect ledger: angles with their influence, and thicknesses."""
+"""Phases that rest on assumptions, for the effect ledger: angles with their influence, and thicknesses.
+
+The phase of a mesh is its position when no law has turned yet. It follows from the teeth, up to angles
+between gears of one shaft and tooth thicknesses that a scene does not state.
+"""
 
 from __future__ import annotations
 

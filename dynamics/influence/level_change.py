@@ -1,4 +1,8 @@
-"""Change of the level of a quantity by leaving an effect out."""
+"""Change of the level of a quantity by leaving an effect out.
+
+The level is that of the quantity for which a scene is computed, in dB. It is compared at the order whose
+amplitude changes most.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Figures of a run by linear theory: mean, peak-to-peak and orders of transmission error, bearing forces."""
+"""Figures of a run by linear theory: mean, peak-to-peak and orders of transmission error, bearing forces.
+
+A mesh order is a multiple of the frequency of the first mesh that turns. Linear theory keeps all flanks
+pressed; the figures state where they would part.
+"""
 
 from __future__ import annotations
 

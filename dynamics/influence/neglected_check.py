@@ -1,4 +1,9 @@
-"""Check that effects neglected for a tolerance were too small to be seen in the run without them."""
+"""Check that effects neglected for a tolerance were too small to be seen in the run without them.
+
+An influence is the change of a run's figures by leaving one effect out in all parts of the scene, estimated
+by linear theory. A tolerance of the scene decides which effects may be left out; the run then compares the
+estimates with its own series.
+"""
 
 from __future__ import annotations
 
@@ -197,7 +202,7 @@ def estimate_influences(
 
 
 def _chosen(scene: Scene, effect: str) -> bool:
-    """Return whether a scene chooses an effect, which then is not decided."""
+    """Return whether a scene chooses an effect by name, so that no tolerance decides on it."""
     return scene.effects.get(effect, "auto") != "auto"
 
 
@@ -485,7 +490,7 @@ class NeglectedChecks:
         self._parted = self._parted or bool(np.any(series["mesh_force"] <= 0.0))
 
     def checks(self) -> list[Check]:
-        """Return one per neglected effect.
+        """Return one check per neglected effect.
 
         ``change`` is its estimate over the computed mean and peak-to-peak transmission error, and of bearing
         forces as estimated. Where flanks parted the linear theory of the estimate says nothing: it does not

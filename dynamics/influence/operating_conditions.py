@@ -1,4 +1,8 @@
-"""The operating conditions of a run: its speeds and loads."""
+"""The operating conditions of a run: its speeds and loads.
+
+A law sets the speed of a shaft over time: a drive, or the free rotation of a train without a drive. The
+leading law is the first that turns.
+"""
 
 from __future__ import annotations
 

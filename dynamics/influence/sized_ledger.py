@@ -30,7 +30,7 @@ def _sized(entry: Json, automatic: Mapping[str, str], influences: Mapping[str, I
     return sized
 
 
-def left_out_effects(ledger: EffectLedger, influences: Mapping[str, Influence]) -> Json:
+def neglected_effects(ledger: EffectLedger, influences: Mapping[str, Influence]) -> Json:
     """Return the entry of a receipt on effects that are off: the change of the level by each, the largest.
 
     Nothing where none of them was estimated.

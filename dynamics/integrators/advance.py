@@ -1,4 +1,8 @@
-"""Compiled time stepping: steps, error control, samples."""
+"""Compiled time stepping: steps, error control, samples.
+
+A level is one of the geometric step sizes of a `Workspace`. The error of a step is that of its embedded
+estimate, over the tolerance.
+"""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: 
         if iterations < 0:
             return False
         work.counts[Count.NEWTON_TOTAL] += iterations
-        work.counts[Count.NEWTON_MOST] = max(work.counts[Count.NEWTON_MOST], iterations)
+        work.counts[Count.MAX_NEWTON] = max(work.counts[Count.MAX_NEWTON], iterations)
         if audit and (IMPLICIT_WEIGHTS[stage] != 0.0 or stage == STAGE_COUNT - 1):
             write_powers(system, work, stage, work.time[0] + IMPLICIT_NODES[stage] * step)
     for i in range(work.q.size):

@@ -1,4 +1,8 @@
-"""A run on its way: its workspace, and the loop that moves it on block by block into a sink."""
+"""A run on its way: its workspace, and the loop that moves it on block by block into a sink.
+
+A march is a run on its way: it can stop after each block and go on, also in another process. A sink takes the
+output samples.
+"""
 
 from __future__ import annotations
 
@@ -249,7 +253,7 @@ class Ending:
 
 
 def sample_count(system: System) -> int:
-    """Return how many output samples a run has that comes to its end."""
+    """Return the number of output samples of a complete run."""
     return int(np.floor(system.scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
 
 

@@ -1,4 +1,8 @@
-"""The start value of a march: the state of another one with fewer force elements."""
+"""The start value of a march: the state of another one with fewer force elements.
+
+A run that violates an assumption is repeated with the missing effect on. The repetition starts from the last
+state before the violation; the force elements of the effect exert no force until then.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The sink of the sampled states of a run: one protocol, in memory or on disk with checkpoints."""
+"""The sink of the sampled states of a run: one protocol, in memory or on disk with checkpoints.
+
+A state holds displacements and rates of the freedoms, and filtered channels (`States`).
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Static equilibrium under the load at one time."""
+"""Static equilibrium under the load at one time.
+
+A train without a drive has no position of rest: forces that accelerate it as a whole are left out of the
+balance.
+"""
 
 from __future__ import annotations
 
@@ -92,7 +96,7 @@ class RestsBeside:
 
     @classmethod
     def of(cls, system: System, displacement: FloatArray, time: float = 0.0) -> RestsBeside:
-        """Look at a system that rests at displacements (n,)."""
+        """Linearize a system about its rest at displacements (n,)."""
         arrays, n = at_mean_loads(system.arrays), displacement.size
         balance = _balance(arrays, time, displacement, np.zeros(n))
         unit = _accelerating(arrays, np.eye(n))

@@ -1,4 +1,8 @@
-"""Arrays that a run carries from step to step, allocated once."""
+"""Arrays that a run carries from step to step, allocated once.
+
+A stage is an instant within a step at which a Runge-Kutta method evaluates forces. A level is one of the
+geometric step sizes.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +48,7 @@ class Count(IntEnum):
     ACCEPTED = 2
     REJECTED = 3
     NEWTON_TOTAL = 4
-    NEWTON_MOST = 5  # most Newton iterations in one stage
+    MAX_NEWTON = 5  # most Newton iterations in one stage
     NEWTON_FAILED = 6  # steps repeated because Newton failed
     SMALLEST_LEVEL = 7  # smallest level of an accepted step: the largest step
     LARGEST_LEVEL = 8

@@ -79,8 +79,8 @@ class _Addressed:
     def __init__(self, value: Any) -> None:
         self._listed: list[int] = []
         self._numba_type_ = _lay_out(value, self._listed)
-        self._words = np.array(self._listed, dtype=np.int64)
-        self._address = _address_of(self._words)
+        self._slots = np.array(self._listed, dtype=np.int64)
+        self._address = _address_of(self._slots)
         self.value = value
         vars(self).update(zip(value._fields, value, strict=True))
         if prepare := getattr(value, "prepare", None):
@@ -113,24 +113,24 @@ def by_value(value: Tuple) -> Tuple:
     return cast(Tuple, value.value) if isinstance(value, _Addressed) else value
 
 
-def _lay_out(value: Any, words: list[int]) -> _AddressType:
+def _lay_out(value: Any, slots: list[int]) -> _AddressType:
     """Append the words of a tuple, per array address and lengths, per number its bits; return its type."""
     kinds: list[Any] = []
     for field in value:
         if isinstance(field, np.ndarray):
             kinds.append((field.dtype.char, field.ndim))
-            words.append(_address_of(field))
-            words.extend(field.shape)
+            slots.append(_address_of(field))
+            slots.extend(field.shape)
         elif isinstance(field, _Addressed):
             kinds.append(field._numba_type_)
-            words.extend(field._listed)
+            slots.extend(field._listed)
         elif isinstance(field, tuple):
-            kinds.append(_lay_out(field, words))
+            kinds.append(_lay_out(field, slots))
         else:
             kinds.append(
                 bool if isinstance(field, bool | np.bool_) else int if isinstance(field, Integral) else float
             )
-            words.append(int(np.float64(field).view(np.int64)) if kinds[-1] is float else int(field))
+            slots.append(int(np.float64(field).view(np.int64)) if kinds[-1] is float else int(field))
     cls: Any = type(value)
     if cls not in _seen:
         _seen[cls] = kinds, _address_type(cls, kinds)
@@ -157,7 +157,7 @@ def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:
 
 
 def _size(kind: Any) -> int:
-    """Return how many words a field takes."""
+    """Return the number of words of a field."""
     if isinstance(kind, tuple):
         return 1 + int(kind[1])
     return kind.size if isinstance(kind, _AddressType) else 1

@@ -1,4 +1,8 @@
-"""The state that force laws read and write at one instant."""
+"""The state that force laws read and write at one instant.
+
+Axes of arrays: m meshes, f frames or cages that laws read, k laws of the kinematic motion, E elements, R
+local coordinates of all elements, P of the element with the most.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl."""
+"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl.
+
+Whirl is the motion of a shaft's axis around its position of rest. A branch is one mode over all speeds. The
+leading law is the first drive or free rotation that turns.
+"""
 
 from __future__ import annotations
 
@@ -105,7 +109,7 @@ def _clear(linear: LinearSystem, before: WhirlModes, modes: WhirlModes) -> bool:
 
 
 def _repeated(frequency: FloatArray) -> FloatArray:
-    """Return which modes are the same but for their shapes, (a, a): 1 or 0."""
+    """Return the pairs of modes that differ in their shapes alone, (a, a): 1 or 0."""
     return np.asarray(np.abs(frequency[:, None] - frequency) <= SAME * frequency, dtype=float)
 
 

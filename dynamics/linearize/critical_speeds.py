@@ -1,4 +1,8 @@
-"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode."""
+"""Critical speeds: speeds at which a multiple of a mesh frequency meets the frequency of a mode.
+
+The leading law is the first drive or free rotation that turns; speeds are its speed. A branch is one whirl
+mode over all speeds.
+"""
 
 from __future__ import annotations
 
@@ -102,7 +106,7 @@ class _Between:
 
 
 def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Between:
-    """Look at a mode at two of the speeds."""
+    """Return a mode at two neighboring speeds."""
     both = slice(row, row + 2)
     speed, frequency = branches.speed[both], branches.frequency[both, mode]
     ratio, shape = branches.damping_ratio[both, mode], branches.shape[both, mode]

@@ -1,4 +1,9 @@
-"""The driving flanks over the positions of their tables, each with its static force held."""
+"""The driving flanks over the positions of their tables, each with its static force held.
+
+A flank's rows are its local coordinates: the deflection first, then misalignment, center distance, sliding
+and rolling as far as it has them. The blocked force is the force with the transmission error fixed at its
+mean.
+"""
 
 from __future__ import annotations
 

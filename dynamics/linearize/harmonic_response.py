@@ -1,4 +1,9 @@
-"""Harmonic response to the transmission errors, with mean stiffnesses and with those that vary."""
+"""Harmonic response to the transmission errors, with mean stiffnesses and with those that vary.
+
+Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
+again. An order is a multiple of the frequency of the first mesh that turns. The floor is the sum of the lines
+of a long period that are not solved.
+"""
 
 from __future__ import annotations
 
@@ -170,11 +175,11 @@ def excited_lines(system: System, orders: int, time: float, speed: FloatArray) -
 
 def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
     """Return the floor of the lines left out at `speed` (S,); None without any, or if a frame turns."""
-    if not lines.left_out.size or at.turning:
+    if not lines.omitted.size or at.turning:
         return None
     pace = np.array([1.0 / at.period.duration(float(value)) for value in speed])
-    inputs, force = floor_inputs(at, lines.left_out), []
-    hertz = floor_frequencies(at, lines.left_out[0] * np.min(pace), lines.left_out[-1] * np.max(pace))
+    inputs, force = floor_inputs(at, lines.omitted), []
+    hertz = floor_frequencies(at, lines.omitted[0] * np.min(pace), lines.omitted[-1] * np.max(pace))
     for part in speed_blocks((hertz.size, 1), inputs.row.size):
         omega = 2.0 * math.pi * hertz[part]
         by_input = np.moveaxis(receptances(at, omega, inputs.row)[:, 0], 2, 1)
@@ -182,7 +187,7 @@ def floor_of(at: Excited, speed: FloatArray, lines: Lines) -> LineFloor | None:
     return LineFloor(
         bearing=at.system.supports.name,
         pace=pace,
-        harmonic=lines.left_out,
+        harmonic=lines.omitted,
         inputs=inputs.size,
         frequency=hertz,
         bearing_force=np.concatenate(force, axis=2),

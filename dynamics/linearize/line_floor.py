@@ -152,9 +152,9 @@ class FloorInputs(NamedTuple):
     """Complex peak amplitudes. Shape (e, L)."""
 
 
-def floor_inputs(at: Excited, left_out: IntArray) -> FloorInputs:
+def floor_inputs(at: Excited, omitted: IntArray) -> FloorInputs:
     """Return the excitation in lines (L,), in as few directions as hold its power."""
-    force = flank_forces(at, left_out)[1]
+    force = flank_forces(at, omitted)[1]
     size = np.max(np.abs(force), axis=1, keepdims=True)
     rows = np.flatnonzero(size)
     scaled = force[rows] / size[rows]

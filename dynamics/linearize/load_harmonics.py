@@ -1,4 +1,8 @@
-"""Harmonics of the loads over a common period at constant speed."""
+"""Harmonics of the loads over a common period at constant speed.
+
+In the common period all meshes and loads return to the same phase. The leading law, whose speeds these are,
+is the first drive or free rotation that turns.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Speeds of all laws by that of the first that turns, and the exact common period of meshes and loads."""
+"""Speeds of all laws by that of the first that turns, and the exact common period of meshes and loads.
+
+A law is a drive, or the free rotation of a train without a drive. The leading law is the first that turns.
+"""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ class OtherFlanks:
 
     @classmethod
     def of(cls, system: System, mesh: int, transfer: FlankTransfer) -> OtherFlanks:
-        """Look at an assembled scene; raises as `excited`."""
+        """Take an assembled scene about its equilibrium; raises as `excited`."""
         at = excited(system, transfer.time, transfer.orders)
         return cls(at, mesh, transfer.orders, transfer.harmonics)
 
@@ -68,7 +68,7 @@ class OtherFlanks:
         return excitation_of(self.at, self.harmonics)
 
     def changes(self, tables: Sequence[MeshTable]) -> list[FlankExcitation]:
-        """Return how the excitation changes with tables that are a little different, as differences.
+        """Return the changes of the excitation with tables that differ a little, as differences.
 
         The tables are of the positions and the number of levels of each other.
         """

@@ -1,4 +1,8 @@
-"""Harmonic response of a system whose mesh stiffnesses vary over the cycle."""
+"""Harmonic response of a system whose mesh stiffnesses vary over the cycle.
+
+The leading law is the first drive or free rotation that turns. Harmonics are multiples of the frequency of
+the common period, after which all meshes and loads are in phase again.
+"""
 
 from __future__ import annotations
 

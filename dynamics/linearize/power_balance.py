@@ -1,4 +1,7 @@
-"""Power balance of a harmonic vibration: power put in by excitations and lost in parts, by harmonic."""
+"""Power balance of a harmonic vibration: power put in by excitations and lost in parts, by harmonic.
+
+Sources are the meshes, by their transmission errors, and the loads. Sinks are all parts with damping.
+"""
 
 from __future__ import annotations
 

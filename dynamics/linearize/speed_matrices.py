@@ -1,4 +1,8 @@
-"""The matrices of a rotating system as polynomials of speed, in meters."""
+"""The matrices of a rotating system as polynomials of speed, in meters.
+
+Rotating frames add terms in the speed and its square: gyroscopic, Coriolis and centripetal ones, and damping
+that the ground exerts on them. The leading law is the first drive or free rotation that turns.
+"""
 
 from __future__ import annotations
 

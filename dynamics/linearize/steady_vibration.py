@@ -1,4 +1,9 @@
-"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic."""
+"""Steady vibration about the static equilibrium: its excitation, and the displacements at every harmonic.
+
+Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
+again. Axes of arrays: S speeds, H harmonics, n freedoms, R' rows (local coordinates) of the driving flanks, m
+meshes.
+"""
 
 from __future__ import annotations
 
@@ -73,7 +78,7 @@ class Steady:
 
 
 def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = SAMPLES) -> Excited:
-    """Look at `system` under the loads at `time`; flanks at up to `samples` positions per base pitch.
+    """Linearize `system` under the loads at `time`, with flanks at up to `samples` positions per base pitch.
 
     Raises
     ------
@@ -125,7 +130,7 @@ def with_blocked(
 
 
 def _is_excited(force: ComplexArray) -> BoolArray:
-    """Return which of H harmonics excite: of forces (..., H)."""
+    """Return whether each of H harmonics is excited, by forces (..., H)."""
     largest = np.max(np.abs(force), axis=tuple(range(force.ndim - 1)), initial=0.0)
     return np.asarray(~(largest <= NOTHING * np.max(largest, initial=0.0)))  # NaN counts as excited
 

@@ -27,7 +27,7 @@ class Lines(NamedTuple):
 
     harmonics: IntArray
     """Multiples of the common period's frequency, rising. Shape (H,)."""
-    left_out: IntArray
+    omitted: IntArray
     """Other excited multiples, rising. Shape (L,)."""
     share: float = 0.0
     """Root of the sum of squares of the forces in the lines left out, over that of all lines, for the mesh
@@ -36,10 +36,10 @@ class Lines(NamedTuple):
     """
 
     def to_json(self, in_totals: bool) -> Json:
-        """Return what facts say of those left out, and whether totals have them; nothing without any."""
-        if not self.left_out.size:
+        """Return the facts on lines left out, and whether totals have them; empty without such lines."""
+        if not self.omitted.size:
             return {}
-        return {"lines_left_out": {"count": self.left_out.size, "force": self.share, "in_totals": in_totals}}
+        return {"lines_left_out": {"count": self.omitted.size, "force": self.share, "in_totals": in_totals}}
 
 
 def strongest_lines(at: Excited, harmonics: IntArray, speed: FloatArray) -> Lines:

@@ -1,4 +1,8 @@
-"""Vibration with a mesh stiffness that varies with position: harmonic balance of Hill's equation."""
+"""Vibration with a mesh stiffness that varies with position: harmonic balance of Hill's equation.
+
+The tangent of a flank is the derivative of its forces in its coordinates. Its mean over the positions belongs
+to the linear system; the rest multiplies the vibration and couples its harmonics.
+"""
 
 from __future__ import annotations
 
@@ -146,12 +150,12 @@ class VaryingStiffness:
 
     @classmethod
     def of(cls, at: Excited, harmonics: IntArray, still: FloatArray) -> VaryingStiffness:
-        """Look at the flanks `at` their equilibrium."""
+        """Gather the flanks `at` their equilibrium whose tangents vary."""
         flanks = range(len(at.cycles))
         return cls(tuple(part for index in flanks for part in _varying(at, index, harmonics)), still)
 
     def push(self, receptance: ComplexArray, made: ComplexArray) -> tuple[ComplexArray, FloatArray]:
-        """Return what the varying tangents take (S, H + 1, R'), N, and the relative residuals (S,) left.
+        """Return the forces by the varying tangents (S, H + 1, R'), N, and the relative residuals (S,) left.
 
         The first is the mean, the others are amplitudes. `receptance` (S, H, R', R') are those of the
         rows, m/N, and `made` (S, H, R') amplitudes of what makes force with the mean tangents, m.
@@ -228,7 +232,7 @@ class DirectBalance:
 
 
 def _felt(part: _Varying) -> IntArray:
-    """Return which coordinates of a flank its varying tangents depend on."""
+    """Return the coordinates of a flank on which its varying tangents depend."""
     return np.flatnonzero(np.any(part.tangent != 0.0, axis=(0, 1)))
 
 

@@ -1,4 +1,8 @@
-"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing."""
+"""Connections of a mechanism: couplings of six strains, bearings of three, or five with matrix or housing.
+
+A strain is a relative displacement or rotation of two parts. A seat (`Seats`) is a bearing that is more than
+three springs: it has tilt stiffness or a matrix, or sits in a housing without mass.
+"""
 
 from __future__ import annotations
 

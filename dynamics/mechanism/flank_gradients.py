@@ -1,4 +1,7 @@
-"""Gradients of deflection, misalignment and center distance of a flank in the freedoms of its bodies."""
+"""Gradients of deflection, misalignment and center distance of a flank in the freedoms of its bodies.
+
+A gradient is the derivative of a coordinate of the flank in the freedoms of all rotors.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The freedoms of a system, and the six freedoms of every rotor as they follow from them."""
+"""The freedoms of a system, and the six freedoms of every rotor as they follow from them.
+
+A rotor has six: x, y, z, tilt_x, tilt_y, rotation. A rotation is a freedom of the system unless a rigid drive
+imposes it, another one if an effect adds it; elastic coordinates of shafts and amplitudes of housings follow.
+"""
 
 from __future__ import annotations
 

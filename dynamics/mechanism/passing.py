@@ -57,7 +57,7 @@ class Passing:
     """Relative: positive, it passes above the complaint."""
 
     def within(self, tolerance: float) -> bool:
-        """Whether it is off by at most a relative tolerance."""
+        """Whether the distance is at most a relative tolerance."""
         return abs(self.distance) <= tolerance
 
 

@@ -1,4 +1,8 @@
-"""Phases behind the positions of the meshes: frames that couplings cross, angles of loads, cages."""
+"""Phases behind the positions of the meshes: frames that couplings cross, angles of loads, cages.
+
+A phase is an angle in turns that force elements read like the position of a mesh: that of a frame against
+another, of a load that turns, or of the cage of a rolling bearing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic."""
+"""A rotor: a shaft with its gears, discs and bushings, one body, rigid or elastic.
+
+A planet is a rotor whose pin a carrier takes along. A frame is the rotating frame of a carrier, in which its
+planets and all shafts on it are described.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The output rate of a run, its anti-alias filter, and the highest mesh order that the output holds."""
+"""The output rate of a run, its anti-alias filter, and the highest mesh order that the output holds.
+
+The inner grid is finer than the output. The anti-alias filter takes it to the output rate: frequencies up to
+the pass frequency keep their amplitude.
+"""
 
 from __future__ import annotations
 

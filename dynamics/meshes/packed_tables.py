@@ -1,4 +1,8 @@
-"""Mesh-force tables laid out for the compiled look-up."""
+"""Mesh-force tables laid out for the compiled look-up.
+
+A level is an elastic force at which the table holds the deflection; a knot is a position. Rows hold the
+cubics of all levels in the interval after each knot.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The table of a mesh at an operating point, and by its technique: itself, or the secant at one force."""
+"""The table of a mesh at an operating point, and by its technique: itself, or the secant at one force.
+
+An operating point is a misalignment and a change of center distance. The technique says how the mesh uses its
+table: the force by position and deflection, or the secant stiffness at the nominal force.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time."""
+"""Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time.
+
+The kinematic motion turns all shafts by exact ratios to k laws; freedoms q are the deviations from it. A free
+train, which no drive turns, has a rotation in q. Whole quanta of it, small parts of a revolution, move into
+the kinematic motion.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds."""
+"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds.
+
+A law is a drive, or the free rotation of a train without a drive; quanta are the parts of a revolution by
+which the rotation of a free train moved into the kinematic motion.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The samples of a run: states, and the channels of the anti-alias filter."""
+"""The samples of a run: states, and the channels of the anti-alias filter.
+
+Channels are local forces, displacements and rates that the anti-alias filter takes (`SampleRing`). A free
+train has no drive; its rotation moves from its freedom into the kinematic motion in quanta.
+"""
 
 from __future__ import annotations
 

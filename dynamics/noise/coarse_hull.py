@@ -1,4 +1,7 @@
-"""A hull with fewer panels, for models whose cost grows with the square of their number."""
+"""A hull with fewer panels, for models whose cost grows with the square of their number.
+
+A cell is the part of the surface around a seed. Its node lies where the planes of its faces meet best.
+"""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class CorrectedRadiation:
     radiation: EstimatedRadiation
     lines: tuple[ExactLine, ...]
     """Lines in the order in which they were corrected."""
-    left_out: tuple[str, ...]
+    omitted: tuple[str, ...]
     """Reasons why further lines are not corrected; empty: no other line may be as loud."""
 
 
@@ -104,22 +104,22 @@ def corrected_radiation(
     """
     exact: list[HousingRadiation] = []
     lines: list[ExactLine] = []
-    left_out: dict[float, str] = {}
+    omitted: dict[float, str] = {}
     radiation = estimate
     sound = radiated_sound(response, housing, bearings, radiation)
-    while point := _next_point(sound, radiation, (*left_out, *(line.frequency for line in lines))):
+    while point := _next_point(sound, radiation, (*omitted, *(line.frequency for line in lines))):
         hertz, at = point.frequency, (point.speed_index, point.order_index)
-        if LINES in (len(lines), len(left_out)):
-            left_out[hertz] = f"further lines, at {engineering(hertz, 4)} Hz first: {LINES} at most"
+        if LINES in (len(lines), len(omitted)):
+            omitted[hertz] = f"further lines, at {engineering(hertz, 4)} Hz first: {LINES} at most"
             break
         seconds = line_cost(housing, hertz).seconds
         if seconds > budget:
-            left_out[hertz] = f"{engineering(hertz, 4)} Hz: {seconds:.0f} of {budget:.0f} CPU s that are left"
+            omitted[hertz] = f"{engineering(hertz, 4)} Hz: {seconds:.0f} of {budget:.0f} CPU s that are left"
             continue
         try:
             exact.append(_exact_line(housing, hertz, model, cache))
         except MissingExtra as error:
-            left_out[hertz] = str(error)
+            omitted[hertz] = str(error)
             break
         budget -= seconds
         before, radiation = float(sound.power[at]), with_exact_lines(estimate, exact)
@@ -127,7 +127,7 @@ def corrected_radiation(
         estimated_level, level = sound_power_level([before, sound.power[at]]).tolist()
         metadata = exact[-1].metadata
         lines.append(ExactLine(hertz, estimated_level, level, metadata.panels, metadata.cost.seconds))
-    return CorrectedRadiation(radiation, tuple(lines), tuple(left_out.values()))
+    return CorrectedRadiation(radiation, tuple(lines), tuple(omitted.values()))
 
 
 def _next_point(

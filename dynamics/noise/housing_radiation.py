@@ -1,4 +1,8 @@
-"""Radiation resistances kept on disk, by the hash of everything that decides them."""
+"""Radiation resistances kept on disk, by the hash of everything that decides them.
+
+The radiation resistance R gives the sound power v^H R v / 2 of the velocities v of r reduced coordinates. It
+is computed at frequencies close enough for interpolation; each octave has a hull that resolves its waves.
+"""
 
 from __future__ import annotations
 

@@ -76,8 +76,8 @@ def microphone_pressure(
     weighted = 0.5 * np.abs(pressure) ** 2 * 10.0 ** (a_weighting(hertz) / 10.0)
     total = np.sum(weighted, axis=1)
     if response.floor is not None:
-        left_out = mean_square_floor(response.floor, np.sum(floors, axis=0))
-        total = total + np.sum(left_out.power * 10.0 ** (a_weighting(left_out.frequency) / 10.0), axis=1)
+        omitted = mean_square_floor(response.floor, np.sum(floors, axis=0))
+        total = total + np.sum(omitted.power * 10.0 ** (a_weighting(omitted.frequency) / 10.0), axis=1)
     level = mean_square_level(weighted)
     orders = _loudest_of_orders(response, level, power_bands)
     return MicrophonePressure(microphone, level.T, mean_square_level(total), orders)

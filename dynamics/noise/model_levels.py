@@ -33,7 +33,7 @@ class ModelLevels:
     """Radiation efficiency by the panel models."""
     seconds: Mapping[str, float]
     """CPU time of the models that are computed."""
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     """Reasons why the other models are not computed."""
     error_band: Mapping[str, tuple[float, float]]
     """Bounds of the error of the level of each model, computed or not, dB: lower and upper; a negative error
@@ -90,7 +90,7 @@ def model_levels(
         },
         efficiency={model: result.efficiency for model, result in results},
         seconds={**{model: result.cost.seconds for model, result in results}, **exact.seconds},
-        left_out={**panels.left_out, **exact.left_out},
+        omitted={**panels.omitted, **exact.omitted},
         error_band={**panels.error_band, **estimate.error_band, name: (-EXACT, EXACT)},
         predicted={**panels.predicted, **estimate.predicted, **exact.predicted},
         replaced=estimate.replaced,
@@ -132,7 +132,7 @@ class _ExactLines:
     """
 
     predicted: Mapping[str, Cost]
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     level: Mapping[str, float]
     seconds: Mapping[str, float]
 
@@ -144,9 +144,9 @@ def _exact_lines(
     predicted = {name: on_this_host(WORK.format(name), line_cost(housing.body, hertz), cache)}
     if corrected is None:
         return _ExactLines(predicted, {}, {}, {})
-    left_out = {name: "; ".join(corrected.left_out)} if corrected.left_out else {}
+    omitted = {name: "; ".join(corrected.omitted)} if corrected.omitted else {}
     near = [line for line in corrected.lines if max(line.frequency / hertz, hertz / line.frequency) <= FLAT]
     if not near:
-        return _ExactLines(predicted, left_out, {}, {})
+        return _ExactLines(predicted, omitted, {}, {})
     level = float(sound_power_level(sound.power[point.speed_index, point.order_index]))
-    return _ExactLines(predicted, left_out, {name: level}, {name: near[0].seconds})
+    return _ExactLines(predicted, omitted, {name: level}, {name: near[0].seconds})

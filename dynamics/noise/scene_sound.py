@@ -1,4 +1,8 @@
-"""Sound power of all housings of a scene under one set of bearing forces, and bounds of its error."""
+"""Sound power of all housings of a scene under one set of bearing forces, and bounds of its error.
+
+Radiation models have errors of known bounds: monopoles neglect scattering, equivalent radiated power neglects
+interference.
+"""
 
 from __future__ import annotations
 

@@ -88,7 +88,7 @@ class Sensitivity:
 
     @property
     def linear(self) -> bool:
-        """Whether that change is within the linear range."""
+        """Whether the change by one step is within the linear range."""
         return abs(self.for_one_db_less) <= self.linear_range
 
 
@@ -161,5 +161,5 @@ def sound_sensitivities(
     known = [name for name, guess in GUESSES.items() if guess.varied(model, 2.0) is not model]
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}
-    rows, left_out = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
-    return _ranked(rows.values()), left_out
+    rows, omitted = run_variants("sensitivities", by_name, compute, (DynamicsError,), progress)
+    return _ranked(rows.values()), omitted

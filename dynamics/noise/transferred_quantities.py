@@ -65,7 +65,7 @@ class Quantity(Protocol):
     """A quantity of a scene by name, of forces (b, 3 or 6, S, H, 1 + R) per input, as `FlankTransfer` has."""
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return it by the inputs of the transfer functions of the model's scene.
+        """Return the quantity by the inputs of the transfer functions of the model's scene.
 
         Raises `InputError`: the scene has no such part, or its housing cannot tell it.
         """
@@ -79,7 +79,7 @@ class BearingForce:
     direction: str | None = None
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return its mean square, N^2."""
+        """Return the mean square of the force, N^2."""
         index = transfer.bearing.index(one_of("bearing", self.bearing, transfer.bearing))
         force = transfer.bearing_force[index][_axes(self.direction)]
         return _mean_square(transfer, "N2", 1.0, np.moveaxis(force, 0, 2))
@@ -94,7 +94,7 @@ class PointVelocity:
     direction: str | None = None
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return its mean square, m^2/s^2."""
+        """Return the mean square of the velocity, m^2/s^2."""
         housing = _housing(model, self.housing)
         (point,) = named_points(housing, (self.point,))
         velocity = _velocities(transfer, model, self.housing)
@@ -109,7 +109,7 @@ class SurfaceVelocity:
     housing: str
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return its mean square over surface and time, m^2/s^2."""
+        """Return the mean square of the velocity over surface and time, m^2/s^2."""
         weight = surface_weight(_housing(model, self.housing))
         velocity = _velocities(transfer, model, self.housing)
         matrix = 0.5 * velocity.conj() @ weight @ np.swapaxes(velocity, 2, 3)
@@ -121,7 +121,7 @@ class SoundPower:
     """Sound power of all housings that radiate, dB(A) re 1e-12 W."""
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return it, W."""
+        """Return the sound power, W."""
         inputs = transfer.bearing_force.shape[-1]
         matrix = np.zeros((*transfer.frequency.shape, inputs, inputs), dtype=complex)
         for name in _sounding(model):
@@ -141,7 +141,7 @@ class SoundPressure:
     microphone: tuple[float, float, float]
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return its mean square, Pa^2."""
+        """Return the mean square of the sound pressure, Pa^2."""
         hertz = transfer.frequency
         path = pressure_transfer(
             _housing(model, self.housing), np.array(self.microphone), hertz.ravel()
@@ -158,7 +158,7 @@ class EquivalentSoundPower:
     """
 
     def form(self, transfer: ForceLines, model: SoundModel) -> QuantityForm:
-        """Return it, W."""
+        """Return the equivalent sound power, W."""
         inputs = transfer.bearing_force.shape[-1]
         matrix = np.zeros((*transfer.frequency.shape, inputs, inputs), dtype=complex)
         for name, housing in model.housings.items():

@@ -1,4 +1,8 @@
-"""Mesh orders of the forces on bearings along a run, with their phases."""
+"""Mesh orders of the forces on bearings along a run, with their phases.
+
+A mesh order is a multiple of the frequency of the first mesh that turns. A window is a stretch of the run
+over which amplitudes are fitted; the sweep is the change of the mesh frequency in it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""The branch of periodic motions over speed, around its folds, by pseudo-arclength continuation."""
+"""The branch of periodic motions over speed, around its folds, by pseudo-arclength continuation.
+
+A fold is a speed at which the branch turns back; a sweep over the speed jumps there. The unknowns of a point
+are state and speed together. The arclength counts the state over its size and the speed over the highest one.
+"""
 
 from __future__ import annotations
 
@@ -232,7 +236,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
 def _passed(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
 ) -> list[_Bifurcation]:
-    """Return what lies between two neighboring points."""
+    """Return the bifurcations between two neighboring points."""
     between = []
     if before.tangent[-1] * behind.tangent[-1] < 0.0:
         between.append(_Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))

@@ -1,4 +1,8 @@
-"""The map of a state over one common period, and its derivatives, for shooting and Floquet theory."""
+"""The map of a state over one common period, and its derivatives, for shooting and Floquet theory.
+
+The common period is the shortest time after which all meshes, loads and frames are in phase again. States are
+displacements and rates of n freedoms, both scaled to meters.
+"""
 
 from __future__ import annotations
 

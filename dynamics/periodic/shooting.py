@@ -1,4 +1,8 @@
-"""Periodic steady state at one speed, by shooting: Newton's method on the map over one period."""
+"""Periodic steady state at one speed, by shooting: Newton's method on the map over one period.
+
+The map takes the state at the start of a period to the state at its end. A periodic motion is its fixed
+point; the eigenvalues of its derivative are Floquet's multipliers, which tell whether the motion is stable.
+"""
 
 from __future__ import annotations
 

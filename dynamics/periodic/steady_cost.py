@@ -1,4 +1,8 @@
-"""The cost of steady states over speed: number of integrated periods times measured cost of a step."""
+"""The cost of steady states over speed: number of integrated periods times measured cost of a step.
+
+Settling integrates periods until transients have decayed; Newton's iterations on the map of a period follow.
+A stretch is a number of steps that are run to measure the cost of one.
+"""
 
 from __future__ import annotations
 

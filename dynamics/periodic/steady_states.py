@@ -1,4 +1,9 @@
-"""Periodic steady states over speed as a study: both sweeps, the branch between them, jumps, and its file."""
+"""Periodic steady states over speed as a study: both sweeps, the branch between them, jumps, and its file.
+
+The sweeps follow the motions at rising and at falling speeds, each from the motion before. Where they differ,
+two motions exist at one speed, and an unstable branch joins them. A jump is the speed at which a sweep leaves
+its motion.
+"""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ class BearingLoadChecks:
         self._samples += force.shape[2]
 
     def checks(self) -> list[Check]:
-        """Return one per linear bearing that carries load at the start.
+        """Return one check per linear bearing that carries load at the start.
 
         ``unloaded`` is the share of the samples in which the force along the static load was not positive.
         """

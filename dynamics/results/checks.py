@@ -33,14 +33,14 @@ class Check:
     """Whether the result is right where the assumption does not hold; None: right either way."""
 
     def to_json(self) -> Json:
-        """Return its entry in the effect ledger."""
+        """Return the entry of the check in the effect ledger."""
         head = {name: getattr(self, name) for name in ("effect", "assumption", "part", "holds")}
         valid = {} if self.valid is None else {"valid": self.valid}
         return {**head, **valid, **self.figures, "reason": self.reason}
 
 
 def ending(checks: Sequence[Json], on_violation: str) -> str:
-    """Say which `checks` end a run or a study by the scene's `on_violation`; empty where none does."""
+    """Return the `checks` that end a run or a study by the scene's `on_violation`, in words; empty: none."""
     wrong = [check for check in checks if check["holds"] is False]
     if on_violation == "report":
         return ""

@@ -42,7 +42,7 @@ class ContactChecks:
             self._gap[index] = max(self._gap[index], gap)
 
     def checks(self) -> list[Check]:
-        """Return one per mesh that ran without backlash.
+        """Return one check per mesh that ran without backlash.
 
         ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
         along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,

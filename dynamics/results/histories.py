@@ -1,4 +1,8 @@
-"""Time series of a run from its trajectory: forces, transmission errors, speeds."""
+"""Time series of a run from its trajectory: forces, transmission errors, speeds.
+
+The trajectory holds deviations from the kinematic motion, in which all shafts turn by exact ratios. Quanta
+are the parts of a revolution by which the rotation of a train without a drive moved into that motion.
+"""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class HeldOperatingPointChecks:
             )
 
     def checks(self) -> list[Check]:
-        """Return one per mesh and axis.
+        """Return one check per mesh and axis.
 
         ``farthest`` is how far the bodies moved in m, ``change`` how much that changes the mean transmission
         error of the nominal force, of its value.

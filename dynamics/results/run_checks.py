@@ -48,7 +48,7 @@ class _AxisChecks:
             )
 
     def checks(self) -> list[Check]:
-        """Return one per mesh and axis in use.
+        """Return one check per mesh and axis in use.
 
         ``beyond`` is the share of the samples off the axis, where the table's last value holds, ``farthest``
         in m how far off.
@@ -96,7 +96,7 @@ class _ForceChecks:
         self._largest = np.maximum(self._largest, np.max(force, axis=1, initial=0.0))
 
     def checks(self) -> list[Check]:
-        """Return those of all meshes; ``beyond`` is the share of samples above the highest load."""
+        """Return the checks of all meshes; ``beyond`` is the share of samples above the highest load."""
         shares = self._beyond / max(self._samples, 1)
         return _force_checks(self._scene, self._largest, shares)
 

@@ -269,7 +269,7 @@ _STORED: dict[str, Stored] = {
 OVER_TIME = {name: entry for name, entry in _STORED.items() if entry.dimensions[-1] == "time"}
 """Series over time."""
 SAMPLED = ("time", *OVER_TIME)
-"""All that has one value per sample."""
+"""Fields with one value per sample."""
 SERIES = OVER_TIME | _STORED
 """All series of a result, in the order of its files."""
 

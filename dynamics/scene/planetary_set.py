@@ -87,7 +87,7 @@ class PlanetarySet:
     """Technique of all meshes."""
     name: str = ""
     """Name of the set, in front of the names of its parts."""
-    place: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Left end of the carrier's axis in the fixed frame, m."""
 
     def __post_init__(self) -> None:
@@ -139,7 +139,7 @@ class PlanetarySet:
         planets = [self._planet(index) for index in range(self.planets)]
         names, inertias = ("sun", "ring", "carrier"), (Inertia(),) * 2 + (self.carrier_inertia,)
         central = [
-            Shaft(self.called(name), self.face_width, self.place, inertia, self.called("carrier"))
+            Shaft(self.called(name), self.face_width, self.position, inertia, self.called("carrier"))
             for name, inertia in zip(names, inertias, strict=True)
         ]
         gears = [
@@ -164,7 +164,7 @@ class PlanetarySet:
 
     def _planet(self, index: int) -> Shaft:
         angle = 2.0 * math.pi * float(self.turns[index])
-        x, y, z = self.place
+        x, y, z = self.position
         x, y = x + self.center_distance * math.cos(angle), y + self.center_distance * math.sin(angle)
         carrier = self.called("carrier")
         return Shaft(self.called(f"planet {index + 1}"), self.face_width, (x, y, z), frame=carrier)

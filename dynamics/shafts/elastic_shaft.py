@@ -156,7 +156,7 @@ class ElasticShaft:
 
     @property
     def bends(self) -> bool:
-        """Whether it bends."""
+        """Whether the shaft bends."""
         return self.bending.mass.size > 0
 
     @property

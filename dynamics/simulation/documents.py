@@ -1,4 +1,7 @@
-"""The documents of a result beside its series: ledger, resolved case, modes, bearings at rest, receipt."""
+"""The documents of a result beside its series: ledger, resolved case, modes, bearings at rest, receipt.
+
+Each document is plain JSON and an attribute of the result file.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from dynamics.influence import (
     Decision,
     Influence,
     estimate_influences,
-    left_out_effects,
+    neglected_effects,
     sized_ledger,
     with_assumed_phases,
 )
@@ -98,7 +101,7 @@ class RunContext:
         return cls(system, decision.scene, audit, checks_of_run, automatic, influences)
 
     def with_errors(self, error: Json) -> RunContext:
-        """Return them with the check of the errors of the steps, where they are measured."""
+        """Return the context with the check of the errors of the steps, where they are measured."""
         check = tolerance_check(error, self.system.scene.integration)
         return self if check is None else replace(self, checks=[*self.checks, check])
 
@@ -351,8 +354,8 @@ def described(run: RunContext, about: dict[str, Any]) -> dict[str, Any]:
     That is the resolved case, modes, what is implausible, bearings at rest, the error of neglected effects.
     """
     receipt = about["receipt"]
-    left_out = left_out_effects(run.system.ledger, run.influences)
-    error = receipt["error"] | ({"left_out_effects": left_out} if left_out else {})
+    neglected = neglected_effects(run.system.ledger, run.influences)
+    error = receipt["error"] | ({"left_out_effects": neglected} if neglected else {})
     return about | {
         "receipt": receipt | {"error": error} | _bearings_at_rest(run.system) | _orders_above(run),
         "effect_ledger": effect_ledger(run),
@@ -452,7 +455,7 @@ def _statistics(system: System, end: Ending) -> StepStatistics:
         count[Count.REJECTED],
         count[Count.NEWTON_FAILED],
         count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
-        count[Count.NEWTON_MOST],
+        count[Count.MAX_NEWTON],
         float(end.step_range[0]),
         float(end.step_range[1]),
     )

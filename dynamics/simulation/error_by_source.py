@@ -1,4 +1,8 @@
-"""The error of a run by source: the errors of transmission errors and bearing forces in its receipt."""
+"""The error of a run by source: the errors of transmission errors and bearing forces in its receipt.
+
+A window is a stretch of the run that is integrated again, with finer steps or with fewer positions of the
+tables. Its difference from the run is the error by that source.
+"""
 
 from __future__ import annotations
 
@@ -96,7 +100,7 @@ class _Window:
         return with_longest_step(shorter, CAP * POSITION_LIMIT * float(self.time[-1]) / turned)
 
     def on_laws_of(self, other: System) -> System:
-        """Return its system with the force laws of `other`, the run's system but for these."""
+        """Return the window's system with the force laws of `other`, the run's system with other laws."""
         window_laws, laws = self.system.arrays.elements.laws, other.arrays.elements.laws
         laws = laws._replace(applied_force=window_laws.applied_force)  # whose clock starts here
         arrays = self.system.arrays._replace(elements=other.arrays.elements._replace(laws=laws))
@@ -123,7 +127,7 @@ def window_starts(system: System) -> IntArray:
 
 
 def window_seconds(system: System) -> float:
-    """Return how long a window of a run lasts, s; 0 where it is too short for any."""
+    """Return the duration of a window of a run, s; 0 where the run is too short for any."""
     first, stop = next(iter(_spans(system)), (0, 0))
     return (stop - first) / system.sampling.rate
 

@@ -148,7 +148,7 @@ class Arithmetic:
         return value if value.ir.type == FLAG else self.pair(ast.NotEq(), value, 0)
 
     def flag(self, value: Any) -> Any:
-        """Return that as the operand of a branch."""
+        """Return the truth of a value as the operand of a branch."""
         value = self.truth(value)
         return value.ir if isinstance(value, Value) else FLAG(int(value))
 

@@ -348,7 +348,7 @@ class Statements(ArrayAccess):
     # Expressions
 
     def value(self, node: ast.expr) -> Any:
-        """Return what an expression stands for."""
+        """Return the value of an expression."""
         self.module.count()
         read = getattr(self, f"_{type(node).__name__}", None)
         if read is None:

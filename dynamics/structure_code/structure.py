@@ -29,14 +29,14 @@ class _Layout(NamedTuple):
     bytes: IntArray
     """Bytes of an item. Shape (A,)."""
     known: BoolArray
-    """Whether it holds integers that are part of a structure. Shape (A,)."""
+    """Whether each array holds integers that are part of a structure. Shape (A,)."""
     numbers: IntArray
     """Words with integers and flags. Shape (I,)."""
 
 
 @cache
 def _layout(kind: Any) -> _Layout:
-    arrays, numbers = _words(kind, 0)
+    arrays, numbers = _slots(kind, 0)
     axes = [[first + 1 + k if k < array.ndim else -1 for k in range(MAX_AXES)] for first, array, _ in arrays]
     return _Layout(
         np.array([first for first, _, _ in arrays], dtype=np.int64),
@@ -47,12 +47,12 @@ def _layout(kind: Any) -> _Layout:
     )
 
 
-def _words(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[int]]:
+def _slots(kind: Any, origin: int) -> tuple[list[tuple[int, Any, bool]], list[int]]:
     """Return the arrays of a tuple whose words begin at `origin`, with their first word, and its integers."""
     arrays, numbers = [], []
     for name, field, first in kind.fields:
         if hasattr(field, "fields"):
-            inner, more = _words(field, origin + first)
+            inner, more = _slots(field, origin + first)
             arrays += inner
             numbers += more
         elif hasattr(field, "ndim"):
@@ -81,16 +81,16 @@ def structure_key(tuples: Mapping[Any, Known]) -> str | None:
     """
     digest, spans = sha256(_of_sources()), []
     for group, known in tuples.items():
-        layout, words = _layout(group._numba_type_), group._words
-        begin = words[layout.address]
-        lengths = np.append(words, 1)[layout.dimensions]
+        layout, slots = _layout(group._numba_type_), group._slots
+        begin = slots[layout.address]
+        lengths = np.append(slots, 1)[layout.dimensions]
         size = np.prod(lengths, axis=1)
         key_lengths = np.where(lengths <= LONGEST, lengths, -1)
         if known is Known.WIDTHS:
             key_lengths[:, 0] = -1
         digest.update(key_lengths.tobytes())
         if known is Known.ALL:
-            digest.update(words[layout.numbers].tobytes())
+            digest.update(slots[layout.numbers].tobytes())
             for k in np.flatnonzero(layout.known & (size <= LONGEST) & (size > 0)):
                 digest.update(string_at(int(begin[k]), int(size[k] * layout.bytes[k])))
         full = size > 0

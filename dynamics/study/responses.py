@@ -37,7 +37,7 @@ class _Window:
 
     @classmethod
     def of(cls, run: RunResult, start: float, highest_order: int, bearings: tuple[int, ...]) -> _Window:
-        """Look at a run from `start` (s) on.
+        """Take a run from `start` (s) on.
 
         Raises `InputError`: the run ends before, or its output does not hold the order.
         """
@@ -96,7 +96,7 @@ class _Quantity:
     of: str
     """Kind of part that has the quantity; empty: the whole run."""
     by_order: bool
-    """Whether it is an amplitude at a multiple of the mesh frequency."""
+    """Whether the quantity is an amplitude at a multiple of the mesh frequency."""
     take: Callable[[_Window, int, int], _Value]
     """``take(window, row, order)`` to the value."""
 
@@ -139,7 +139,7 @@ class Response:
         return f"{self.kind.title}{f' of {self.part}' if self.part else ''}{order}"
 
     def rows(self, run: RunResult) -> tuple[int, ...]:
-        """Return which meshes or bearings of a run it is of; one of the whole run has one row."""
+        """Return the meshes or bearings of a run that have the response; the whole run is one row."""
         names = {"mesh": run.mesh, "bearing": run.bearing, "": ("",)}[self.kind.of]
         if not names:
             raise InputError("outputs.bearing_forces", False, "true", "The responses of bearings need them.")
@@ -148,7 +148,7 @@ class Response:
         return (names.index(one_of(self.kind.of, self.part, names)),)
 
     def of(self, window: _Window) -> _Value:
-        """Return its value in a window of a run; of several parts the largest one."""
+        """Return the value of the response in a window of a run; of several parts the largest one."""
         run, rows = window.run, self.rows(window.run)
         mesh = run.mesh.index(one_of("mesh", self.mesh, run.mesh)) if self.mesh else 0
         seen = window if self.kind.of == "mesh" else window.along(mesh)

@@ -1,4 +1,8 @@
-"""The figures of all runs of a design."""
+"""The figures of all runs of a design.
+
+A factor is a value of the scene that varies, a response a figure of each run. A point is one combination of
+factors; the points of a batch share values that take long to prepare, such as tables.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Forces of bearings on the seats of a housing, from a response or a run, and its motion under them."""
+"""Forces of bearings on the seats of a housing, from a response or a run, and its motion under them.
+
+The reduced coordinates of a housing are the motions of its bearing seats, then amplitudes of modes. Forces
+act on the seats alone.
+"""
 
 from __future__ import annotations
 

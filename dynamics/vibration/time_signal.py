@@ -1,4 +1,8 @@
-"""Motion of a housing over time under the forces of its bearings."""
+"""Motion of a housing over time under the forces of its bearings.
+
+Between the samples the force is a cubic spline. Each mode is integrated exactly over a step for forces of
+that shape.
+"""
 
 from __future__ import annotations
 

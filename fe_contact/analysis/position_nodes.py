@@ -1,4 +1,8 @@
-"""Positions of the database: equally spaced, or denser where the curves bend."""
+"""Positions of the database: equally spaced, or denser where the curves bend.
+
+A node is a position at which the table is solved; between nodes curves are interpolated. Probes are further
+solved positions that measure the error of interpolation.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +16,7 @@ from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.contact import ContactModel
 from fe_contact.contact.model import MeetingTeeth
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.cost_model import expected_tries, most_positions
+from fe_contact.planning.cost_model import expected_tries, max_positions
 from fe_contact.planning.plan import NodeRule, Plan
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -154,7 +158,7 @@ def table_nodes(points: OperatingPoints, plan: Plan, report: Report = unreported
             values[1 + way, near] = _curves(points, plan.load, position[near], pitches + way)[0]
         return values
 
-    return adaptive_nodes(replace(plan.nodes, maximum=most_positions(plan, times)), solve)
+    return adaptive_nodes(replace(plan.nodes, maximum=max_positions(plan, times)), solve)
 
 
 def assessed_pitches(pair: ParallelAxes, model: ContactModel, limit: int) -> IntArray:

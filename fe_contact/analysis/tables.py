@@ -19,7 +19,7 @@ from fe_contact.analysis.pairs.solved_contact import SolvedContact
 from fe_contact.analysis.position_nodes import PositionNodes, table_nodes
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked, Request
-from fe_contact.analysis.request.solved_run import SolvedRun, edges_left_out
+from fe_contact.analysis.request.solved_run import SolvedRun, edges_neglected
 from fe_contact.analysis.table_fields import table_fields, table_support
 from fe_contact.compliance.remote_condensation import condense_remotely, condensing
 from fe_contact.geometry import ParallelAxes
@@ -125,7 +125,7 @@ def _solved_places(
     them, and what came of derivatives where they were tried.
     """
     checked, plan, known = decision.checked, decision.plan, None
-    loads, edges = (plan.load, plan.support), edges_left_out(checked)
+    loads, edges = (plan.load, plan.support), edges_neglected(checked)
     sizes = [levels.size for levels in loads]
     pair = checked.request.pair
     work = unit_work(pair, plan, plan.discretization.slices)

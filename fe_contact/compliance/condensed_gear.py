@@ -1,4 +1,8 @@
-"""A gear condensed to its flanks over the face."""
+"""A gear condensed to its flanks over the face.
+
+A sector is the part of the gear with one tooth. Its cuts are the faces to the neighboring sectors.
+Condensation expresses all freedoms of a sector by those of its flank and cuts; the sectors close to a ring.
+"""
 
 from __future__ import annotations
 

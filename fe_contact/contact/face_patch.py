@@ -70,7 +70,7 @@ def face_loads(
         Range of each slice along the face, m, within `grid.z`.
     """
     n, count = center.shape
-    width = _most_nodes(grid, center, half_width, low, high)
+    width = _max_nodes(grid, center, half_width, low, high)
     nodes = np.full((n, width), -1, dtype=np.int64)
     forces = np.zeros((n, width))
     used = np.zeros(n, dtype=np.int64)
@@ -106,7 +106,7 @@ def face_loads(
 
 
 @inner()
-def _most_nodes(
+def _max_nodes(
     grid: FaceGrid, center: FloatArray, half_width: FloatArray, low: FloatArray, high: FloatArray
 ) -> int:
     """Return the most nodes that a slice loads, those that its patches share counted for each."""

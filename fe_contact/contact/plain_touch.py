@@ -1,4 +1,8 @@
-"""Touching points of plain involutes, with or without tip edges, and their local geometry."""
+"""Touching points of plain involutes, with or without tip edges, and their local geometry.
+
+Arrays run over P positions and n points of contact lines. A flank coordinate s is the arc length of an
+involute from its base circle; it is negative on a ring gear.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""One position of the contact: the forces of its contacts under given motions of the bodies, compiled."""
+"""One position of the contact: the forces of its contacts under given motions of the bodies, compiled.
+
+The terms contact, curve, strip and arm are those of `fe_contact.contact.newton`. Arrays run over P positions,
+Q rows of bodies that repeat in further base pitches, n slices and m candidates.
+"""
 
 from __future__ import annotations
 

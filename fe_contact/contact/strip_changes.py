@@ -1,4 +1,9 @@
-"""Small changes of the flanks under contact strips: depth, lag, the places of patches, the turn of forces."""
+"""Small changes of the flanks under contact strips: depth, lag, places of patches, turn of forces.
+
+A strip is the width over which a loaded contact touches, about its touching point. A depth is material
+removed from a flank. A lag is the turn of gear 2, along the line of action, that closes the rigid flanks.
+Load patches follow the slope of a gap, and forces turn with it.
+"""
 
 from __future__ import annotations
 

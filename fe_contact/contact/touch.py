@@ -1,4 +1,9 @@
-"""Touching points of modified flanks, and the gaps there."""
+"""Touching points of modified flanks, and the gaps there.
+
+The touching point of a pair of teeth on a contact line is the point at which the gap of the rigid flanks is
+least. Breaks are points at which slope or curvature of the gap jump: a relief begins, or a tip is cut. A way
+is a distance along the flank from the touching point of plain involutes.
+"""
 
 from __future__ import annotations
 

@@ -112,9 +112,9 @@ class Gear(Toothing):
     def with_parts(self, parts: Collection[str]) -> Gear:
         """Return the gear without the optional parts of its body that are not among `parts`."""
         plain = {"blank": None, "seat": CLAMPED}
-        left_out = {name: value for name, value in plain.items() if name not in parts}
-        same = all(getattr(self, name) == value for name, value in left_out.items())
-        return self if same else replace(self, **left_out)  # type: ignore[arg-type]
+        plain_values = {name: value for name, value in plain.items() if name not in parts}
+        same = all(getattr(self, name) == value for name, value in plain_values.items())
+        return self if same else replace(self, **plain_values)  # type: ignore[arg-type]
 
     def right_handed(self) -> Gear:
         """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""

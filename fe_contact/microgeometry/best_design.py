@@ -83,7 +83,7 @@ def choose(
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
         start_values = dict(zip(problem.names, request.start_design, strict=True))
-        designs = start_values, problem.values(runs[best].place)
+        designs = start_values, problem.values(runs[best].coordinates)
         seconds = len(designs) * study.decision.checked.predicted(study.decision.plan, run.cache).cpu_seconds
         shared = problem, study, run.cache
         start, optimum = divided(to_the_end(run.workers, cancel), _confirmed, shared, designs, seconds)
@@ -116,17 +116,17 @@ def _refined(
     evaluator = choice.problem.evaluator.at(np.union1d(*seen))
     problem = replace(choice.problem, evaluator=evaluator)
     with clock.stage("search"):
-        best, workers = choice.run.place, run.workers
+        best, workers = choice.run.coordinates, run.workers
         further = search_from(problem, shorter, best, search.starts, cancel=cancel, workers=workers)
     with clock.stage("confirmation"):
-        optimum = confirm(problem, problem.values(further.place), study, run.cache)
+        optimum = confirm(problem, problem.values(further.coordinates), study, run.cache)
     return Choice(problem, choice.start, optimum, (*choice.runs, further), len(choice.runs))
 
 
 def perturbation(best: tuple[DesignProblem, SearchRun, Scatter], variable: DesignVariable) -> Perturbation:
     """Take a step of one variable from the best design of a run to both sides: one task."""
     problem, run, scatter = best
-    values = problem.values(run.place)
+    values = problem.values(run.coordinates)
     step = scatter.modification.get(variable.name, STEP * (variable.high - variable.low))
     ends = max(variable.low, values[variable.name] - step), min(variable.high, values[variable.name] + step)
     changes = []

@@ -128,8 +128,8 @@ def _on_bounds(choice: Choice, request: OptimizationRequest) -> list[str]:
     A lower bound of 0 could not: no material is removed there.
     """
     names = []
-    # `place` is the best design of the search, each variable in parts of its range
-    for variable, part in zip(request.variables, np.asarray(choice.run.place), strict=True):
+    # `coordinates` are the best design of the search, each variable in parts of its range
+    for variable, part in zip(request.variables, np.asarray(choice.run.coordinates), strict=True):
         on_low = part <= AT_BOUND
         on_high = part >= 1.0 - AT_BOUND
         if on_high or (on_low and variable.low != 0.0):

@@ -25,8 +25,7 @@ class Cancelled(Exception):
 class Budget:
     """Designs that one search may evaluate, of whatever cost.
 
-    Before every design it is asked whether to `cancel`; after it, the part of all that is used is
-    reported.
+    Before every design `cancel` is called; after it the used part of the budget is reported.
     """
 
     def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
@@ -52,16 +51,16 @@ class CountedMerit:
     Parameters
     ----------
     maximum : int
-        It raises `BudgetUsed` when so many designs of the budget are used.
+        Number of used designs of the budget at which it raises `BudgetUsed`.
     workers : Workers
-        Who assesses designs, and walks, that do not wait for each other.
+        Workers that assess independent designs, and follow independent walks.
 
     Attributes
     ----------
     designs : list of (Assessed, ndarray)
-        In their order.
+        Evaluated designs in their order.
     ends : list of (Assessed, ndarray)
-        Those of them at which walks ended.
+        Designs at which walks ended.
     """
 
     def __init__(

@@ -1,4 +1,8 @@
-"""Assessment of designs of one pair on one compliance: contact is solved under the gaps of each design."""
+"""Assessment of designs of one pair on one compliance: contact is solved under the gaps of each design.
+
+A design is a set of values of the design variables, figures of the flanks. Arrays run over S nodes of the
+scatter, P positions, L loads and m contact candidates.
+"""
 
 from __future__ import annotations
 

@@ -25,6 +25,7 @@ from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_va
 from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import Estimate, FloatArray, IntArray, Json
 from model_studies import in_unit
+from model_studies.record import under_key
 
 MAP_PARTS = np.arange(1, 11) / 8.0
 """Torques of the Harris map in parts of the largest that counts."""
@@ -198,7 +199,7 @@ class Optimization:
     """Quantities that the search did not vary, in words."""
     cost: Json
     """Evaluations and CPU seconds by stage; those of the search add all its processes."""
-    asked: Json
+    request: Json = field(metadata=under_key("asked"))
     """Request in SI units."""
 
     def __post_init__(self) -> None:

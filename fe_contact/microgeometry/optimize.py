@@ -161,5 +161,5 @@ def _result(
         sensitivity=aside,
         not_tried=untried_steps(choice, request, study),
         cost=clock.to_json() | {"evaluations": sum(run.evaluations for run in choice.runs)},
-        asked=request.to_json(study),
+        request=request.to_json(study),
     )

@@ -1,4 +1,8 @@
-"""A limit on an order of the transmission error: which pairs are above it, why, and the cheapest cure."""
+"""A limit on an order of the transmission error: the pairs above it, the causes, and the cheapest cure.
+
+An order is a frequency in periods per base pitch. Mesh orders are whole numbers. Other orders are named by a
+mesh order and a number of turns of one gear.
+"""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -25,6 +25,7 @@ from fe_contact.microgeometry.search_methods import (
 )
 from fe_contact.types import FloatArray, Json
 from model_studies.progress import unreported
+from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, WorkersLost, spent
 
 
@@ -91,7 +92,7 @@ def usual_designs(search: Search) -> float:
 class SearchRun:
     """The result of one start of a search."""
 
-    place: FloatArray
+    coordinates: FloatArray = field(metadata=under_key("place"))
     """Best design, in parts of the ranges of the variables. Shape (d,)."""
     assessed: Assessed
     evaluations: int

@@ -1,4 +1,9 @@
-"""Ways to search the unit cube for the design of least merit."""
+"""Methods that search the unit cube for the design of least merit.
+
+A point of the unit cube is a design: each coordinate is a variable over its range. The merit is the objective
+with a penalty for limits that are exceeded. The rough merit costs less and ranks designs only. A walk is a
+sequence of designs, each from the linear program about the one before.
+"""
 
 from __future__ import annotations
 

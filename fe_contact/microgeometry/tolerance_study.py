@@ -41,6 +41,7 @@ from fe_contact.microgeometry.variables import figure
 from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.types import FloatArray, Json
 from model_studies import in_unit
+from model_studies.record import under_key
 from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.stage_clock import StageClock
 
@@ -135,7 +136,7 @@ class ToleranceStudy:
     """Confidence of the bounds of the quantiles."""
     cost: Json
     """CPU and wall seconds by stage, of this process."""
-    asked: Json
+    request: Json = field(metadata=under_key("asked"))
     solved: int = 0
     held: int = 0
     """`solved`, `held`: Number of the first pairs that are solved, while the model gives the others; number

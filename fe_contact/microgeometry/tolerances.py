@@ -43,11 +43,12 @@ COMMON: Mapping[Finishing, tuple[float, float, float, float]] = {
     "shaving": (0.7, 0.8, 0.6, 0.7),
     "hobbing": (0.6, 0.7, 0.5, 0.6),
 }
-"""Assumed: part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes.
+"""Assumed part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes, by finishing.
 
-With the part c two teeth of a gear correlate by c^2. The rest, from tooth to tooth, is in orders of shafts
-and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so teeth are alike; run-out of
-the blank changes the helix slope once a revolution; a hob cuts each flank anew. They are not measured.
+With the part c two teeth of a gear correlate by c^2. The rest differs from tooth to tooth; it is in orders of
+shafts and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so that teeth are alike;
+run-out of the blank changes the helix slope once a revolution; a hob cuts each flank separately. The parts
+are not measured.
 """
 ACCUMULATED: Mapping[Finishing, float] = {
     "any": 0.0,
@@ -57,10 +58,11 @@ ACCUMULATED: Mapping[Finishing, float] = {
     "shaving": 0.4,
     "hobbing": 0.3,
 }
-"""Assumed: part of the square of a single pitch deviation that the teeth behind keep.
+"""Assumed share of the accumulated deviation in the square of a single pitch deviation, by finishing.
 
-Where tool and gear roll, errors of the table and of the blank are slow over the teeth, and what smooths
-neighbors leaves them; where each gap is ground by itself, indexing places each tooth anew. Not measured.
+Where tool and gear roll, errors of the table and of the blank vary slowly over the teeth, and smoothing of
+neighbors leaves them. Where each gap is ground by itself, indexing places each tooth independently. The
+shares are not measured.
 """
 
 

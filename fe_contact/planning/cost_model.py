@@ -53,15 +53,19 @@ pairs of class 6, in the plane and over the face.
 _FACE_TILT = 2.7
 """Cost of assembly with the change of the compliance along sloping flanks, over that without it."""
 _PLANE_EXPECTED, _FACE_EXPECTED = (86.0, 0.37), (76.0, 0.25)
-"""Positions that the search ends with at one load of a spur pair, and the power of the loads with which they
-grow: handovers move with the load. Pairs at 1 to 12 loads met within 10 %."""
+"""Final positions of the search at one load of a spur pair, and exponent of their growth with the number of
+loads, in the plane and over the face. Handovers move with the load. Pairs at 1 to 12 loads are met within 10
+%.
+"""
 _HANDED_OVER = 0.15
 """Overlap ratio over which teeth come into contact so gently that e times fewer positions are added."""
 _ALLOWED = 1.5e-9
-"""Interpolation error in m that the first positions keep where teeth are handed over gently; what is allowed
-below it asks for as many times as many. The ripple of helical pairs is small, so where no floor holds the
-same part of it asks for more. Fitted to tables of eight helical pairs of overlap 0.25 to 2 at 1 to 16 loads,
-met within 0.6 to 1.5, by closer tolerances 0.6 to 2.3; a further one with a floor of 0.5 µm at 0.6."""
+"""Interpolation error that the first positions keep where teeth are handed over gently, m. A smaller allowed
+error needs more first positions in proportion. The ripple of helical pairs is small, so that a relative
+tolerance without a floor allows less. Fitted to tables of eight helical pairs of overlap 0.25 to 2 at 1 to 16
+loads: met within 0.6 to 1.5, under closer tolerances within 0.6 to 2.3; one more pair with a floor of 0.5 µm
+at 0.6.
+"""
 _RIPPLE_STIFFNESS, _RIPPLE_OVERLAP = 2.8e10, 0.5
 """Line load over ripple, N/m^2, of a spur pair: half of the deflection of a pair of teeth; the overlap
 ratio over which it falls by e."""
@@ -75,7 +79,7 @@ its own: 64 to 248 positions for pairs of class 6. Run-out and waves leave the h
 """
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions that the search solves for each node that it adds, and for each node that it begins with."""
-_JUDGED = 3
+_ASSESSED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _PLANE_CHECK, _FACE_CHECK = 6e-3, 0.12
@@ -140,7 +144,7 @@ def contact_seconds(
 ) -> tuple[float, float, float]:
     """CPU seconds of the search of positions, of the table, and of the solutions that measure its errors."""
     points, distances, loads = alignments[0] * alignments[1], alignments[1], plan.load.size
-    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _JUDGED)
+    nodes, assessed = expected_positions(pair, plan, model.period, points), min(points, _ASSESSED)
     tried, window = expected_tries(pair, plan, model.period, points), plan.nodes.searched(model.period)
     work = unit_work(pair, plan, plan.discretization.slices)
     search = work.of(tried * distances, 0) + work.in_pitches(tried * assessed, (loads,), window)
@@ -173,14 +177,14 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
         for w in rougher
     )
     if plan.positions is not None or period > 1:
-        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _JUDGED)
+        middles, assessed = _SOLVED_MIDDLES * nodes, min(alignments[0] * alignments[1], _ASSESSED)
         seconds += work.of(middles * alignments[1], 0) + work.in_pitches(
             middles * assessed, (sampled_loads,), solved
         )
-    held_out_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
-    held_out = rows * (held_out_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
+    validation_loads = (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
+    validation = rows * (validation_loads + WIDE_PROBES * (alignments[0] - 1) * sampled_loads)
     further_rows = rows * (alignments[1] - 1)
-    seconds += work.of(further_rows, held_out + further_rows * sampled_loads)
+    seconds += work.of(further_rows, validation + further_rows * sampled_loads)
     seconds += _FACE_CHECK if made.slices > 1 else _PLANE_CHECK
     return seconds + _TABLE_POINT * nodes * period * alignments[0] * alignments[1] * loads
 
@@ -243,7 +247,7 @@ def expected_positions(pair: ParallelAxes, plan: Plan, period: int = 1, alignmen
     added = (at_one_load * plan.load.size**power - start) * math.exp(-pair.overlap_ratio / _HANDED_OVER)
     expected = start * (_finer(pair, plan) if over_face and period == 1 else 1.0) + added
     times = _UNLIKE if period > 1 and any(map(_unlike_teeth, (pair.pinion, pair.wheel))) else 1.0
-    return min(round(float(times * expected)), most_positions(plan, period * alignments))
+    return min(round(float(times * expected)), max_positions(plan, period * alignments))
 
 
 def _unlike_teeth(gear: Toothing) -> bool:
@@ -259,7 +263,7 @@ def _finer(pair: ParallelAxes, plan: Plan) -> float:
     return min(max(_ALLOWED / allowed, 1.0), halved) if allowed else halved
 
 
-def most_positions(plan: Plan, times: int) -> int:
+def max_positions(plan: Plan, times: int) -> int:
     """Return how many positions a search may end with, in so many base pitches and alignments."""
     return max(min(plan.nodes.maximum, MAX_ROWS // times), plan.nodes.start)
 

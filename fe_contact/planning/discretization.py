@@ -101,7 +101,7 @@ class FaceDiscretization:
     """
     slices: int
     """Number of slices of the common face width."""
-    most_slices: int
+    max_slices: int
     """Largest useful number of slices, by two limits. Slices narrower than two thirds of a layer of either
     gear move the same freedoms of the bodies; `SLICE_OVER_PATCH` is the other limit.
     """
@@ -120,8 +120,8 @@ class FaceDiscretization:
         return 1.0 / (ratio**2 - 1.0)
 
     def in_slices(self, count: int) -> FaceDiscretization:
-        """Return the same meshes in another number of slices, or in `most_slices`."""
-        return replace(self, slices=min(count, self.most_slices))
+        """Return the same meshes in another number of slices, or in `max_slices`."""
+        return replace(self, slices=min(count, self.max_slices))
 
     @property
     def coarse_slices(self) -> int:
@@ -163,11 +163,11 @@ def face_discretization(pair: ParallelAxes, level: str, slices: int | None = Non
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    largest = min(_most_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
+    largest = min(_max_slices(pair, *side) for side in ((pair.pinion, first), (pair.wheel, second)))
     return FaceDiscretization((first, second), coarse, min(slices or SLICES, largest), largest)
 
 
-def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
+def _max_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
     """Return the largest number of slices that a mesh resolves, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
     patches = pair.face_width / (FACE_RESOLVED * recipe.flank_size)

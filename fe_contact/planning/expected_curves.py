@@ -27,13 +27,16 @@ HELICAL = {"draft": (5e-3, 3e-3), "standard": (1.8e-3, 8.5e-4), "fine": (8e-4, 4
 
 
 RELIEVED = {"draft": (4e-3, 1.8e-3), "standard": (1.6e-3, 4.5e-4), "fine": (6e-4, 2.3e-4)}
-"""Mesh: of mean and of peak-to-peak in parts of what the load adds to the mean. In the plane; over the face
-of spur pairs; of helical pairs with plain and with modified profiles, whose contact lines end under less
-load."""
+"""Errors of mean and of peak-to-peak by the mesh of a level, over the mean's rise under load. `PLANE` is for
+the plane, `SPUR` for spur pairs over the face, `HELICAL` and `RELIEVED` for helical pairs with plain and with
+modified profiles. Contact lines of modified profiles end under less load.
+"""
 
 
 HELICAL_SLICES, SPUR_SLICES, SLICES = 7e-4, 5e-5, 15
-"""Peak-to-peak at so many slices in parts of the same: of helical pairs times the overlap ratio."""
+"""Errors of peak-to-peak with `SLICES` slices over the mean's rise under load; for helical pairs times the
+overlap ratio.
+"""
 
 
 CORRECTION = 0.03
@@ -60,7 +63,7 @@ class ExpectedCurves:
     peak_to_peak: FloatArray
     """`mean`, `peak_to_peak`: Expected mean and peak-to-peak STE, m. Shape (C,) each."""
     allowed: AllowedError
-    """Says below which size errors count absolutely."""
+    """Allowed error, which sets the size below which errors count absolutely."""
     absolute: bool = True
     """Whether mean and peak-to-peak are sizes of the case; False: parts of its mean, as for usual pairs."""
 

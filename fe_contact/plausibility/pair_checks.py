@@ -60,7 +60,7 @@ def pair_findings(
 def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
     gear = pair.pinion
     yield from assessed(
-        "module", "normal_module", gear.normal_module, "m", whole=", here and in all other lengths"
+        "module", "normal_module", gear.normal_module, "m", unit_note=", here and in all other lengths"
     )
     yield from assessed("pressure_angle", "normal_pressure_angle", gear.normal_pressure_angle, "rad")
     if gear.helix_angle:

@@ -1,4 +1,8 @@
-"""The stored arrays of an STE database, and the checks of their shapes and values."""
+"""The stored arrays of an STE database, and the checks of their shapes and values.
+
+Axes: P positions of all base pitches, F requested loads, M misalignments, D changes of the center distance, N
+pairs of teeth, S support loads. A support load carries the interpolation between requested loads.
+"""
 
 from __future__ import annotations
 
@@ -135,7 +139,7 @@ class SteFields:
     period: int = 1
     """Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike."""
     curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
-    """Errors of mean, peak-to-peak, any order beside the mesh orders, and 20 harmonics in m, >= 0, by source
+    """Errors of mean, peak-to-peak, any order that is no mesh order, and 20 harmonics in m, >= 0, by source
     (`ste.curve.SOURCES`, and `DERIVATIVES` where base pitches were not solved); NaN: not estimated. Empty for
     tables without, whose errors follow from the bands. Shape (9 or 10, 23, F, M, D).
     """

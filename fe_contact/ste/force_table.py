@@ -1,4 +1,8 @@
-"""Tables of forces over transmission errors: their levels, their cubics, their pieces."""
+"""Tables of forces over transmission errors: levels, cubics and pieces.
+
+A level is a mesh force whose transmission error is stored over position. Between two levels the force is a
+monotone cubic of the transmission error, a piece.
+"""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class Child:
 
     @property
     def pid(self) -> int:
-        """Process id, also of its group and session."""
+        """Process id of the child, also the id of its group and session."""
         return self._process.pid
 
     @property
@@ -71,7 +71,7 @@ class Child:
 
     @property
     def partial(self) -> bool:
-        """Whether what it sent last is not, or not yet, a whole frame."""
+        """Whether the last bytes that it sent are not, or not yet, a whole frame."""
         return self._frames.partial
 
     def send(self, order: Frame) -> bool:
@@ -112,7 +112,7 @@ class Child:
         return True
 
     def end_group(self) -> None:
-        """Kill it and what it started, unless it has been reaped. Any thread may."""
+        """Kill the child and the processes that it started, unless it has been reaped. Any thread may."""
         with self._reaping:
             if self._ended is None:
                 self._was_killed = self._was_killed or not self._process.has_exited()

@@ -46,6 +46,6 @@ def child_environment(**further: str) -> dict[str, str]:
 
 
 def keep_to_one_thread() -> None:
-    """Let libraries that are not loaded yet start no threads, where the environment does not say how many."""
+    """Set the environment so that libraries loaded later start no threads, unless it states their number."""
     if not any(name in os.environ for name in ONE_THREAD):
         os.environ.update(ONE_THREAD)

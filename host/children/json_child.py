@@ -112,7 +112,7 @@ def _communicated(child: subprocess.Popen[str], request: str, watch: Watch) -> t
 
 
 def _refuse_no_memory(complaint: str) -> None:
-    """Raise what a child's complaint says, if that is a lack of memory."""
+    """Raise `ChildOutOfMemory` if a child's complaint is a lack of memory."""
     if any(sign in complaint for sign in _NO_MEMORY):
         raise ChildOutOfMemory("ran out of memory")
 

@@ -114,7 +114,7 @@ class Ends:
 
 @dataclass(frozen=True)
 class _StartedChild:
-    """A child started anew, the leader of a session of its own: `pid` is also the id of group and session."""
+    """A child that is a new process and leads its session: `pid` is also the id of group and session."""
 
     pid: int
 
@@ -173,14 +173,14 @@ class WarmProcess:
 
     @property
     def ready(self) -> bool:
-        """Whether it has said that it is warm, and may fork once more."""
+        """Whether the process has reported that it is warm, and may fork once more."""
         if not self._ready and self.usable:
             readable, _, _ = select.select([self._channel], [], [], 0.0)
             self._ready = bool(readable) and self._channel.recv(MESSAGE_BYTES) == READY
         return self._ready and self.usable
 
     def await_word(self, seconds: float) -> None:
-        """Wait until it says that it is ready, or has ended."""
+        """Wait until the process reports that it is ready, or has ended."""
         select.select([self._channel], [], [], seconds)
 
     def fork(self, ends: Ends) -> _ForkedChild:

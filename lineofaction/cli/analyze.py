@@ -1,4 +1,7 @@
-"""``loa analyze``: case files read and assessed, their tables computed."""
+"""``loa analyze``: the tables of case files, from the cache or computed.
+
+What computes a table is loaded when none is in the cache.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +16,9 @@ from rich.console import Console
 from bounds import engineering
 from bounds.error_digits import with_error
 from fe_contact.ste import SteDatabase
-from host.directories import cache_home
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.cached_tables import CachedTables
 from lineofaction.cli.output import (
-    Report,
     check_netcdf_output,
     console,
     output_of,
@@ -26,10 +28,9 @@ from lineofaction.cli.output import (
     progress_bar,
     table,
 )
-from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.tolerance_lines import NODES, tolerance_lines, tolerance_warnings
 from lineofaction.cli.verb_warnings import warn
-from lineofaction.gearbox.convert.answers import draft_line, source_rows, summary_json
+from lineofaction.gearbox.convert.answers import source_rows, summary_json
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.effects import (
     assumption_lines,
@@ -38,27 +39,27 @@ from lineofaction.gearbox.convert.effects import (
     ledger_table,
     trifles_title,
 )
-from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import JobFailed
-from lineofaction.gearbox.tabled_scene import database_of
 from lineofaction.gearbox.units import UM
-from lineofaction.report.ste.page import static_headlines
-from model_studies.workers import InProcess, Workers
+from lineofaction.report.ste.headlines import static_headlines
 
 _MAX_HARMONICS = 2
+_FROM_CACHE = "note: the table of an equal case was in the cache: its cost is of its computation"
 
 
 def run_analyze(
     file: InputFile, named: Path | None, executor: tuple[int, str | None], *, as_json: bool
 ) -> None:
-    """Compute, write, print."""
+    """Find or compute the table, write, print."""
     case = assessed_case(file)
     output = output_of(named, file.project, f"{file.path.stem}.nc")
     check_netcdf_output(output)
-    with open_executor(*executor) as workers, progress_bar() as report:
-        database = analyzed(case, report, workers)
-    CachedTables(lambda _: database).table(case.case)  # for verbs that take it
+    database = CachedTables.find(case.case)
+    if database is None:
+        database = _computed(case, executor)
+    elif not as_json:
+        print(_FROM_CACHE, file=sys.stderr)  # noqa: T201 (this is the command line)
     warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
@@ -72,20 +73,13 @@ def run_analyze(
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
 
-def analyzed(
-    case: CheckedCase,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> SteDatabase:
-    """Compute the database of a case in this process; condensed gears are kept in the user's cache.
+def _computed(case: CheckedCase, executor: tuple[int, str | None]) -> SteDatabase:
+    """Compute the table of a case, and keep it for verbs that take it."""
+    from lineofaction.cli.computed_tables import computed_table  # noqa: PLC0415 (start-up time)
+    from lineofaction.gearbox.executor import open_executor  # noqa: PLC0415 (start-up time)
 
-    Figures of a table that is being refined are printed on standard error: they are progress.
-    """
-
-    def print_draft(table: SteDatabase, refining: str) -> None:
-        print(draft_line(table, refining), file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
-
-    return database_of(case, cache_home(), report, workers, print_draft)
+    with open_executor(*executor) as workers, progress_bar() as report:
+        return CachedTables(lambda _: computed_table(case, report, workers)).table(case.case)
 
 
 def _show(summary: dict[str, Any]) -> None:
@@ -110,7 +104,7 @@ def _show(summary: dict[str, Any]) -> None:
 
 
 def _over_face(load: dict[str, Any]) -> str:
-    """Mean and peak-to-peak of the gears of finite width: those of the plane, corrected."""
+    """Return mean and peak-to-peak of the gears of finite width: those of the plane model, corrected."""
     mean, ripple = (
         with_error(load[f"{name}_over_face_um"], load.get(f"{name}_over_face_error_um", math.nan))
         for name in ("mean", "peak_to_peak")
@@ -119,7 +113,7 @@ def _over_face(load: dict[str, Any]) -> str:
 
 
 def show_effects(out: Console, ledger: list[dict[str, Any]]) -> None:
-    """Print the decision about every effect that is not a trifle, and what leaving it out changes."""
+    """Print the decision about every effect of relevant size, and the change without the effect."""
     columns, rows = ledger_table(ledger)
     title = f"Effects: estimated change without each, {influence_point(ledger)}".removesuffix(", ")
     out.print()
@@ -143,7 +137,7 @@ def _of_cycle(cycle: dict[str, Any]) -> str:
 
 
 def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
-    """Return time by stage and memory in one line, and what there is to say of the table in others."""
+    """Return one line with time by stage and memory, and lines on the table's tolerance."""
     seconds = {name: spent["cpu_seconds"] for name, spent in receipt["stages"].items()}
     stages = ", ".join(f"{name} {engineering(spent, 2)}" for name, spent in seconds.items())
     memory = receipt["peak_memory_bytes"] / 2**20
@@ -160,8 +154,8 @@ def _cost(receipt: dict[str, Any], newton_metre: float = 1.0) -> str:
         text += f"\n{_of_cycle(cycle)}"
     for line in _inserted(receipt.get("held_out", {}), newton_metre):
         text += f"\n{line}"
-    if held_out_text := _held_out_errors(receipt.get("held_out", {})):
-        text += f"\nlargest error at held-out points between the nodes: {held_out_text} (in the errors there)"
+    if errors_text := _validation_errors(receipt.get("held_out", {})):
+        text += f"\nlargest error at held-out points between the nodes: {errors_text} (in the errors there)"
     if allowed := receipt.get("misalignment_range"):
         text += f"\n{allowed}"
     for line in tolerance_lines(receipt, newton_metre):
@@ -182,7 +176,7 @@ def _inserted(axes: dict[str, Any], newton_metre: float) -> Iterator[str]:
             yield f"{name} inserted for interpolation: {values} {word}"
 
 
-def _held_out_errors(axes: dict[str, Any]) -> str:
+def _validation_errors(axes: dict[str, Any]) -> str:
     texts = []
     for name, measured in axes.items():
         errors = [error for row in measured["error_m"] for error in row]

@@ -27,7 +27,7 @@ _GB = 1e9
 
 
 def run_list(*, as_json: bool) -> None:
-    """Print what the cache holds."""
+    """Print the contents of the cache."""
     by_kind = {kind: files_in(cache_home() / kind) for kind in KINDS}
     if as_json:
         kinds = {
@@ -51,7 +51,7 @@ def run_list(*, as_json: bool) -> None:
 
 
 def run_limit(gigabytes: float | None, *, as_json: bool) -> None:
-    """Remove what was not used for longest until the rest fits."""
+    """Remove the longest unused files until the rest fits."""
     maximum = _limit_bytes() if gigabytes is None else round(gigabytes * _GB)
     removed = evict(cache_home(), maximum)
     _tell(removed, as_json=as_json)

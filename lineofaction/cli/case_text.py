@@ -8,7 +8,7 @@ _PINION, _WHEEL = "the driving gear", "the driven gear"
 
 
 def case_text(pair: PairSketch, head: str) -> str:
-    """Return a case file under a line that says what it holds."""
+    """Return a case file whose first line is a title."""
     return f"""# {head}
 # Made by loa new; every figure may be changed. All fields: docs/case-file.md.
 # Next: loa geometry FILE, then loa analyze FILE -o ste.nc, then loa report ste.nc.

@@ -75,7 +75,7 @@ def run_compare(
     *,
     as_json: bool,
 ) -> None:
-    """Write the page; print what differs and what is not shown to; `of` are the torque and the recording."""
+    """Write the page; print differences above their errors; `of` are the torque and the recording."""
     check_writable(output)
     page = compare(files, view, *of)
     write_page(page, output)

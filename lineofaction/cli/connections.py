@@ -59,7 +59,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         self._await_head()
 
     def data_received(self, data: bytes) -> None:
-        """Read on; close what is too long."""
+        """Read on; close the connection when its head is too long."""
         before = self.cycle
         if self._timer is None and (before is None or before.response_complete):
             self._await_head()
@@ -83,7 +83,7 @@ class BoundedHttp(AutoHTTPProtocol):  # type: ignore[misc, valid-type]  # one of
         super().connection_lost(exc)
 
     def send_400_response(self, msg: str) -> None:
-        """Refuse what is no HTTP, in place of the server's plain text."""
+        """Refuse bytes that are no HTTP, in place of the server's plain text."""
         self._refuse(Malformed(msg))
 
     def _close_longest_idle(self) -> None:
@@ -143,7 +143,7 @@ class Server(uvicorn.Server):
     Attributes
     ----------
     vitals : Vitals
-        Of the process that it serves in.
+        Signs of life of the process that the server runs in.
     metrics : callable
         Returns its figures as text.
     """
@@ -159,6 +159,6 @@ class Server(uvicorn.Server):
         await super().startup(sockets)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End the workers that somebody waits for, then what uvicorn ends."""
+        """End the workers of waiting callers, then end the server as uvicorn does."""
         await asyncio.to_thread(self._context.stop_waiting)
         await super().shutdown(sockets)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairGeometry
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.output import EMPHASIS, check_writable, console, print_json, table
-from lineofaction.cli.subjects import assessed_case
 from lineofaction.cli.verb_warnings import messages, warn
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput

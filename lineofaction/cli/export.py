@@ -12,14 +12,14 @@ from fe_contact.analysis.flanks.deformed_pair import DeformedPair, deformed_pair
 from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from host.directories import cache_home
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.export_fmu import export_mesh_fmu
 from lineofaction.cli.export_point import Point
 from lineofaction.cli.export_rexs import export_rexs
 from lineofaction.cli.export_run import TABLE, UNIVERSAL, export_run
 from lineofaction.cli.output import console, print_json, print_written, progress_bar, table
 from lineofaction.cli.ste import positions
-from lineofaction.cli.subjects import assessed_case
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated
@@ -32,7 +32,7 @@ _MAX_POSITIONS = 256
 def run_export(
     file: InputFile, output: Path, point: Point, rexs: Path | None, *, as_json: bool, **further: Any
 ) -> None:
-    """Write what the output's name promises; `further` holds the options of each kind by their names."""
+    """Write the export that the output's ending names; `further` has the options of each kind by name."""
     if rexs is not None:
         export_rexs(file.as_it_is, rexs, output, point, as_json=as_json)
     elif output.suffix in (*UNIVERSAL, TABLE):
@@ -46,7 +46,7 @@ def run_export(
 
 
 def _export_deformed(
-    file: InputFile, output: Path, point: Point, at: str, beside: int, *, as_json: bool
+    file: InputFile, output: Path, point: Point, at: str, neighbors: int, *, as_json: bool
 ) -> None:
     """Solve, expand, write, print."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
@@ -61,7 +61,7 @@ def _export_deformed(
     checked = case.at_point
     with progress_bar() as report, boundary_errors():
         run = Run(cache=cache_home() / "compliance", progress=report)
-        pairs = deformed_pairs(checked, run=run, at=where, beside=beside)
+        pairs = deformed_pairs(checked, run=run, at=where, neighbors=neighbors)
     written = _written(pairs, output)
     if as_json:
         print_json({"written": [str(path) for path in written], "positions": _figures(pairs)})

@@ -14,9 +14,9 @@ from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs, serialized
 from lineofaction.gearbox.rexs.model import Document
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.to_rexs.attributes import CALCULATED
-from lineofaction.gearbox.to_rexs.deflection import deflected, left_out
+from lineofaction.gearbox.to_rexs.deflection import deflected, omissions
 from lineofaction.gearbox.to_rexs.stage import exported
 from lineofaction.report.document import file_attributes, read_stored, stored_study
 
@@ -28,7 +28,7 @@ def export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json: 
     check_writable(output)
     document = read_rexs(rexs)
     unit = OpenedUnit.of(document)
-    warn(left_out_warnings(unit.left_out))
+    warn(omission_warnings(unit.omitted))
     answer: dict[str, Any] = {"file": str(output)}
     readable = file.is_file() and file.suffix not in (".toml", ".json")
     study = stored_study(file_attributes(file)) if readable else None
@@ -36,7 +36,7 @@ def export_rexs(file: Path, rexs: Path, output: Path, point: Point, *, as_json: 
         _refuse_point(point, tuple(point))
         result = read_stored(study, file)
         written = deflected(document, unit, result)
-        answer["left_out"] = left_out(unit, result)
+        answer["left_out"] = omissions(unit, result)
     else:
         _refuse_point(point, _ONLY_TORQUE)
         written = exported(document, unit.cases, [open_ste(file)], point["torque_n_m"])

@@ -26,7 +26,7 @@ from lineofaction.gearbox.problems import BadInput, JobFailed
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.housing_solid import PERPENDICULAR
 from lineofaction.gearbox.schemas.named_files import in_folder, read_text
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.reading import read_model, read_table, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.toml import toml_table, toml_text
@@ -44,7 +44,7 @@ def run_housing(
     *,
     as_json: bool,
 ) -> None:
-    """Show what a STEP file is as the housing of a scene, and write the scene with it.
+    """Show the housing that a STEP file makes of a scene, and write the scene with it.
 
     The scene of a folder is written in place unless another file is named.
 
@@ -53,7 +53,7 @@ def run_housing(
     stands : tuple of str
         Material, and the direction that the housing stands on.
     placed : dict
-        What is typed of `NAMES`, by field.
+        Typed values of `NAMES`, by field.
     """
     material, stands_on = stands
     _check_known("--material", material, MATERIALS)
@@ -70,8 +70,8 @@ def run_housing(
     except SolveError as error:
         raise JobFailed(f'"{step.name}": {error}') from error
     made = step_housing(scene, solid, material, stands_on, _placement(placed))
-    left = [f"{name}: in no bore, it stays on the ground" for name in made.left_out]
-    warn(left_out_warnings(left, "scene"))
+    left = [f"{name}: in no bore, it stays on the ground" for name in made.omitted]
+    warn(omission_warnings(left, "scene"))
     written = [] if output is None else _write(file, step, output, made)
     if as_json:
         print_json(_as_json(made) | {"written": [str(path) for path in written]})
@@ -185,7 +185,7 @@ def _row(name: str, made: StepHousing) -> tuple[str, ...]:
 
 def _as_json(made: StepHousing) -> dict[str, Any]:
     stand = made.stand
-    figures = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.left_out)}
+    figures = {"mass_kg": made.mass, "mean_wall_mm": made.wall / MM, "left_out": list(made.omitted)}
     return (
         {"housing": made.fields} | figures | {"foot_faces": stand.faces, "foot_area_mm2": stand.area / MM**2}
     )

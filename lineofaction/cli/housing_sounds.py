@@ -10,9 +10,10 @@ from bounds import engineering
 from dynamics.acoustics import SoundFigures
 from dynamics.results import RunResult
 from host.directories import cache_home
+from lineofaction.cli.costs import announce_cost, listening_cost
 from lineofaction.cli.output import progress_bar
 from lineofaction.cli.run_sounds import RunSound
-from lineofaction.cli.subjects import announce_cost, assessed_scene, listening_cost
+from lineofaction.cli.subjects import assessed_scene
 from lineofaction.cli.verb_warnings import warn
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
 from lineofaction.gearbox.problems import BadInput
@@ -57,7 +58,7 @@ def _position(text: str) -> tuple[float, ...]:
 def housing_sounds(
     runs: Mapping[str, RunResult], file: Path, receiver: Receiver, view: RunView, *, announced: bool
 ) -> tuple[list[RunSound], str]:
-    """Return runs through the housings of a scene, and what to say of all."""
+    """Return runs through the housings of a scene, and a remark on all of them."""
     receiver = replace(receiver, direction=view.direction)
     _require_no_view(view, receiver)
     scene, folder = assessed_scene(file)

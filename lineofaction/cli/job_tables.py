@@ -37,7 +37,7 @@ class JobTables:
         self._tell(answer, f"{before or 'no tables'} -> {REVISIONS[-1]}")
 
     def status(self) -> None:
-        """Tell both schemas; fail if this program cannot use that of the database."""
+        """Print both schemas; fail if this program cannot use the schema of the database."""
         numbers, current = self._schema.numbers(), REVISIONS[-1]
         answer: Json = {"database": self._name, "schema": numbers.newest, "program": current}
         answer |= {"up_to_date": numbers.ours, "usable": numbers.usable}

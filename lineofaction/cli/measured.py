@@ -18,7 +18,7 @@ from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.schemas.named_files import read_text
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.toml import toml_text
 from lineofaction.gearbox.units import MM, UM
 
@@ -31,7 +31,7 @@ def run_measured(
     *,
     as_json: bool,
 ) -> None:
-    """Write the case with what was measured, or without a sheet the sheet of the case.
+    """Write the case with the measured deviations, or without a sheet the sheet of the case.
 
     `mounted` are the fields of `Inspected`.
     """
@@ -46,7 +46,7 @@ def run_measured(
     except BadInput as error:
         raise error.within(FIELD) from None
     changed, gear = measured_case(case, text, str(sheet), of)
-    warn(left_out_warnings(gear.left_out, "case"))
+    warn(omission_warnings(gear.omitted, "case"))
     written = [] if output is None else [output]
     if output is not None:
         output.write_text(toml_text(case_json(changed)), encoding="utf-8")

@@ -14,7 +14,8 @@ from lineofaction.cli.pair_sketch import external_pair, internal_pair
 from lineofaction.cli.planetary_text import planetary_text
 from lineofaction.cli.scene_text import pair_scene_text
 from lineofaction.cli.stage_sketch import planetary_stage
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, validated
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -64,7 +65,7 @@ def run_new(kinds: Mapping[str, bool], wanted: PairWishes, output: Path | None) 
 
 
 def text_of_kind(kind: str, wanted: PairWishes) -> str:
-    """Return the file of a kind; it is read once, so that what is written can be run.
+    """Return the file of a kind; the written file is read once as a check that it can be run.
 
     Raises `BadInput`: no such pair exists.
     """

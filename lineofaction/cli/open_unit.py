@@ -13,11 +13,11 @@ from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.files import read_rexs
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 
 
 def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_json: bool) -> None:
-    """Open a REXS file: write cases, scene, load cases and account, and print what is not taken as it is.
+    """Open a REXS file: write cases, scene, load cases and account, and print deviations from the file.
 
     What is left out of the scene comes first and last.
     """
@@ -25,10 +25,10 @@ def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_
     folder = output or Path(file.name).with_suffix("")
     written = _write_unit(unit, folder)
     counts = Counter[str](line.fate for line in unit.lines)
-    left_out = unit.headline
-    if left_out and not as_json:
-        console().print(left_out, soft_wrap=True)
-    warn(left_out_warnings(unit.left_out))
+    headline = unit.headline
+    if headline and not as_json:
+        console().print(headline, soft_wrap=True)
+    warn(omission_warnings(unit.omitted))
     if as_json:
         print_json(
             {
@@ -42,8 +42,8 @@ def run_open(file: Path, output: Path | None, assume: Sequence[str] = (), *, as_
         )
         return
     _show_unit(unit, counts, written)
-    if left_out:
-        console().print(left_out, soft_wrap=True)
+    if headline:
+        console().print(headline, soft_wrap=True)
 
 
 def _write_unit(unit: OpenedUnit, folder: Path) -> list[Path]:

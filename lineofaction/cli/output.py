@@ -148,7 +148,7 @@ def table(
 
 
 def _side_by_side(cells: Sequence[list[str]]) -> list[str]:
-    """Return cells, each its lines, beside each other."""
+    """Return the lines of a row of cells, each cell a list of lines."""
     high = max(map(len, cells))
     filled = [[*lines, *[" " * len(lines[0])] * (high - len(lines))] for lines in cells]
     return [(" " * _GAP).join(parts).rstrip() for parts in zip(*filled, strict=True)]
@@ -270,7 +270,7 @@ def progress_bar() -> Iterator[Report]:
 
 
 def output_of(output: Path | None, project: Path | None, name: str) -> Path:
-    """Return the output that is named, else the file of a name in the project of what was read.
+    """Return the named output, else the file of a name in the project of the input.
 
     Raises `BadInput`: neither.
     """

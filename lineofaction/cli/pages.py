@@ -58,7 +58,7 @@ def run_report(
     flank: bool,
     as_json: bool,
 ) -> None:
-    """Write page and pictures; of a folder with several cases what each says stands side by side."""
+    """Write page and pictures; results of several cases of a folder stand side by side."""
     projects = [name for name in named if name.is_dir()]
     block = options.about or next(filter(None, map(about, projects)), None)
     title_block = None if block is None else about_of(block)

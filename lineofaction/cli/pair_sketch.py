@@ -52,7 +52,7 @@ class PairSketch:
 
     @property
     def relief(self) -> tuple[float, float]:
-        """Tip relief in um and its length in mm: what teeth under this load bend, over 0.4 modules."""
+        """Tip relief in um and its length in mm: the bending of teeth under this load, over 0.4 modules."""
         return round(5.0 + 5.0 * self.module), round(0.4 * self.module, 2)
 
     @property
@@ -62,7 +62,7 @@ class PairSketch:
 
 
 def external_pair(wanted: PairWishes, *, teeth: int, ratio: float, helix: float, module: float) -> PairSketch:
-    """Return an external pair; the keywords stand for what is left open."""
+    """Return an external pair; the keywords are values for missing wishes."""
     module = wanted.module or module
     helix = helix if wanted.helix is None else wanted.helix
     first = wanted.teeth or teeth
@@ -123,7 +123,7 @@ def _hunting_teeth(teeth: int, ratio: float) -> int:
 
 
 def face_width(module: float, helix: float) -> float:
-    """Return a face width in mm: 10 modules, of helical gears what `OVERLAP` takes."""
+    """Return a face width in mm: 10 modules, for helical gears the width of the overlap `OVERLAP`."""
     if not helix:
         return float(math.ceil(10.0 * module))
     return float(math.ceil(OVERLAP * math.pi * module / math.sin(abs(helix) * DEGREE)))
@@ -143,7 +143,7 @@ def bore_diameter(gear: Gear, shift: float = 0.0) -> float:
 
 
 def _torques(pinion: Gear) -> tuple[float, ...]:
-    """Return torques in N m up to that of `LOAD`, two digits each."""
+    """Return torques in N m up to the torque of `LOAD`, with two digits each."""
     module, width = pinion.normal_module / MM, pinion.face_width / MM
     highest = LOAD * width * module * pinion.reference_radius
     return tuple(float(f"{part * highest:.2g}") for part in _FRACTIONS)

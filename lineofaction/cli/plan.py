@@ -6,13 +6,13 @@ from bounds import engineering
 from fe_contact.analysis.run_plan import PlannedLevel, RunPlan
 from host.directories import cache_home
 from lineofaction.cli.analyze import show_effects
+from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.output import (
     EMPHASIS,
     console,
     print_json,
     table,
 )
-from lineofaction.cli.subjects import assessed_case
 from lineofaction.gearbox.convert.plan import plan_json, plan_of
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.units import UM

@@ -18,7 +18,7 @@ Work = Callable[[], None]
 
 @contextmanager
 def managed(settings: Settings, vitals: Vitals, metrics: Callable[[], bytes]) -> Iterator[Callable[[], None]]:
-    """Answer on the management port while the context lasts; yields what prints its URL, if there is one.
+    """Answer on the management port in the context; yields a function that prints its URL, if it has one.
 
     Raises `BadInput`: the port is taken.
     """

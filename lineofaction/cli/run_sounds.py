@@ -34,7 +34,7 @@ class RunSound:
 
 
 def bearing_sounds(runs: Mapping[str, RunResult], view: RunView) -> tuple[list[RunSound], str]:
-    """Return runs by what they hold, e.g. forces on a bearing, and what to say of all."""
+    """Return runs as sounds of their own series, e.g. forces on a bearing, and a remark on all of them."""
     sounds = []
     for one in tuple(run_signals(dict(runs), view)):
         recording, moment = one.recording(), loudest(one.run, one.signal)

@@ -14,7 +14,7 @@ from bounds import engineering
 from bounds.types import Json
 from host import cpu_seconds
 from host.directories import cache_home
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.costs import announce_cost, study_cost, tables_cost
 from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
@@ -27,13 +27,14 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.study_cache import cached_workers
-from lineofaction.cli.subjects import announce_cost, assessed_scene, inputs_of_study, study_cost, tables_cost
+from lineofaction.cli.subjects import assessed_scene, inputs_of_study
 from lineofaction.cli.verb_warnings import messages, warn, warnings_so_far
 from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import marks_of_case
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.executor import open_executor
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.number_list import number_list
@@ -111,7 +112,7 @@ def run_study(study: Study, options: Json) -> None:
 
 @contextmanager
 def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options: Json) -> Iterator[None]:
-    """Say on standard error what the study will take, if that is more than a moment and can be predicted."""
+    """Print the predicted cost of the study on standard error, if it is known and more than a moment."""
     if not options["json"]:
         costs = [study_cost(study, subject, folder, inputs) for subject, folder in subjects]
         if study.run.tables and options.get("service") is None:
@@ -185,7 +186,7 @@ def _made(
 
 
 def _names(study: Study, files: Sequence[InputFile]) -> list[str]:
-    """Return names of results: what tells their files apart."""
+    """Return names of results, the shortest that distinguish their files."""
     names = [file.path.stem.removeprefix(f"{study.name}_").replace("_", " ") for file in files]
     return [str(file) for file in files] if len(set(names)) < len(names) else names
 
@@ -257,7 +258,7 @@ def _csv(study: Study, result: Any) -> str:
 
 
 def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float) -> None:
-    """Print the main results, tables and lines, and what all of it cost: tables, workers, other children."""
+    """Print the main results, tables and lines, and the whole cost: tables, workers, other children."""
     presentation = presentation_of(study)
     parts = list(presentation.text(result))
     said = {part for part in parts[:_MAX_SAID] if isinstance(part, str)}

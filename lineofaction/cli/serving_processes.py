@@ -117,7 +117,7 @@ class ServingProcesses:
     _starts: deque[float] = field(default_factory=deque)
 
     def replace_dead(self) -> None:
-        """Start what is missing; `number` starts are at least `MIN_LIFE_S` apart."""
+        """Start missing processes; `number` starts take at least `MIN_LIFE_S`."""
         for process in [process for process in self._alive if not process.is_alive()]:
             logger.warning("serving process ended", pid=process.pid, code=process.exitcode)
             mark_process_dead(process.pid, os.environ[_METRICS])  # type: ignore[no-untyped-call]
@@ -146,7 +146,7 @@ class ServingProcesses:
             process.terminate()
 
     def join(self) -> None:
-        """Wait until all have stopped; kill those that take too long."""
+        """Wait until all processes have stopped; kill processes that take too long."""
         end = time.monotonic() + STOPPING_S
         for process in self._alive:
             process.join(max(end - time.monotonic(), 0.0))

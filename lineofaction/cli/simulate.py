@@ -9,7 +9,7 @@ from typing import Any
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.costs import announce_cost, simulation_cost, tables_cost
 from lineofaction.cli.interrupts import until_interrupted
 from lineofaction.cli.output import (
     Report,
@@ -22,7 +22,8 @@ from lineofaction.cli.output import (
     print_written,
     progress_bar,
 )
-from lineofaction.cli.subjects import announce_cost, assessed_scene, simulation_cost, tables_cost
+from lineofaction.cli.scene_tables import tabled_scene
+from lineofaction.cli.subjects import assessed_scene
 from lineofaction.cli.verb_warnings import warnings_so_far
 from lineofaction.gearbox.convert.effects import run_lines
 from lineofaction.gearbox.executor import open_executor

@@ -24,7 +24,7 @@ _MIN_TEETH = 18
 
 
 def planetary_stage(wanted: PairWishes) -> StageSketch:
-    """Return a stage of three planets; its ring has the teeth of the sun and twice those of a planet.
+    """Return a stage of three planets; its ring has the teeth of the sun plus twice the planet's.
 
     Raises `BadInput`: no planets fit a ratio that small.
     """

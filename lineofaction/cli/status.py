@@ -9,15 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from bounds import engineering
+from lineofaction.cli.costs import listening_cost, simulation_cost, study_cost, table_cost, tables_cost
 from lineofaction.cli.output import console, print_json, table
-from lineofaction.cli.subjects import (
-    inputs_of_study,
-    listening_cost,
-    simulation_cost,
-    study_cost,
-    table_cost,
-    tables_cost,
-)
+from lineofaction.cli.subjects import inputs_of_study
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.project import ResultState, file_of, status_of, unread_in
@@ -131,7 +125,7 @@ def run_status(folder: Path, *, as_json: bool) -> None:
 
 
 def _reason(error: BadInput) -> str:
-    """Say in a line what a verb refuses, without what to try: the verb says it."""
+    """Return the refusal of a verb in a line, without its suggestion, which the verb prints."""
     return "; ".join(str(replace(fault, suggestion="")) for fault in error.faults)
 
 

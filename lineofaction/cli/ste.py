@@ -197,7 +197,7 @@ def _figure(value: float, error: float | None) -> str:
 
 
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:
-    """Return the largest lines of the spectrum above their errors, and those below."""
+    """Return the largest lines of the spectrum above their errors, and the lines below."""
     if curve["period"] > 1:
         sizes, errors = _with_error(curve, "amplitude_um")
         lines = zip(curve["order_name"], sizes, errors or [None] * len(sizes), strict=True)

@@ -49,7 +49,7 @@ class Results:
             raise typer.Exit(EXIT_FAILED)
 
     def collect(self, *, dry_run: bool, older_than: float | None) -> None:
-        """Collect, and tell what."""
+        """Run the retention, and print the removed items."""
         settings = self._settings
         days = settings.retention_days if older_than is None else older_than
         with closing(job_machinery(settings, Registry(), works=False)) as parts:

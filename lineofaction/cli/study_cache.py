@@ -19,7 +19,7 @@ from service.version import solver_version
 def cached_workers(
     study: Study, subjects: Sequence[BoundaryModel], inputs: BoundaryModel, workers: Workers
 ) -> Iterator[Workers]:
-    """Provide workers that keep what they did, for a study that can be resumed; else the same workers.
+    """Provide workers that store finished tasks, for a study that can be resumed; else the same workers.
 
     A study that is interrupted or killed leaves its folder to the next one of the same subjects and inputs.
     """

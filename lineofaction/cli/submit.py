@@ -41,7 +41,7 @@ _OF_BOTH = studies_of("case or scene")
 
 
 def _waited(client: LineOfActionClient, job: str) -> Result:
-    """Say which job it is, wait for it with a bar on a terminal; Ctrl-C says what can be done with it."""
+    """Print the job, wait for it with a bar on a terminal; Ctrl-C prints how to go on with it."""
     screen = Console(stderr=True)
     screen.print(f"job {job}", highlight=False)
     at = f"--service {client.session.exchange.base_url}"
@@ -141,7 +141,7 @@ def _submitted(
 
 
 def run_fetch(name: str, output: Path, service: str | None, *, wait: bool, as_json: bool) -> None:
-    """Fetch by hash, by job, or what an address shows; None: the usual service, or that of the address."""
+    """Fetch a result by hash, job or page address; service None: the usual one, or that of the address."""
     check_writable(output)
     page = PageAddress.of(name) if ":" in name else None
     if page is not None and not os.environ.get("LOA_KEY"):  # a key is that of the usual service

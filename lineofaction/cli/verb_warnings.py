@@ -28,7 +28,7 @@ class _Warned:
 
 
 def begin_warnings(form: str) -> _Warned:
-    """Begin a verb that prints "text", "csv" or "json"; return what its warnings gather in."""
+    """Begin a verb that prints "text", "csv" or "json"; return the list that gathers its warnings."""
     warned = _Warned(form)
     _current.set(warned)
     return warned
@@ -45,7 +45,7 @@ def in_lines(text: str, room: IO[str] | int) -> str:
 
 
 def warn(warnings: Iterable[Json]) -> None:
-    """Gather warnings, and print those that are new: where people read, not into JSON or CSV."""
+    """Gather warnings, and print the new ones if people read the output, not into JSON or CSV."""
     warned = _current.get(None) or begin_warnings("text")
     for warning in warnings:
         if warning["message"] in warned.messages:

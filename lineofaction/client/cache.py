@@ -111,7 +111,7 @@ class ResultCache:
 
 
 def _holds(file: Path, digest: str) -> bool:
-    """Whether a file holds what its name says; if not it is set aside."""
+    """Whether the digest of a file is right; a file with another one is set aside."""
     try:
         with file.open("rb") as stream:
             actual = hashlib.file_digest(stream, "sha256").hexdigest()
@@ -124,7 +124,7 @@ def _holds(file: Path, digest: str) -> bool:
 
 
 def _settle(stream: BinaryIO, file: Path) -> None:
-    """Let what was written appear under its name: a reader sees all of it, or nothing.
+    """Give a written file its name: a reader sees all of the file, or nothing.
 
     What a power failure cuts short is found damaged when it is read, so the disk is not waited for.
     """

@@ -82,13 +82,13 @@ class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls)
         Address of the service; default: the environment variable ``LOA_SERVICE``, else
         ``http://127.0.0.1:8321``.
     cache_dir : str or Path, optional
-        Where fetched results are kept; default: the user's cache directory.
+        Folder of fetched results; default: the user's cache directory.
     transport : httpx2.BaseTransport or httpx2.AsyncBaseTransport, optional
         Replaces the network, for tests.
     timeout : float
         Seconds that connecting, sending, or the next piece of an answer may take.
     attempts : int
-        How often a request is sent before the service counts as unreachable.
+        Number of times a request is sent before the service counts as unreachable.
     patience : float
         Seconds for which the service may be away while a job is waited for: jobs outlast its restart.
     key : str, optional
@@ -126,14 +126,14 @@ class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls)
     def with_terms(
         self, *, title: str = "", tags: Sequence[str] = (), priority: int = 0, max_cost_s: float | None = None
     ) -> Self:
-        """Return this client with terms for what it submits; both share connections and cache.
+        """Return this client with terms for its submissions; both share connections and cache.
 
         Parameters
         ----------
         title : str
             Name of its jobs, up to 200 characters.
         tags : sequence of str
-            What its jobs are found by: up to 16, each of up to 40 letters, digits and ``._:/+-``.
+            Tags by which lists find the jobs: up to 16, each of up to 40 letters, digits and ``._:/+-``.
         priority : int
             -9 to 9: of the jobs that wait the oldest of the highest is next.
         max_cost_s : float, optional

@@ -34,7 +34,7 @@ class _Course(Generic[T]):
         self.answer(None)  # a generator starts with None
 
     def action(self) -> Any:
-        """Return the next action; raises `StopIteration` with the result, or what the operation raises."""
+        """Return the next action; raises `StopIteration` with the result, or the operation's exception."""
         return self._advance(self._reply)
 
     def answer(self, reply: Any) -> None:

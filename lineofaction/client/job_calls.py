@@ -55,11 +55,11 @@ def pages(
     Parameters
     ----------
     path, entries : str
-        Of the list; the name of the entries in its pages.
+        Path of the list; name of the entries in its pages.
     reader : callable
         JSON of an entry to the entry.
     parameters : mapping
-        Of the first page.
+        Query parameters of the first page.
     """
 
     def read(page: dict[str, Any]) -> tuple[list[T], str | None]:
@@ -85,7 +85,7 @@ def pace_of_known(session: Session, timeout: float | None = None, interval: floa
 
 
 def end_of(surface: Surface, job: str, progress: Watch | None, pace: Pace) -> Steps[JobState]:
-    """Wait until a job has ended, in whatever way; raises `StillRunning`, `Unreachable`."""
+    """Wait until a job has ended with any status; raises `StillRunning`, `Unreachable`."""
     watch = progress or surface.session.progress
 
     def look() -> Steps[JobState]:
@@ -110,7 +110,7 @@ class JobCalls(Surface):
     def submit(
         self, process: str, inputs: dict[str, Any], *, idempotency_key: str | None = None
     ) -> Steps[JobState]:
-        """Enter a job; equal work is done once, whoever asks for it.
+        """Enter a job; equal work of several callers is done once.
 
         However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``. Raises
         `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`, `ServiceError`.
@@ -118,7 +118,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         inputs : dict
-            As JSON.
+            Inputs as JSON.
         idempotency_key : str, optional
             Name of this submission: a later one of the same name is the same job. Default: a new name.
         """
@@ -264,7 +264,7 @@ class JobCalls(Surface):
         Parameters
         ----------
         job : str
-            Its identifier.
+            Identifier of the job.
         progress : callable, optional
             Called with every state seen; default: that of the client.
         timeout : float, optional

@@ -56,7 +56,7 @@ class Offer:
 
 
 def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
-    """Return a case, a scene, or what is either of them, as JSON; raises `BadInput`."""
+    """Return a case, a scene, or an input that is either, as JSON; raises `BadInput`."""
     name = {"case": "case_inputs", "scene": "scene_inputs", "case or scene": "inputs_of"}[kind]
     inputs: dict[str, Any] = load(f"{_SUBJECTS}:{name}")(subject)
     return inputs

@@ -201,7 +201,7 @@ class PageCalls(Surface):
         return self.session.exchange.read(lambda examples: dict(examples[0]), "GET", "/v1/examples")
 
     def _case_of(self, name: str, value: str) -> Steps[Any]:
-        """Return the case of a database or of a job, of a scene that of its first mesh; None: it has none."""
+        """Return the case of a database or a job, for a scene the case of its first mesh; None: none."""
         read = self.session.exchange.read
         if name == "database":
             return (yield from read(lambda figures: figures.get("case"), "GET", f"{RESULTS}/{value}"))

@@ -73,7 +73,7 @@ class _Mapping:
         return job
 
     def dismissed(self) -> Steps[None]:
-        """Dismiss what is under way: nobody will take it."""
+        """Dismiss the jobs under way, whose results nobody will take."""
         for job in self._under_way:
             with suppress(ServiceError, RuntimeError):  # away; the client is closed
                 yield from JobCalls.dismiss(self._client, job)

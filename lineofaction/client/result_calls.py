@@ -82,7 +82,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Its content hash.
+            Content hash of the result.
         kind : str
             A name of `lineofaction.gearbox.registry.RESULT_KINDS`.
         """
@@ -128,7 +128,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Its content hash.
+            Content hash of the result.
         against : str, optional
             Another result of the same kind, table or run: the report then compares both.
         """
@@ -159,7 +159,7 @@ class ResultCalls(Surface):
         key : str
             Content hash of the run.
         quantity, bearing, mesh, direction : str
-            As the options of ``loa listen``; empty: chosen as there.
+            Choices as by the options of ``loa listen``; empty: the defaults of these options.
         against : str, optional
             Another run, whose sound is then on the same full scale.
         """
@@ -222,7 +222,7 @@ class ResultCalls(Surface):
         Parameters
         ----------
         key : str
-            Of the database.
+            Content hash of the database.
         torque_n_m : sequence of float
             Increasing, at most twice the highest of the case.
         **options

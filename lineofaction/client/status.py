@@ -99,7 +99,7 @@ class JobState:
 
     @classmethod
     def cached(cls, process: str) -> JobState:
-        """Return the state of what was taken from the client's cache; it is no job of the service."""
+        """Return the state of a result from the client's cache; it is no job of the service."""
         return cls("", process, "successful", "Taken from the cache.", "", 100, 100)
 
     @classmethod

@@ -12,12 +12,12 @@ from model_studies.workers import InProcess, Workers, WorkersLost, dask_workers,
 
 @contextmanager
 def open_executor(processes: int = 1, scheduler: str | None = None) -> Iterator[Workers]:
-    """Provide the workers of a study, and send those of this machine home at the end.
+    """Provide the workers of a study, and end the workers of this machine at the end.
 
     Parameters
     ----------
     processes : int
-        Of this machine.
+        Number of processes of this machine.
     scheduler : str, optional
         Address of a Dask scheduler, or the file in which it left it.
 

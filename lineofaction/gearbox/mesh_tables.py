@@ -37,7 +37,7 @@ class MeshTables:
     Parameters
     ----------
     folder : Path
-        What the files that the scene names are relative to.
+        Folder to which the names of files in the scene are relative.
     source : object
         ``by_hash`` and ``by_case`` return databases.
     """

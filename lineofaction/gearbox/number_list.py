@@ -12,7 +12,7 @@ _BOUND = "FIRST:LAST:STEP, or increasing numbers separated by commas"
 
 _REMEDY = "For example 100:3000:50 or 300,600,900."
 
-_ROUNDING = 1e-9  # of a step
+_ROUNDING = 1e-9  # rounding of the last value over the step
 
 
 def number_list(option: str, text: str) -> list[float]:

@@ -182,7 +182,7 @@ class TryLater(_Failed):
 
     @classmethod
     def after(cls, seconds: int, message: str) -> Self:
-        """Return the error of what is possible again in so many seconds."""
+        """Return the error of a request that is possible again after a number of seconds."""
         error = cls(message)
         error.retry_after_s = seconds
         return error

@@ -29,7 +29,7 @@ Named = TypeVar("Named", InputFile, Path)
 
 
 def file_of(named: InputFile, subject: str) -> InputFile:
-    """Return a file as it is named, of a folder the only one in it that holds what is studied.
+    """Return a named file, or of a folder the only file that holds a subject of the study.
 
     `subject`: of the latter the scene goes first. Of several files the one of that name (``scene.toml``) is
     taken. Raises `BadInput`: the folder holds no such file, or several of other names.
@@ -94,7 +94,7 @@ def usual_speeds(scene: SceneInput, project: Path | None, count: int) -> list[fl
 
 
 def results_in(project: Path) -> list[Path]:
-    """Return the results in a folder and in those that studies wrote into it."""
+    """Return the results in a folder and in the folders that studies wrote into it."""
     return [*sorted(project.glob(f"*{SUFFIX}")), *sorted(project.glob(f"*/*{SUFFIX}"))]
 
 
@@ -110,7 +110,7 @@ def results_by_part(project: Path) -> dict[str, list[Path]]:
 
 
 def tables_in(named: Path, cached: Callable[[Path], Path]) -> dict[str, Path | None]:
-    """Return a table as it is named, of a folder that of each case by its name: its own, else a `cached` one.
+    """Return a named table, or of a folder the table of each case by name: its file, else a `cached` one.
 
     None where there is neither. Raises `BadInput`: there is none at all.
     """

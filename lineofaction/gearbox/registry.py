@@ -76,7 +76,7 @@ def _either(work: Callable[[], _Work[Q, T, F]]) -> Takes[Concatenate[CaseLike | 
 
 
 def _as(call: Callable[P, None], work: Callable[[], _Work[Q, T, F]]) -> Takes[P, Q, T, F]:
-    """Take what a function takes: what is studied, by its name, and the file of what is varied."""
+    """Bind the arguments of a function: the subject by its name, and the file of the inputs."""
     subject, file = signature(call).parameters.values()
     name = subject.name.replace("_", " ")
     return Takes(name, work, from_file=True, bare=file.default is not Parameter.empty)
@@ -377,7 +377,7 @@ def studies_of(subject: str) -> tuple[str, ...]:
 
 
 def figures_model(kind: str) -> type[Figures]:
-    """Return the model of the figures of a kind; those of an unknown one are not declared."""
+    """Return the model of the figures of a kind; the figures of an unknown kind are not declared."""
     from lineofaction.gearbox.schemas.figures import Figures, RunFigures, TableFigures  # noqa: PLC0415 (start-up time)
 
     study = study_of(kind)

@@ -27,7 +27,7 @@ def stamp(file: Path, warnings: Sequence[Json]) -> None:
 
 
 def stamp_scene(file: Path, metadata: Json) -> None:
-    """Write what the metadata of a scene say of its complaint and its unit into the file of a result."""
+    """Write the complaint and the unit of a scene, from its metadata, into the file of a result."""
     with h5netcdf.File(file, "r+") as content:
         for name in (COMPLAINT, UNIT):
             if name in metadata:

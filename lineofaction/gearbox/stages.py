@@ -40,12 +40,12 @@ class PacedFraction:
         self._done = 0.0
 
     def at(self, stage: str, fraction: float, elapsed_s: float) -> float | None:
-        """Return the fraction of the whole when that of a stage is reached, None for an undeclared stage.
+        """Return the fraction of the whole at a fraction of a stage, None for an undeclared stage.
 
         Parameters
         ----------
         fraction : float
-            Of the stage, 0 to 1.
+            Completed fraction of the stage, 0 to 1.
         elapsed_s : float
             Seconds on a clock that never falls.
         """
@@ -62,7 +62,7 @@ class PacedFraction:
         return self._done
 
     def _fraction(self, stage: str, fraction: float) -> float:
-        """Return the time so far over that of the whole as it is expected now."""
+        """Return the time so far over the now expected time of the whole."""
         names = list(self._shares)
         share, ahead = self._shares[stage], sum(self._shares[n] for n in names[names.index(stage) + 1 :])
         before = sum(self._shares[name] for name in self._seen if name != stage)
@@ -94,7 +94,7 @@ class TableFraction:
         self._progress = by_cost(lambda fraction: self._reach(begun + share * fraction), stages)
 
     def at(self, stage: str, fraction: float) -> float:
-        """Return the fraction of the table that is done when that of a stage is."""
+        """Return the completed fraction of the table at a fraction of a stage."""
         self._progress(stage, fraction)
         return self._done
 

@@ -203,13 +203,13 @@ class StudyFunction(Generic[Q, T]):
         inputs, fields
             What is varied, in the units of the names; `help` of the function lists it.
         run : RunResult, optional
-            Whose bearing forces a study of housings takes.
+            Run whose bearing forces a study of housings takes.
         workers : Workers, optional
-            Who does the tasks; default: this process.
+            Executor of the tasks; default: this process.
         progress : callable, optional
             Called as progress(stage, fraction).
         folder : Path, optional
-            Where to put the runs that a study keeps.
+            Folder for the runs that a study stores.
 
         Returns
         -------

@@ -51,7 +51,7 @@ def scene_inputs(scene: SceneLike) -> dict[str, Any]:
 
 
 def inputs_of(source: CaseLike | SceneLike) -> dict[str, Any]:
-    """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
+    """Return ``{"case": ...}``, or with shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
     if isinstance(source, schemas.Case):
         return case_inputs(source)
     if isinstance(source, schemas.SceneInput):
@@ -77,7 +77,7 @@ def _plain(value: Any) -> Any:
 
 
 def _table(field: str, source: object) -> dict[str, Any]:
-    """Return a table; raises `BadInput` for what is none, such as a path as text."""
+    """Return a table; raises `BadInput`: another value, such as a path as text."""
     if isinstance(source, Mapping):
         return dict(source)
     remedy = "A file is given as pathlib.Path."

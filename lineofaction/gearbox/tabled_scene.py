@@ -10,10 +10,12 @@ from typing import Any
 from fe_contact.options import Run
 from fe_contact.ste import PairGeometry, SteDatabase
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import allowed_misalignment, boundary_errors, case_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import allowed_misalignment, case_json
+from lineofaction.gearbox.convert.case_plausibility import case_warnings, phrased_for
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import housings_in
-from lineofaction.gearbox.convert.plausibility import case_warnings, phrased_for, scene_warnings, within
+from lineofaction.gearbox.convert.plausibility import scene_warnings, within
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene, dynamic_scene
 from lineofaction.gearbox.mesh_tables import Steps
 from lineofaction.gearbox.problems import BadInput
@@ -45,7 +47,7 @@ def tabled_scene(
     Parameters
     ----------
     folder : Path
-        What the files that the scene names are relative to.
+        Folder to which the names of files in the scene are relative.
     table_of : callable
         ``table_of(index, mesh)``, the database of a mesh.
     home : Path
@@ -55,7 +57,7 @@ def tabled_scene(
     warn : callable
         Takes what is implausible about cases and scene.
     cases : CheckedCases
-        Of this scene: `table_of` goes on from what is checked here.
+        Checked cases of this scene: `table_of` continues from these checks.
     cached_table : callable
         ``cached_table(case)``, the table of a case that was computed before, which needs no check, or None.
 

@@ -20,9 +20,9 @@ from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 from host.directories import cache_home
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase, CheckedCases
 from lineofaction.gearbox.convert.housings import HousedScene, housings_in
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.from_rexs.assumptions import Assumption
 from lineofaction.gearbox.from_rexs.opened import OpenedUnit
@@ -33,7 +33,7 @@ from lineofaction.gearbox.rexs.files import read_rexs
 from lineofaction.gearbox.schemas import Case, read_model, read_table, validated
 from lineofaction.gearbox.schemas.files import READERS, written_out
 from lineofaction.gearbox.schemas.named_files import in_folder
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
@@ -59,7 +59,7 @@ def open_unit(
     Parameters
     ----------
     file : path
-        Of any version of REXS: XML, JSON or a ZIP of them.
+        File in any version of REXS: XML, JSON or a ZIP of them.
     assume : iterable of str
         Values over those of the file, ``ID.attribute=value`` in its units.
     overrides : mapping of str to object, optional
@@ -76,7 +76,7 @@ def open_unit(
     if overrides and unit.scene is not None:
         table = _over(overrides, Path(file)).applied(unit.scene.model_dump(mode="json", exclude_unset=True))
         unit = replace(unit, scene=validated(SceneInput, written_out(table, in_folder(Path()), READERS)))
-    _warn(left_out_warnings(unit.left_out))
+    _warn(omission_warnings(unit.omitted))
     return unit
 
 
@@ -164,7 +164,7 @@ def tabled(
 
 
 def _tabled(scene: SceneInput, folder: Path, progress: Progress, workers: Workers) -> TabledScene:
-    _warn(left_out_warnings(scene.left_out))
+    _warn(omission_warnings(scene.left_out))
     cases = CheckedCases()
     computed = ComputedTables(lambda case: database_of(cases.of(case), cache_home(), progress, workers))
     tables = MeshTables(folder, computed)
@@ -219,12 +219,12 @@ def _made(study: Study, scene: SceneInput, folder: Path, means: Means) -> Tabled
     """Return a scene with its tables, or only with its housings, as the study takes it."""
     if study.run.tables:
         return _tabled(scene, folder, means.report, means.workers)
-    _warn(left_out_warnings(scene.left_out))
+    _warn(omission_warnings(scene.left_out))
     return HousedScene(scene, housings_in(scene, cache_home(), folder, means.report))
 
 
 def _scene(subject: Any) -> tuple[SceneInput, Path]:
-    """Return a scene and what its files are relative to; that of a unit has its cases written out."""
+    """Return a scene and the folder of its files; a unit's scene has its cases written out."""
     if not isinstance(subject, OpenedUnit):
         return scene_of(_source(subject))
     if subject.scene is None:
@@ -253,7 +253,7 @@ def _source(subject: Any) -> Any:
 
 
 def _warn(findings: Iterable[Mapping[str, Any]]) -> None:
-    """Warn of what is implausible, each once, where the caller's own code stands."""
+    """Warn of each finding once, at the line of the caller's code."""
     frame, level = currentframe(), 0
     while frame and str(frame.f_globals.get("__name__")).startswith("lineofaction."):
         frame, level = frame.f_back, level + 1

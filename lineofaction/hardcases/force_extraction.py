@@ -119,7 +119,7 @@ def _lift_off() -> Sequence[Measured]:
     "Position repeats; beyond the top the curve goes on straight and is flagged; no number is refused.",
 )
 def _queries_outside() -> Sequence[Measured]:
-    """Ask beyond every end of the table, far away, and for what is no number."""
+    """Query beyond every end of the table, far away, and with NaN."""
     position = even_positions(32)
     compliance = COMPLIANCE * (1.0 + 0.3 * np.cos(2.0 * np.pi * position))
     table = table_of(position, _FORCE, compliance[:, None] * _FORCE, np.zeros(32))

@@ -60,7 +60,7 @@ def _headline(part: str, headline: Headline) -> Headline:
 
 
 def _section(title: str, parted: _Parted) -> Section:
-    """Return one section of those of a title: figures of one key as one, tables by their parts."""
+    """Return one section for a title: figures of one key as one, tables by their parts."""
     figures: dict[str, dict[str, Figure]] = {}
     for name, section in parted:
         for figure in section.figures:
@@ -83,7 +83,7 @@ def _table(part: str, section: Section, table: Table) -> Table:
 
 
 def _figure(figures: Mapping[str, Figure]) -> Figure:
-    """Return one figure of those of parts: their panels beside each other, the same sentences once."""
+    """Return one figure for several parts: their panels side by side, equal sentences once."""
     (first, figure), *others = figures.items()
     titles = {name: figure.title for name, figure in figures.items()}
     head = _head(list(titles.values()))

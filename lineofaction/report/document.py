@@ -41,7 +41,8 @@ from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import presentation_of
 from lineofaction.report.run.page import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from lineofaction.report.run.view import RunView
-from lineofaction.report.ste.page import static_alarms, static_headlines, static_making, static_results
+from lineofaction.report.ste.headlines import static_headlines
+from lineofaction.report.ste.page import static_alarms, static_making, static_results
 from lineofaction.report.unit_picture import is_picture, one_picture, picture_sections
 from model_studies.netcdf import UnreadableFile, opened_netcdf
 
@@ -78,7 +79,7 @@ def read_stored(study: Study, file: Path) -> Any:
 
 
 def page_with_database(study: Study, result: object, database: SteDatabase | None) -> Page:
-    """Return the page of a study's result; beside a database, if there is one."""
+    """Return the page of a study's result, together with its database if there is one."""
     presentation = presentation_of(study)
     if database is None or presentation.with_database is None:
         return presentation.page(result)
@@ -111,7 +112,7 @@ class Inputs:
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:
-    """Read every file as what it says it is.
+    """Read every file by its kind.
 
     Raises `BadInput`: a file is neither, is damaged, there are two of a kind, or there is none at all.
     """
@@ -198,7 +199,7 @@ def _read(file: Path, kind: str) -> Any:
 
 
 def page_of(read: Inputs) -> Page:
-    """Put the page together: what is implausible, then all sections in the order of their parts.
+    """Return the page: warnings, then all sections in the order of their parts.
 
     A study alone has its own page.
     """
@@ -209,7 +210,7 @@ def page_of(read: Inputs) -> Page:
 
 
 def _page_of(read: Inputs) -> Page:
-    """Put the page together, without what the files warn of."""
+    """Return the page without the warnings of the files."""
     if read.only_page is not None:
         return read.only_page
     database, run = read.database, read.run
@@ -372,7 +373,7 @@ def write_page(
     *,
     still_only: bool = False,
 ) -> list[Path]:
-    """Write a page from its caller, under what is implausible; parameters as for `write_report`.
+    """Write a page of the caller under its warnings; parameters as for `write_report`.
 
     `still_only`: its plots are pictures alone.
     """
@@ -400,7 +401,7 @@ def _in_one_column(figure: Figure) -> bool:
 
 
 def _printed(page: Page, text: str, output: Path) -> bytes:
-    """Print a page; what its results were made from and with is a file in it."""
+    """Print a page; the inputs and versions of its results are attached as a file."""
     content = pdf(text, output)
     if not page.records:
         return content
@@ -421,9 +422,9 @@ def write(result: Any, file: Path | str) -> Path:
     Parameters
     ----------
     result : object
-        Of `analyze`, `simulate` or a study.
+        Result of `analyze`, `simulate` or a study.
     file : path
-        Its ending says as what.
+        File whose ending names the form.
     """
     path = Path(file)
     if hasattr(result, "to_netcdf") and path.suffix == ".nc":

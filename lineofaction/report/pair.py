@@ -240,7 +240,7 @@ def _gear_line(name: str, gear: Json, across: float) -> Line:
 
 
 def _near(gear: Json, across: float) -> IntArray:
-    """Return the numbers of the teeth near the mesh: as far to either side as twice what is drawn, or all."""
+    """Return the numbers of the teeth near the mesh, to either side twice the drawn distance, or all."""
     count, reach = gear["teeth"], 2.0 * across / gear["radius_mm"]["root"]
     reach_teeth = math.ceil(reach * count / (2.0 * math.pi)) + 1
     return np.arange(count) if reach >= 1.0 else np.arange(-reach_teeth, reach_teeth + 1)
@@ -252,7 +252,7 @@ def _half(of_class: Callable[[Toothing, int], float], gear: Toothing, tolerance_
 
 
 def _profile(name: str, pair: ParallelAxes, tolerance_class: int | None) -> Panel:
-    """Draw the K-chart of a gear: what is removed over its roll angle; at three places of a twisted flank."""
+    """Draw the K-chart of a gear: removed material over roll angle, at three places of a twisted flank."""
     gear: Toothing = getattr(pair, name)
     roll, half = _usable(gear), 0.5 * gear.face_width
     faces: tuple[tuple[str, float, Dash], ...] = (
@@ -456,7 +456,7 @@ def _point_row(name: str, point: Json) -> tuple[str, ...]:
 
 
 def data_sheet_section(pair: ParallelAxes, tolerance_class: int | None = None) -> Section:
-    """Return the sheet as a section: what speaks against it, the drawing, then the tables."""
+    """Return the sheet as a section: the warnings, the drawing, then the tables."""
     remarks = " ".join(f"Warning: {remark['message']}" for remark in pair_remarks(pair))
     text = remarks or "No warnings: undercut, backlash, tip clearance, tip thickness, contact ratio."
     figures = (pair_drawing(pair, tolerance_class), *teeth_as_made(pair))
@@ -482,5 +482,5 @@ def _text(value: float, unit: str) -> str:
 
 
 def _ratio(value: float) -> str:
-    """Write a ratio of speeds; what is zero but for rounding is zero."""
+    """Return a ratio of speeds as text; rounding about zero is zero."""
     return f"{round(value, 3) + 0.0:.3f}"

@@ -51,7 +51,7 @@ def presentation_of(study: Study) -> Presentation:
 
 
 def _of_its_unit(presentation: Presentation) -> Presentation:
-    """Return a presentation with what a result says of its unit.
+    """Return a presentation with the picture of the result's unit and the marks of its complaint.
 
     The page begins with its picture; what is complained of is marked in all plots.
     """
@@ -74,7 +74,7 @@ def dynamics_presentation(
     headlines: Callable[[Any], tuple[Headline, ...]],
     text: Callable[[Any], Iterable[Table | str]],
 ) -> Presentation:
-    """Return the presentation of a study of a scene, whose metadata say what its model neglects."""
+    """Return the presentation of a study of a scene, whose metadata name neglected effects."""
 
     def complete_text(result: Any) -> Iterator[Table | str]:
         yield from text(result)
@@ -88,7 +88,7 @@ def dynamics_presentation(
 
 
 def model_text(metadata: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield the cost of the housings of a scene, and what its model neglects; nothing where there is none."""
+    """Yield the cost of the housings of a scene, and the neglected effects; empty: none."""
     yield from cost_tables(metadata)
     if metadata["effect_ledger"] is None:
         return
@@ -97,7 +97,7 @@ def model_text(metadata: Mapping[str, Any]) -> Iterator[Table | str]:
 
 
 def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
-    """Yield the decisions on the effects of a scene as a table, and a line on those that change nothing."""
+    """Yield the decisions on the effects of a scene as a table, and a line on negligible effects."""
     columns, rows, trifles = scene_table(ledger)
     if rows:
         yield Table("Effects: change without each", tuple(columns), tuple(map(tuple, rows)))
@@ -110,7 +110,7 @@ def effect_text(ledger: Mapping[str, Any]) -> Iterator[Table | str]:
 def dynamics_page(
     title: str, figures: tuple[Figure, ...], headlines: tuple[Headline, ...], metadata: Mapping[str, Any]
 ) -> Page:
-    """Return the page of a study of a scene: its figures, effects, cost of its housings, what does not hold.
+    """Return the page of a study of a scene: figures, effects, cost of its housings, failed assumptions.
 
     `metadata` hold `effect_ledger`, None of what has no model of its dynamics.
     """

@@ -77,7 +77,7 @@ def _verdicts(required: Requirement, headlines: Sequence[Headline]) -> list[str]
 
 
 def _band(headline: Headline, value: float) -> tuple[float, float, str]:
-    """Return the ends of what a remark states, an error or bounds, and its words; none has no end."""
+    """Return the ends of a remark's error or bounds, and its words; infinite: no end."""
     band = _BAND.match(headline.remark)
     if band is None:
         return value, value, ""

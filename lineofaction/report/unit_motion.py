@@ -22,7 +22,7 @@ MAX_FACETS = 60_000
 """Most facets of a surface; a surface with more is drawn by the corners of its triangles."""
 VELOCITY_REFERENCE = 5e-8
 """Velocity of 0 dB, m/s, root mean square: 1 pW/m^2 of plane waves where rho c is 400 N s/m^3."""
-QUIETEST = 1e-8  # of the reference
+QUIETEST = 1e-8  # least velocity over the reference
 _LENGTHS = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0], dtype=bool)
 
 

@@ -131,7 +131,7 @@ def _points(
 
 
 def _write(sheet: Sheet, points: list[tuple[str, float, float]], at: float, side: str) -> None:
-    """Write names in a column that begins or ends at a pixel, each with a line to what it names."""
+    """Write names in a column that begins or ends at a pixel, each with a line to its part."""
     width, height = SIZE
     middles = _spread_rows([row for _, _, row in points])
     for (text, column, row), middle in zip(points, middles, strict=True):

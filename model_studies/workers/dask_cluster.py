@@ -50,7 +50,7 @@ class ByDask:
     _sent: dict[int, tuple[object, str, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit everything, yield in order; what is not yielded any more is left.
+        """Submit all tasks and yield their results in order; unread results are left.
 
         A task is named by its content: what several callers want at the same time is done once, and what is
         `cluster_cached` is done once while the cluster lasts.
@@ -68,7 +68,7 @@ class ByDask:
         return self._in_order(futures, keep=getattr(function, "cluster_cached", False))
 
     def _send(self, shared: object) -> tuple[str, Any]:
-        """Return digest and future of what is shared, sent unless it was before."""
+        """Return digest and future of the shared input, which is sent unless it was sent before."""
         known = self._sent.get(id(shared))
         if known is None or known[2].status == "cancelled":
             self._sent.pop(id(shared), None)
@@ -114,7 +114,7 @@ class ByDask:
             self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - MAX_RESULTS)])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
-        """Wait for a result as long as there is somebody to make it; return it with those ready after it."""
+        """Wait for a result as long as a worker exists; return it with those ready after it."""
         from asyncio import CancelledError as Cancelled  # noqa: PLC0415 (start-up time)
 
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
@@ -146,7 +146,7 @@ class ByDask:
         return results
 
     def _ended(self, future: Any) -> bool:
-        """Whether a task ended while it was looked at."""
+        """Whether a task ended within one interval of waiting."""
         from distributed import wait  # noqa: PLC0415 (an extra)
 
         try:

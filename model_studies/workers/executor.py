@@ -158,7 +158,7 @@ class ByExecutor:
     _packed: dict[int, tuple[object, Packed]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit everything, yield in order; what is not yielded any more is cancelled."""
+        """Submit all tasks and yield their results in order; unread results are cancelled."""
         packed = self._pack(shared)
         try:
             futures = [self.executor.submit(do_task, function, item, packed) for item in items]
@@ -223,7 +223,7 @@ class Workers(Protocol):
 
     @property
     def cost(self) -> RunCost:
-        """Cost of remote tasks, beside the CPU time of this process."""
+        """Cost of remote tasks, without the CPU time of this process."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield ``function(shared, item)`` of every item, in their order; `WorkersLost`: nobody is left.
@@ -272,7 +272,7 @@ class OrHere:
         return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Yield the results of the others, and from where they are lost those of this process."""
+        """Yield the results of the workers, and of this process once they are lost."""
         done = 0
         if not self.cost.lost:
             try:

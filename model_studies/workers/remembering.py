@@ -58,7 +58,7 @@ class Remembering:
     def _files(
         self, function: Callable[..., Any], shared: object, items: Sequence[object]
     ) -> list[Path] | None:
-        """Return where the results of tasks are kept; None if nobody knows what tells the tasks apart."""
+        """Return the files of the results of tasks; None if the content of the tasks cannot be identified."""
         try:
             known = self._digests.get(id(shared))
             if known is None:

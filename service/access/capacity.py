@@ -12,7 +12,7 @@ from threading import Lock
 
 import structlog
 
-from host import most_open_files
+from host import max_open_files
 from lineofaction.gearbox.problems import BadInput, TooManyHeld, TooManyRequests
 from service.access.holder import Holder
 from service.access.quotas import Quota
@@ -139,7 +139,7 @@ def capacity(workers: int) -> Capacity:
 
     Raises `BadInput`: it may open too few files to serve at all.
     """
-    files = most_open_files()
+    files = max_open_files()
     reserved = _OTHER_FILES + _FILES_OF_A_WORKER * workers
     if files - reserved < _MIN_CONNECTIONS:
         bound = (

@@ -77,7 +77,7 @@ class Holder:
 
 
 def instant_of(text: str) -> datetime:
-    """Return an instant as the file of keys has it; raises ValueError of what has no time zone."""
+    """Return an instant from the file of keys; raises ValueError: it has no time zone."""
     instant = datetime.fromisoformat(text)
     if instant.tzinfo is None:
         raise ValueError(text)

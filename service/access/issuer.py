@@ -34,7 +34,7 @@ class Issuer:
     url : str
         The issuer, as its tokens name it.
     keys_url : str, optional
-        Where its keys are; default: as its configuration says, on its own host.
+        Address of the keys; default: the address in the issuer's configuration, on its own host.
     clock : callable
         Seconds, steady; replaced by tests.
     """

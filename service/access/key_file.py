@@ -116,7 +116,7 @@ class KeyFile:
         return secret
 
     def rotate(self, name: str, *, overlap: str = "0h", expires: str | None = None) -> str:
-        """Enter another key of this name and return it; those there are end after `overlap`.
+        """Enter another key of this name and return it; the present keys end after `overlap`.
 
         Raises `BadInput`: there is no key of this name, or a duration is none.
 
@@ -190,7 +190,7 @@ def _unknown(name: str, known: Iterable[AccessKey]) -> BadInput:
 
 
 def _chosen(rights: dict[str, Any]) -> dict[str, Any]:
-    """Return rights as a holder has them; raise of what is none."""
+    """Return rights as a holder has them; raises `BadInput` for an invalid right."""
     chosen = {name: value for name, value in rights.items() if value is not None}
     for field in LIMITS:
         minimum = MIN.get(field, 1)

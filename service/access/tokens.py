@@ -68,7 +68,7 @@ class OidcSettings(BaseSettings):
     @field_validator("algorithms")
     @classmethod
     def _asymmetric(cls, names: str) -> str:
-        """Refuse what anybody could sign with who knows a public key, or nothing."""
+        """Refuse algorithms by which anybody with a public key, or without a key, could sign."""
         if not {name.strip() for name in names.split(",")} <= set(ALGORITHMS):
             raise ValueError(f"some of {', '.join(ALGORITHMS)}")
         return names

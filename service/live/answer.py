@@ -50,7 +50,7 @@ def answer_of(
     ----------
     order : LiveOrder
     *further : object
-        What the work is called with behind its inputs.
+        Further arguments of the work after its inputs.
     note : callable
         Writes the exception being handled, a defect, into the log.
     write : callable

@@ -26,11 +26,11 @@ class KeptAnswers:
     folder : Path
         Made with the first answer. Several processes may use it at once.
     most_bytes : int
-        What it holds at most.
+        Largest size of the folder in bytes.
     """
 
-    def __init__(self, folder: Path, most_bytes: int = MAX_BYTES) -> None:
-        self._folder, self._most_bytes = folder, most_bytes
+    def __init__(self, folder: Path, max_bytes: int = MAX_BYTES) -> None:
+        self._folder, self._max_bytes = folder, max_bytes
 
     def find(self, tag: str) -> bytes | None:
         """Return the body of a tag, None if it is not kept."""
@@ -50,7 +50,7 @@ class KeptAnswers:
             self._folder.mkdir(parents=True, exist_ok=True)
             draft.write_bytes(body)
             draft.replace(path)
-            evict(self._folder, self._most_bytes)
+            evict(self._folder, self._max_bytes)
         except OSError as error:
             with contextlib.suppress(OSError):
                 draft.unlink()

@@ -102,7 +102,7 @@ class _Stop:
         _thread.interrupt_main()
 
     def heed(self, _signal: int, _frame: object) -> None:
-        """Stop what is at work, if it is that order."""
+        """Stop the work in progress, if it is on that order."""
         if self._at_work and self._requested == self._begun:
             self._at_work = False
             raise _Stopped

@@ -103,7 +103,7 @@ class _LiveProcess:
             raise _WorkerGone
 
     def end_group(self) -> None:
-        """Kill the process and what it started; whoever asks it is told that it is gone. Any thread may."""
+        """Kill the process and its children; its caller gets an error of that. Any thread may."""
         self._child.end_group()
 
     def close(self) -> None:

@@ -27,10 +27,10 @@ class QuestionWorker(Protocol):
         """Return the JSON answer; raises `ServiceError`, `Superseded` if the question became obsolete."""
 
     def rest(self) -> None:
-        """Give back what is held while nobody asks; the next question begins anew."""
+        """Give back the memory held while nobody asks; the next question begins anew."""
 
     def stop(self) -> None:
-        """End what is answered now, whose caller is told that the service stops. Any thread may."""
+        """End the question in progress, whose caller gets the error of a stop. Any thread may."""
 
     def close(self) -> None:
         """End all processes, once nothing is answered; the next question begins anew."""
@@ -44,9 +44,9 @@ class QuestionPool:
     workers : sequence of QuestionWorker
     limits : Limits
     what : str
-        What the questions are, plural, as refusals name them.
+        Plural noun for the questions in refusals.
     for_submissions : int
-        How many of the workers, the first ones, answer only questions that submissions wait for.
+        Number of workers, the first ones, that answer only questions of waiting submissions.
     idle_s : float
         Time without a question after which a worker ends.
     """
@@ -86,7 +86,7 @@ class QuestionPool:
         return question.answer
 
     def stop(self) -> None:
-        """Refuse what waits, end the workers; a question that comes later begins them anew."""
+        """Refuse the waiting questions, end the workers; a later question begins them anew."""
         with self._changed:
             self._stopping = True
             for question in self._turns.empty():

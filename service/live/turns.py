@@ -1,4 +1,4 @@
-"""Whose turn it is: questions that wait for an answer, in turn by access key.
+"""Turns of questions that wait for an answer: each access key has a line.
 
 A key has its own line, so that whoever floods a service waits behind itself alone. In its line a slider,
 which asks again as it moves, has one place: a newer question takes the place of the one that waits, and stops
@@ -59,7 +59,7 @@ class Question:
 class Limits:
     """Most questions of one key and of all keys.
 
-    Without keys all callers are one to the service: for them only the last one holds.
+    Without keys all callers count as one, for whom only `in_all` holds.
     """
 
     answered: int = 1
@@ -87,7 +87,7 @@ class Turns:
     ----------
     limits : Limits
     what : str
-        What waits, plural, as a refusal names it.
+        Plural noun for the waiting questions in a refusal.
     """
 
     def __init__(self, limits: Limits, what: str) -> None:
@@ -118,7 +118,7 @@ class Turns:
         self._make_obsolete(question)
 
     def next(self, fits: Callable[[Question], bool] = lambda _: True) -> Question | None:
-        """Return the question whose turn it is, of those that fit; it is answered from now on."""
+        """Return the question whose turn it is among those that fit; it is in progress from now on."""
         busy = self._busy()
         for line in sorted(self._lines, key=lambda line: not line.submits):
             name, question = next(iter(self._lines[line].items()))

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from host import cpu_seconds
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.live import CondensedCase, condensed_of, live_curves
 from lineofaction.gearbox.convert.plan import plan_json, plan_of
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
 

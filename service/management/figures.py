@@ -94,7 +94,7 @@ def process_registry(
     scheduler: Scheduler | None,
     settings: Settings,
 ) -> CollectorRegistry:
-    """Return the metrics that every process of the service has; who answers requests adds those.
+    """Return the metrics of every process of the service; processes that answer requests add theirs.
 
     Labels have values of this program only, never a caller's, so that their number is bounded.
     """

@@ -43,7 +43,7 @@ class ManagementServer:
     Parameters
     ----------
     host, port : str, int
-        Where it listens; port 0: a free one.
+        Address of the port; port 0: a free one.
     metrics : callable
         Returns the text exposition.
     """
@@ -134,7 +134,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
     def version_string(self) -> str:
-        """Return the name of the server, without that of the interpreter."""
+        """Return the name of the server, without the name of the interpreter."""
         return "lineofaction"
 
     def log_message(self, format: str, *arguments: object) -> None:  # noqa: A002 (the name of http.server)

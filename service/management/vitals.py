@@ -48,7 +48,7 @@ class Vitals:
     serving: Callable[[], str] = lambda: ""
 
     def fault_of_health(self) -> str:
-        """Return why the process is to be started again."""
+        """Return the reason to start the process again; empty: none."""
         if self.scheduler is not None and not self.scheduler.alive:
             return "The scheduler does not run. Restart the service."
         if self.scheduler is not None and self.scheduler.turn_age_s > TURN_WITHIN_S:
@@ -56,5 +56,5 @@ class Vitals:
         return self.serving()
 
     def fault_of_readiness(self) -> str:
-        """Return why it cannot work now: what cannot be written, or its own health."""
+        """Return the reason why the process cannot work now: a failed write, or its own health."""
         return self.writes.outcome().fault or self.fault_of_health()

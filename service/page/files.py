@@ -60,5 +60,5 @@ def page_file(name: str) -> PageFile | None:
 
 @lru_cache(maxsize=1)
 def _packaged() -> dict[str, Path]:
-    """Return the files of this package by name: only those can be requested."""
+    """Return the files of this package by name; no other file can be requested."""
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}

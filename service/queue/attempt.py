@@ -59,7 +59,7 @@ class _AttemptTrace:
         return begun_span(name, traceparent_of(self._attempt), at_s)
 
     def see(self, steps: Iterable[Step]) -> None:
-        """Take what the worker reported: another name ends a stage and begins the next."""
+        """Take the worker's reports: another name ends a stage and begins the next."""
         for step in steps:
             name = stage_name(step.stage)
             if name != self._name and self._left > 0:
@@ -67,7 +67,7 @@ class _AttemptTrace:
                 self._stage = self._begun(name, step.at, step.cpu_s)
 
     def end(self, how: str, usage: Usage | None) -> None:
-        """End the attempt; what it took is known if its worker was reaped."""
+        """End the attempt; its use of resources is known if its worker was reaped."""
         now, fault = time.time(), "" if how == "done" else how
         of_stage, of_attempt = dict[str, Fact](), dict[str, Fact]({"loa.outcome": how})
         if usage is not None:
@@ -90,7 +90,7 @@ class Attempt:
     fraction: PacedFraction
 
     def note_end(self, how: str) -> None:
-        """Count and log how the worker ended and, if it has been reaped, what it took."""
+        """Count and log the end of the worker and, if it has been reaped, its use of resources."""
         self.figures.ended(self.claim.process, how, self.worker)
         for reason in self.worker.warnings:
             logger.warning("worker warns", **self.worker.log_fields, reason=reason)
@@ -123,7 +123,7 @@ class Attempt:
 def begun(
     settings: Settings, process: Process, claim: Claim, crew: Crew, store: ResultStore, figures: WorkerFigures
 ) -> Attempt:
-    """Let a claim be worked on; raises what keeps the system from it, or that a result it reads is gone."""
+    """Start the work on a claim; raises: the system prevents it, or an input result is gone."""
     workspace = settings.data_directory / "work" / claim.id
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)

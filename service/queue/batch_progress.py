@@ -50,7 +50,7 @@ NOBODY = Family({}, 1.0)
 
 
 def batch_steps(connection: Connection) -> list[Update]:
-    """Return the changes of those batches that go on and whose jobs have moved."""
+    """Return the changes of running batches whose jobs have moved."""
     columns = (computations.c.id.label("row"), computations.c.message, computations.c.fraction)
     running = (computations.c.state == "running") & of_batch
     rows = connection.execute(
@@ -68,7 +68,7 @@ def batch_steps(connection: Connection) -> list[Update]:
 
 
 def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
-    """Count the jobs of batches by state, and add up what they cost."""
+    """Count the jobs of batches by state, and add up their costs."""
     state = job_state()
     done = case((state.in_(ENDED), 1.0), else_=computations.c.fraction)
     sums = (func.count(), func.sum(jobs.c.weight), func.sum(jobs.c.weight * done))
@@ -86,7 +86,7 @@ def _families(connection: Connection, parents: list[str]) -> dict[str, Family]:
 
 
 def end_computations(connection: Connection, which: ColumnElement[bool], values: dict[str, Any]) -> None:
-    """End computations with the state in `values`, and count those that had begun.
+    """End computations with the state in `values`, and count the begun ones.
 
     A step that is repeated after its transaction was committed must find none of them with `which`.
     """

@@ -109,7 +109,7 @@ class Claims:
 
     @retried
     def _begin(self, row: Row[Any]) -> bool:
-        """Let what waits run, unless it was dismissed meanwhile; a repeated step finds it running."""
+        """Let a waiting computation run, unless it was dismissed; a repeated step finds it running."""
         attempt, table = row.attempts + 1, computations.c
         waits = (table.state == "accepted") | (table.state == "running") & (table.attempts == attempt)
         values = {"attempts": attempt, "started": row.started or now(), "state": "running"}
@@ -207,12 +207,12 @@ class Claims:
 
 
 def _running(claims: Collection[Claim]) -> ColumnElement[bool]:
-    """Condition of those of the claimed computations that run."""
+    """Return the condition of claimed computations that run."""
     return computations.c.id.in_([claim.id for claim in claims]) & (computations.c.state == "running")
 
 
 def _waited_long_enough() -> ColumnElement[bool]:
-    """Condition of what has waited since its lost runs."""
+    """Return the condition of computations that have waited long enough since their lost runs."""
     table, time = computations.c, datetime.now(UTC)
     due = [
         (table.lost_runs == lost) & (table.updated <= instant(time - timedelta(seconds=wait_s(lost))))

@@ -91,7 +91,7 @@ class Task:
         return {key: file.read_bytes() for key, file in self.order.stored.items()}
 
     def take(self, done: Done) -> None:
-        """Take what a worker has done; its files are put where a child of this machine leaves them."""
+        """Take the products of a worker; its files go where a child of this machine leaves them."""
         products = []
         for number, (product, content) in enumerate(zip(done.outcome.products, done.contents, strict=True)):
             file = self.order.workspace / f"{number}_{product.file.name}"
@@ -103,7 +103,7 @@ class Task:
         self.end(replace(done.outcome, products=tuple(products)))
 
     def end(self, outcome: Outcome) -> None:
-        """Take how it ended; what comes later is of no interest."""
+        """Take the outcome of the task; later reports are ignored."""
         self._outcome = self._outcome or outcome
 
     @property
@@ -166,7 +166,7 @@ class Cluster:
             )
 
     async def _fault(self, client: Client) -> tuple[str, str]:
-        """Return why no work is sent, and what to do; empty: it is. Counts the threads that work."""
+        """Return why no work is sent, with a remedy; empty: it is sent. Counts the working threads."""
         threads = await client.nthreads()  # type: ignore[no-untyped-call]
         self._known &= threads.keys()
         start = f"dask worker {self._address} --nthreads 1 --nworkers 4"
@@ -231,7 +231,7 @@ class Cluster:
             self.maximum = 0
 
     async def _serve(self, client: Client) -> None:
-        """Submit what is wanted, cancel what is not; end when the connection is lost."""
+        """Submit wanted tasks, cancel others; end when the connection is lost."""
         following: dict[Task, asyncio.Task[None]] = {}
         names = map(str, await client.list_datasets())  # type: ignore[no-untyped-call]
         left = {name for name in names if name.startswith(self._name)}
@@ -270,7 +270,7 @@ class Cluster:
         await client.unpublish_dataset(name)
 
     async def _follow(self, client: Client, task: Task) -> None:
-        """Let a task be done, and take what comes of it."""
+        """Let a task be done, and take its products."""
         task.await_anew()
         try:
             done = await self._done(client, task, await asyncio.to_thread(task.contents))
@@ -284,7 +284,7 @@ class Cluster:
         self._notify()
 
     async def _done(self, client: Client, task: Task, files: Mapping[str, bytes]) -> Done | Outcome | None:
-        """Submit a task, or join the one there is; return what was done, why nothing was, None: try anew."""
+        """Submit a task, or join the present one; return its products, or the reason; None: try anew."""
         from distributed import KilledWorker  # noqa: PLC0415 (an extra)
 
         arguments = (task.order.line(), files, self._name, program())
@@ -316,7 +316,7 @@ class Cluster:
             task.hear(report)
 
     def _say(self, fault: str) -> None:
-        """Log what keeps jobs waiting, once; and that it is over."""
+        """Log once the fault that keeps jobs waiting, and its end."""
         if fault != self._away:
             (logger.warning if fault else logger.info)(
                 "cluster away" if fault else "cluster back", reason=fault

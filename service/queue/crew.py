@@ -41,7 +41,7 @@ class Children:
         return Worker(replace(order, memory_limit_mb=memory_mb), log, self._launcher.launch)
 
     def hurry(self) -> None:
-        """Begin what is being begun at once: it is to stop."""
+        """Finish at once the starts in progress, since the scheduler stops."""
         self._launcher.hurry()
 
     def close(self) -> None:

@@ -44,7 +44,7 @@ def differences_of(column: str) -> Differences:
 
 
 def _leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield paths and values of what is no table and no list of tables."""
+    """Yield paths and values that are no table and no list of tables."""
     if isinstance(value, dict):
         for name, part in value.items():
             yield from _leaves(part, f"{path}.{name}" if path else name)

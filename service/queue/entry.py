@@ -56,7 +56,7 @@ class Entry:
         self._project, self._caller, self._terms = project, caller, terms
 
     def job(self, process: str, work: BatchCase, looked: str, name: str | None = None) -> str:
-        """Enter a job; return its identifier, or that of the equal one that answers; as `batch`."""
+        """Enter a job; return its identifier, or that of an equal job that answers; as `batch`."""
         return self._job(self._identifier(process, name), process, self._addressed(work), looked)
 
     def batch(self, process: str, cases: Sequence[BatchCase], looked: str, name: str | None = None) -> str:
@@ -72,7 +72,7 @@ class Entry:
         return identifier
 
     def _identifier(self, what: str, name: str | None) -> str:
-        """Return the identifier of a job; that of one with a name, which another caller's is not."""
+        """Return the identifier of a job; a named job has one that no other caller's can have."""
         if name is None:
             return str(uuid.uuid4())
         named = [self._caller.name, what, name]
@@ -193,7 +193,7 @@ def widen_terms(connection: Connection, shared: str, priority: int, limit: float
 
 
 def _is_entered(connection: Connection, which: ColumnElement[bool], works: Sequence[BatchCase]) -> bool:
-    """Whether jobs are in already; raises if they are other work than that of this program's name."""
+    """Return whether jobs are entered; raises `BadInput`: the name belongs to other work of this program."""
     known = select(computations.c.key, computations.c.program).join(jobs)
     entered = connection.execute(known.where(which).order_by(jobs.c.place)).all()
     named_alike = all(row.program == solver_version() for row in entered)  # others name work differently
@@ -238,7 +238,7 @@ def _refuse_if_busy(connection: Connection, caller: Holder, further: int = 1) ->
 
 
 def _ended_since(work: BatchCase, looked: str) -> ColumnElement[bool]:
-    """Condition of computations that succeeded and whose result is there: all, or those of late."""
+    """Return the condition of computations that succeeded and have their result: all, or recent ones."""
     succeeded = (computations.c.key == work.key) & (computations.c.state == "successful")
     return succeeded if work.stored else succeeded & (computations.c.finished >= looked)
 

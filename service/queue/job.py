@@ -110,12 +110,12 @@ class Job:
 
 
 def job_state() -> ColumnElement[Any]:
-    """Return a job's state: a caller who dismissed sees that, whatever became of the shared work."""
+    """Return a job's state: a caller who dismissed sees "dismissed", also if the shared work goes on."""
     return case((jobs.c.dismissed.is_not(None), "dismissed"), else_=computations.c.state)
 
 
 def jobs_of_all_projects() -> Any:
-    """Select jobs with their computations; callers find those of their project alone."""
+    """Select jobs with their computations; callers see jobs of their project alone."""
     of_computation = (results.c.key == computations.c.key) & (results.c.headline != "")
     return select(
         jobs.c.id.label("job_id"),
@@ -127,7 +127,7 @@ def jobs_of_all_projects() -> Any:
 
 
 def job_of(row: Any) -> Job:
-    """Return a row as a job: a caller who dismissed sees that, whatever became of the shared work."""
+    """Return a row as a job: a caller who dismissed sees "dismissed", also if the shared work goes on."""
     dismissed = row.dismissed is not None
     return Job(
         **{name: getattr(row, name) for name in _AS_STORED},

@@ -34,7 +34,7 @@ class Machinery:
     integrity: IntegrityCheck
 
     def close(self) -> None:
-        """Close what is open; it opens again when it is needed."""
+        """Close open connections, which open again on demand."""
         if self.scheduler is not None:
             self.scheduler.give_up()
         self.engine.dispose()

@@ -57,7 +57,7 @@ class PageQuery:
         return connection.execute(statement.order_by(jobs.c.created.desc(), jobs.c.id.desc())).all()
 
     def _branches(self, connection: Connection) -> Iterator[Select[Any]]:
-        """Yield the newest lines of each state, or of all, by what bounds the time that jobs run."""
+        """Yield the newest lines of each state, or of all, within the bounds of the run time."""
         for lines in self._lines(connection):
             for state in self.job_filter.statuses or (None,):
                 newest = (lines.c.created.desc(), lines.c.job.desc())
@@ -94,7 +94,7 @@ class PageQuery:
             yield lines.c.created <= wanted.latest
 
     def _once(self, lines: FromClause) -> ColumnElement[bool]:
-        """Condition of lines with no better one of their result among those that are wanted."""
+        """Return the condition of lines without a better wanted line of their result."""
         if self._wants_all:
             return lines.c.rank == NEWEST
         others = listings.alias()
@@ -110,7 +110,7 @@ class PageQuery:
         return self.job_filter == JobFilter(parent=self.job_filter.parent, once=True)
 
     def _lines(self, connection: Connection) -> Iterator[FromClause]:
-        """Yield the lines to choose from: all, or those that ended and that run for a time within bounds.
+        """Yield the candidate lines: all, or the ended and running ones within bounds of the run time.
 
         Where these are few an index of durations gives them all; else they are met in the order of time.
         """
@@ -128,7 +128,7 @@ class PageQuery:
                 yield select(listings).where(*_between(unindexed, low, high)).subquery()
 
     def _bounds(self) -> Iterator[tuple[ColumnElement[Any], Any, Any]]:
-        """Yield the bounds of the time run: of what ended, and of the start of what goes on."""
+        """Yield the bounds of the run time: of ended jobs, and of the start of running ones."""
         shortest, longest = self.job_filter.shortest_s or 0.0, self.job_filter.longest_s
         yield listings.c.seconds, shortest, longest
         latest = _ago(shortest)

@@ -31,7 +31,7 @@ from service.store.retries import retried
 logger = structlog.get_logger(__name__)
 
 _AT_ONCE = 500
-_IDENTIFIER = 36  # of a computation: other logs are not ours to remove
+_IDENTIFIER = 36  # characters of a computation's identifier: other logs are not this program's
 FIRST_S, EVERY_S = 60.0, 3600.0
 
 
@@ -49,12 +49,12 @@ class Retention:
         self._quarantine = Quarantine(store.files, Deployment(engine, store), quarantine_days)
 
     def collect(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove, or only tell, what is left over: files and lines without each other, and what expired."""
+        """Remove, or only list, leftovers: files and lines without each other, and expired items."""
         yield from collect_orphans(self._store, self._quarantine, dry_run=dry_run)
         yield from self.expire(older_than_days, dry_run=dry_run)
 
     def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove what is dated and old: results, jobs, workspaces, logs, and what was in quarantine.
+        """Remove old items with a date: results, jobs, workspaces, logs, and quarantined files.
 
         Raises `BadInput`: the files of the store are another deployment's by now.
         """
@@ -91,7 +91,7 @@ class Retention:
         return names
 
     def _of_computations(self, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove workspaces and logs of what does not live; logs of what failed are referred to."""
+        """Remove workspaces and logs of ended computations; logs of failed ones are referred to."""
         live = self._states("accepted", "running")
         for path in self._old("work"):
             if path.name not in live:
@@ -134,7 +134,7 @@ class Housekeeper:
         self._thread.start()
 
     def stop(self) -> None:
-        """End, after what is being removed just now."""
+        """End after the removal in progress."""
         self._stopping.set()
         if self._thread is not None:
             self._thread.join()

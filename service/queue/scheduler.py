@@ -72,7 +72,7 @@ class Scheduler:
         self.figures = WorkerFigures()
 
     def start(self) -> None:
-        """Take up what a dead service left, then begin, also after a stop; `BadInput`: no table of ours."""
+        """Take up the work of a dead service, then begin, also after a stop; `BadInput`: no table of ours."""
         self._owner.acquire()
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
@@ -156,7 +156,7 @@ class Scheduler:
         self._crew.close()
 
     def _put_all_back(self) -> None:
-        """End all workers but those that go on; what the database does not take waits for the next start."""
+        """End all workers that cannot outlive the server; unsaved ends wait for the next start."""
         running = [] if self._crew.keeps else list(self._running.values())
         for run in running:
             run.worker.end_group()
@@ -170,7 +170,7 @@ class Scheduler:
                 self._claims.put_back(run.claim, "Waits: the service was stopped.", counted=False)
 
     def _turn(self) -> None:
-        """Do one round; what needs no database comes first."""
+        """Do one round; steps without the database come first."""
         self._listen_to_all()
         self._enforce_deadline()
         self._confirm_ownership()
@@ -186,7 +186,7 @@ class Scheduler:
             self._begin(claim)
 
     def _next(self) -> Claim | None:
-        """Claim whose turn it is; what another version entered is renewed before, or ends."""
+        """Claim the next computation; one of another version is renewed before, or ends."""
         alongside = bool(self._running) and not self._crew.keeps
         if alongside and any(running.claim.suspect for running in self._running.values()):
             return None
@@ -260,7 +260,7 @@ class Scheduler:
             self._unsettled.append(Ended(running, Outcome(failure=failure)))
 
     def _settle_all(self) -> None:
-        """Settle what has ended, in its turn; what the database or the store do not take waits for them."""
+        """Settle ended computations in turn; an end waits while database or store do not take it."""
         while self._unsettled:
             ended = self._unsettled[0]
             try:
@@ -286,7 +286,7 @@ class Scheduler:
                 shutil.rmtree(workspace, ignore_errors=True)
 
     def _confirm_ownership(self) -> None:
-        """See to it that the table is ours: what was lost with its connection is acquired again."""
+        """Confirm the ownership of the table, or acquire it again if its connection was lost."""
         if not self._owner.lost():
             return
         logger.warning("job table lost")
@@ -301,7 +301,7 @@ class Scheduler:
         self._doubtful = True
 
     def _put_back_strays(self) -> None:
-        """Let wait what runs by the table but not here: a step broke off, or another server was killed."""
+        """Put back computations that run by the table only: a step broke off, or another server died."""
         if not self._doubtful:
             return
         known = {run.claim.id for run in self._known()}
@@ -311,7 +311,7 @@ class Scheduler:
         self._doubtful = False
 
     def _take_up(self) -> None:
-        """Find again what a dead service left running, or let it wait: only what had begun has lost a run."""
+        """Find running work of a dead service, or let it wait: only begun work has lost a run."""
         for claim in self._claims.running():
             if claim.program != self._claims.program:
                 self._claims.put_back(claim, "Waits: the service was upgraded.", counted=False)

@@ -37,11 +37,11 @@ class Settlement:
 
     claims: Claims
     store: ResultStore
-    most_attempts: int
+    max_attempts: int
     alone: bool = True
 
     def settle(self, ended: Ended) -> None:
-        """Store what was made, or note why nothing is; remove the workspace unless an attempt follows."""
+        """Store the products, or note why none exist; remove the workspace unless an attempt follows."""
         claim = ended.attempt.claim
         span = begun_span("settle", claim.traceparent, time.time())
         try:
@@ -66,7 +66,7 @@ class Settlement:
         return False
 
     def _keep(self, claim: Claim, outcome: Outcome, usage: Usage | None) -> None:
-        """Store what was made; a file system that does not take it will not do so at a repetition either."""
+        """Store the products; a file system that refuses them will refuse a repetition too."""
         store = self.store.within(claim.project)
         spent = {} if usage is None else {"cpu_seconds": round(usage.cpu_s, 3)}
         try:
@@ -87,7 +87,7 @@ class Settlement:
 
     def retry_or_fail(self, claim: Claim, reason: str) -> bool:
         """Give work that died another attempt, as long as there are any; return whether there is one."""
-        maximum = self.most_attempts
+        maximum = self.max_attempts
         if claim.attempts < maximum:
             text = f"{reason} Waits for attempt {claim.attempts + 1} of {maximum}."
             self.claims.put_back(claim, text, counted=True)
@@ -96,7 +96,7 @@ class Settlement:
         return False
 
     def free_or_fail(self, claim: Claim, reason: str, lost_runs: int) -> bool:
-        """Let work be begun again whose server or Dask worker ended, unless it is what ends them.
+        """Put back work whose server or Dask worker ended, unless the work causes these ends.
 
         The evidence is who ran: this work so many times in a row, in the end without others.
         """

@@ -116,7 +116,7 @@ class Submissions:
 
     @retried
     def page(self, limit: int, job_filter: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
-        """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
+        """Return up to `limit` wanted jobs behind the mark `after`, the newest first."""
         query = PageQuery(self._project, job_filter, limit, after)
         with reading(self._engine) as connection:
             return [job_of(row) for row in query.rows(connection)]
@@ -134,7 +134,7 @@ class Submissions:
             connection.execute(update(jobs).where(jobs.c.id == identifier).values(**label.columns()))
 
     def dismiss(self, identifier: str) -> Job:
-        """Dismiss one caller's job, or those of a batch, unless it ended; shared work goes on for others."""
+        """Dismiss a caller's job, or the jobs of a batch, unless ended; shared work goes on for others."""
         job = self.find(identifier)
         if not job.ended:
             self._dismiss(identifier)

@@ -51,7 +51,7 @@ class Watcher(Generic[T]):
 
     @contextmanager
     def following(self, job: Job, follower: Follower[T]) -> Iterator[None]:
-        """Call `follower` with each state after that of `job`, and with None when there will be no more.
+        """Call `follower` with each state after that of `job`, and with None at the end.
 
         It is called in the watcher's thread. States that follow each other within `REST_S` may be one.
         """
@@ -82,7 +82,7 @@ class Watcher(Generic[T]):
             thread.join(_RETRY_S)  # it may wait for a database that is away
 
     def _loop(self) -> None:
-        """Watch as long as anybody follows; what fails is tried again."""
+        """Watch while followers exist; a failed look is repeated."""
         while self._goes_on():
             try:
                 self._look()
@@ -107,7 +107,7 @@ class Watcher(Generic[T]):
             return False
 
     def _look(self) -> None:
-        """Tell the followers of jobs that changed, and of those that are gone."""
+        """Notify the followers of jobs that changed or are gone."""
         self._new = False
         with self._lock:
             known = {identifier: followed.updated for identifier, followed in self._jobs.items()}

@@ -37,14 +37,14 @@ class WorkerFigures(Collector):
             self._reads.labels(outcome)
 
     def started(self, process: str) -> None:
-        """Count a worker that was started; what alerts are about counts from 0, not from its first time."""
+        """Count a started worker; counts of alerts exist from 0 on, not from their first event."""
         self._starts.labels(process).inc()
         self._warnings.labels(process)
         for outcome in _ALARMING:
             self._ends.labels(process, outcome)
 
     def ended(self, process: str, outcome: str, worker: Run) -> None:
-        """Count a worker that ended, and what it took if it was reaped."""
+        """Count an ended worker, and its use of resources if it was reaped."""
         self._ends.labels(process, outcome).inc()
         self._warnings.labels(process).inc(len(worker.warnings))
         self._reads.labels("hit").inc(worker.compliance_reads.hits)

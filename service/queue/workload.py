@@ -73,7 +73,7 @@ class WorkloadReader:
 
 
 def states_of(connection: Connection) -> dict[str, int]:
-    """Count computations by state; what stands for a batch is none."""
+    """Count computations by state, without the rows that stand for batches."""
     statement = select(computations.c.state, func.count()).group_by(computations.c.state)
     all_rows = {row[0]: row[1] for row in connection.execute(statement)}
     batches = {row[0]: row[1] for row in connection.execute(statement.where(of_batch))}

@@ -34,7 +34,7 @@ warm_up = prepare_confinement
 
 
 def work(descriptor: int) -> None:
-    """Read what the order says; the answer goes to the descriptor."""
+    """Read the files of the order; the answer goes to the descriptor."""
     begin_work()
     end_after(LONGEST_S)
     lower_priority(_NICENESS)

@@ -62,7 +62,7 @@ class _Children:
         self._stopping = False
 
     def read(self, order: LiveOrder) -> bytes:
-        """Return the JSON answer of a child that reads what the order holds.
+        """Return the JSON answer of a child that reads the files of the order.
 
         Raises `ServiceError` as the child found it; `BadInput`: a file ends its reader, or takes more than a
         reader may; `LiveUnavailable`: what ended the reader is no file.
@@ -79,7 +79,7 @@ class _Children:
         return self._unpacked(course.answer, course, order)
 
     def stop(self) -> None:
-        """End all children, whose callers are told so."""
+        """End all children; their callers get the error of a stop."""
         self._stopping = True
         for child in tuple(self._children):
             child.end_group()
@@ -103,7 +103,7 @@ class _Children:
         return self._launcher.launch(ends, _WARM_WITHIN_S)
 
     def _end(self, child: Child) -> Ended:
-        """Kill a child and what it started; return how it ended: one that has ended is not killed again."""
+        """Kill a child and its children, unless it has ended; return its status."""
         child.end_group()
         while not child.has_exited(_PATIENCE_S):
             pass

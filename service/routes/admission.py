@@ -38,9 +38,9 @@ class Admission:
         Parameters
         ----------
         scope, receive : Scope, Receive
-            Of the request.
+            Scope and channel of the request.
         name : str
-            Whose it is.
+            Name of the caller.
         maximum : int or None
             Requests of this caller, and bodies; None: as many as of all.
 

@@ -103,7 +103,7 @@ def _of_job(index: int, error: BadInput) -> list[Fault]:
 
 
 def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[BatchCase]:
-    """Return the jobs of a batch: which results are there, and what the others cost beside each other."""
+    """Return the jobs of a batch: those with results, and the predicted costs of the others."""
     keys = [process.key(one) for one in inputs]
     stored = {key: context.store.find(key, process.kind) is not None for key in set(keys)}
     new = {key: one for key, one in zip(keys, inputs, strict=True) if not stored[key]}
@@ -117,7 +117,7 @@ def _cases(context: Context, process: Process, inputs: Sequence[Json]) -> list[B
 
 
 def _costs(inputs: dict[str, Json]) -> dict[str, float | None]:
-    """Predict what jobs cost, as many as there is time for: the others cost as much as these do."""
+    """Predict costs of jobs, as many as there is time for; the others cost as much on average."""
     costs: dict[str, float | None] = {}
     end = time.thread_time() + _PREDICTING_S
     for key, one in inputs.items():

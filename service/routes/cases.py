@@ -115,7 +115,7 @@ async def case_from_toml(body: CaseText, context: Ctx, request: Request) -> Resp
 
 
 async def read_by(context: Context, entry: str, body: BaseModel, request: Request) -> Response:
-    """Answer by what a reader of foreign bytes makes of a body; `entry` names its function."""
+    """Return the answer of a reader of foreign bytes for a body; `entry` names its function."""
     answer = context.reader.ask(LiveOrder(entry, body.model_dump(mode="json")), asker_of(request))
     return Response(await asyncio.wrap_future(answer), media_type=JSON)
 

@@ -98,13 +98,13 @@ class Context:
             self.scheduler.wake()
 
     def stop_waiting(self) -> None:
-        """End the workers of those who wait for an answer, and the streams of those who wait for an event."""
+        """End the workers of callers that wait for an answer, and the streams of events."""
         self.watcher.stop()
         self.live.stop()
         self.reader.stop()
 
     def close(self) -> None:
-        """Close what is open; it opens again when it is needed."""
+        """Close open connections, which open again on demand."""
         if self.scheduler is not None:
             self.scheduler.give_up()
         self.engine.dispose()

@@ -12,7 +12,7 @@ from service.routes.scopes import Handler, ScopedRoute
 
 
 def answered_by(handler: Handler) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Let a coroutine of the request answer for an endpoint, whose signature is what OpenAPI documents."""
+    """Let a coroutine of the request answer for an endpoint, whose signature OpenAPI documents."""
 
     def attach(endpoint: Callable[..., None]) -> Callable[..., None]:
         endpoint.direct = handler  # type: ignore[attr-defined]

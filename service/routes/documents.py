@@ -119,7 +119,7 @@ def _served(file: PageFile | None, request: Request) -> Response:
 @pages_router.get("/openapi.json")
 @needs(Scope.READ)
 def description(request: Request) -> Response:
-    """Return the description, under the type of OpenAPI to those who prefer that."""
+    """Return the description, as OpenAPI's media type to callers that prefer it."""
     accepted = negotiated(request.headers.get("accept", "*/*"), _OFFERED)
     content = json.dumps(request.app.openapi(), ensure_ascii=False, allow_nan=False).encode()
     answer = _served(PageFile(content, JSON if accepted == JSON else OPENAPI), request)

@@ -62,7 +62,7 @@ class DraftRoute(ScopedRoute):
 
 
 def _faults_of(refusal: ServiceError) -> Response:
-    """Return the answer of faults; raises the refusal of what is no draft, or of a busy service."""
+    """Return the answer of faults; raises a refusal that is not about the draft, as of a busy service."""
     problem = refusal.as_json()
     of_body = "body" in (fault["field"] for fault in problem["errors"])
     if of_body or problem["type"] != BadInput.type:  # the type: a live worker sends problem details

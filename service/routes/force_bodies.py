@@ -36,7 +36,9 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
 
 
-_VALIDITY_TEXTS = [validity_text(flags) for flags in range(16)]  # by the sum of four flags
+_VALIDITY_TEXTS = [
+    validity_text(flags) for flags in range(16)
+]  # words of a validity by the sum of its four flags
 _FLOAT64_ARRAY = 86  # RFC 8746: little-endian float64, the one tag a query may have
 _DEEPEST = 2  # levels of nesting in CBOR: a map of arrays
 _EMPTY_LIST = b"\x80"  # CBOR of []; the byte also occurs in numbers, but hardly in every fourth byte

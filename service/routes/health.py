@@ -67,7 +67,7 @@ async def health() -> Health:
 )
 @needs(OPEN_TO_ALL)
 def ready(request: Request, context: Ctx) -> Readiness:
-    """Answer that database and place of results take what is written, and that the scheduler runs.
+    """Answer that database and place of results are writable, and that the scheduler runs.
 
     The numbers of computations are left out where keys are needed: this is answered to everybody. Readers of
     files that the system cannot confine do not make it unready: what is missing is stated.

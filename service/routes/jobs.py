@@ -161,7 +161,7 @@ def job_status(job_id: str, context: Ctx) -> StatusInfo:
 @router.get("/{job_id}/inputs", summary="Inputs of a job", responses=documented(NoSuchJob))
 @needs(Scope.READ)
 def job_inputs(job_id: str, context: Ctx) -> JobInputs:
-    """Return the inputs as the caller stated them, those of a batch's job and long ones with all defaults."""
+    """Return the inputs as the caller stated them; of a batch's job, and long ones, with all defaults."""
     job = context.submissions.find(job_id)
     return JobInputs(processID=job.process, inputs=json.loads(job.stated))
 
@@ -169,7 +169,7 @@ def job_inputs(job_id: str, context: Ctx) -> JobInputs:
 @router.patch("/{job_id}", summary="Rename a job", responses=documented(NoSuchJob))
 @needs(Scope.SUBMIT)
 def relabel_job(job_id: str, change: LabelChange, request: Request, context: Ctx) -> StatusInfo:
-    """Change title and tags of a job, ended or not; what is left out stays.
+    """Change title and tags of a job, ended or not; a member that is left out stays.
 
     Jobs that others of the project submitted need the scope operate.
     """
@@ -197,7 +197,7 @@ def _require_owner(job_id: str, request: Request, context: Context) -> None:
 
 
 def status_info(job: Job, registry: Registry) -> StatusInfo:
-    """Return a job as the standard's status document, with what is implausible about its inputs."""
+    """Return a job as the standard's status document, with warnings of implausible inputs."""
     path = f"/v1/jobs/{job.id}"
     links = [
         Link(href=path, rel="self", title="Status"),

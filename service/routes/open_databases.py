@@ -35,7 +35,7 @@ class _OpenDatabase:
         """The compiled force; raises as `boundary_errors` of what `CompiledForce.of` raises."""
         with LOADING:
             from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
-            from lineofaction.gearbox.convert.case import boundary_errors  # noqa: PLC0415
+            from lineofaction.gearbox.convert.boundary_errors import boundary_errors  # noqa: PLC0415
 
         with boundary_errors():
             return CompiledForce.of(self.database)

@@ -126,7 +126,7 @@ def documented(*problems: type[ServiceError]) -> dict[int | str, Json]:
 
 
 def _describe_refusals(document: Json) -> None:
-    """Give every operation all its refusals, those its route declares too, by reference: one a status."""
+    """Give every operation all its refusals, its route's included, by reference: one for each status."""
     all_kinds: Kinds = {}
     for path, operation in _operations(document):
         responses = operation["responses"]
@@ -149,7 +149,7 @@ def _by_status(problems: Iterable[type[ServiceError]]) -> Kinds:
 
 
 def _of_request(path: str, operation: Mapping[str, Any]) -> Kinds:
-    """Return the problems of what stands in front of a route, and of reading its body and parameters."""
+    """Return the problems of the middleware, and of reading a body and parameters."""
     problems = [*_OF_ALL]
     if path not in OPEN_PATHS:
         problems += _WITH_KEYS
@@ -194,7 +194,7 @@ def install_description(app: FastAPI) -> None:
 
 
 def _complete(document: Json) -> None:
-    """Add what holds for all operations: refusals, headers, links, keys; and an example of every body."""
+    """Add common parts of all operations: refusals, headers, links, keys; and an example of every body."""
     components = document["components"]
     schemas = components["schemas"] = with_named(components["schemas"])
     further: Any = [(model, "validation") for model in _FURTHER_MODELS]

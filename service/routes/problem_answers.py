@@ -82,7 +82,7 @@ def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fa
 
 
 def _refused_by_framework(request: Request, error: Exception) -> Response:
-    """Answer what routing refuses: unknown path, wrong method, unreadable body."""
+    """Answer refusals of the routing: unknown path, wrong method, unreadable body."""
     assert isinstance(error, HTTPException)
     phrase = HTTPStatus(error.status_code).phrase
     request.state.problem = phrase.lower().replace(" ", "-")

@@ -95,7 +95,7 @@ def processes_router(registry: Registry) -> APIRouter:
     @router.post("/{process_id}/execution", include_in_schema=False)
     @needs(Scope.SUBMIT)
     def execute_other(process_id: str) -> ProcessDescription:
-        """Refuse a name without a route: it is that of no process."""
+        """Refuse a name that no process has."""
         return _description(registry[process_id])
 
     return router
@@ -219,7 +219,7 @@ def _card(action: str, inputs: type[BoundaryModel]) -> AdditionalParameters:
 
 
 def _titled(inputs: type[BaseModel], within: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield names and schemas of the fields that have a title, those of tables by their path."""
+    """Yield names and schemas of the fields with a title, fields of tables by their path."""
     fields = inputs.model_fields.items()
     titled: Any = {name: (field.annotation, field) for name, field in fields if field.title}
     schemas = create_model("Titled", **titled).model_json_schema().get("properties", {})

@@ -42,7 +42,7 @@ _MAX_MOTIONS = 1_000_000
 SOUND = "lineofaction.report.run.sound:stored_sound"
 SOUND_KINDS = ("run", "recording")
 """Kinds of results that have a sound."""
-_NAME = 200  # characters
+_NAME = 200  # most characters of a name in a query
 
 
 async def _cached_answer(

@@ -107,7 +107,7 @@ def get_result(key: Key, request: Request, context: Ctx, accept: Accept = JSON) 
 )
 @needs(Scope.READ)
 def result_file(key: Key, request: Request, context: Ctx) -> Response:
-    """Return the file whatever the request accepts, for browsers and generated clients; never changes."""
+    """Return the file for any accepted type, for browsers and generated clients; it never changes."""
     return file_response(known_result(context, key), request)
 
 

@@ -231,7 +231,7 @@ def results_document(process: str, output: str) -> type[BaseModel]:
 
 
 def class_name(process: str) -> str:
-    """Return the name of a process as those of its models begin."""
+    """Return the beginning of the model names of a process."""
     return process.title().replace("-", "")
 
 

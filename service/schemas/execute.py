@@ -63,7 +63,7 @@ _SUBJECTS: dict[str, type[BoundaryModel]] = {
 
 @cache
 def study_inputs(study: Study) -> type[BoundaryModel]:
-    """Return the model of the inputs of a study's process: what is studied, and what is varied."""
+    """Return the model of the inputs of a study's process: its subject, and its own inputs."""
     bases = (study.inputs, _SUBJECTS[study.takes.subject])
     text = f"Inputs of the process {study.name}."
     return create_model(f"{class_name(study.name)}Inputs", __base__=bases, __doc__=text)
@@ -102,7 +102,7 @@ def _unqualified_value(name: str, value: Any) -> Any:
 
 @lru_cache(maxsize=1)
 def _output_request() -> type[BoundaryModel]:
-    """Return the model of what a body asks of an output: its format, and by value or by reference."""
+    """Return the model of the requested output in a body: its format, and by value or by reference."""
     type_field: Any = (Literal[NETCDF], Field(NETCDF, description="Media type of the output"))
     form = create_model("NcFormat", __base__=BoundaryModel, mediaType=type_field)
     text = "Default: value; in a document: reference"

@@ -44,7 +44,7 @@ _REINDEX = (
     "is not, name that database (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or another place for the results of "
     "this one (LOA_RESULTS_URL): two deployments on one place would remove each other's files."
 )
-_ELSEWHERE = (
+_OTHER_STORE = (
     "Name the database of these files (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or the place of the results "
     "that this one names (LOA_RESULTS_URL)."
 )
@@ -101,7 +101,7 @@ class Deployment:
             return known
 
     def confirm_files(self) -> None:
-        """See to it that the files are those of the database; mark a new place, or one of older versions.
+        """Confirm that the files belong to the database; mark a new place, or one of older versions.
 
         Raises `BadInput`: the files are another deployment's; or there are files and the index is empty, or
         names none of them; or the index names files and the place is empty.
@@ -119,11 +119,11 @@ class Deployment:
         owner = self._owner()
         if owner is None or owner.deployment != self._named():
             whose = f"to {owner}" if owner is not None else f"to nobody: its {NOTE} is gone"
-            tip = _REINDEX if self._compared().may_be_ours else _ELSEWHERE
+            tip = _REINDEX if self._compared().may_be_ours else _OTHER_STORE
             raise self._refusal(f": it belongs {whose}", tip)
 
     def write_database(self) -> None:
-        """Write to the database, ahead of those who enter jobs: to see that this is possible.
+        """Write to the database, ahead of submissions, as a trial.
 
         Raises `DatabaseUnavailable`: it does not answer, has to be mended, or one who writes holds it for
         longer than a moment. `NoSpace`: its disk has no room for a submission.
@@ -152,7 +152,7 @@ class Deployment:
         self._put(_WRITTEN, now(), replace=True)
 
     def take_over(self) -> None:
-        """Make the files ours, whoever had them: who did removes none of them any more.
+        """Make the files ours; a former owner removes none of them any more.
 
         Raises `BadInput`: they are another's, and the index names other files.
         """
@@ -206,11 +206,11 @@ class _Comparison:
 
     @property
     def may_be_ours(self) -> bool:
-        """Whether nothing speaks against the files being those of the index."""
+        """Whether the files may be the files of the index: no evidence is against it."""
         return self.named == 0 or self.known
 
     def refuse_strangers(self, refusal: Callable[[str, str], BadInput]) -> None:
-        """Raise if files that nobody has marked cannot be those of the index."""
+        """Raise if unmarked files cannot be the files of the index."""
         if self.known or (self.named == 0 and self.file is None):
             return
         if self.file is None:
@@ -218,4 +218,4 @@ class _Comparison:
             raise refusal(f", whose index names {self.named} files: none of them is there", tip)
         index = "names other files" if self.named else "is empty"
         bound = f": there are files (such as {self.file}) and the index {index}"
-        raise refusal(bound, _ELSEWHERE if self.named else _REINDEX)
+        raise refusal(bound, _OTHER_STORE if self.named else _REINDEX)

@@ -83,8 +83,8 @@ _POSTGRESQL_REMEDIES: Mapping[str, str] = {
     "53100": ROOM,  # disk full
     "58030": _DISK,  # I/O error
 }
-_CANCELED = "57014"  # by the deadline of the statement: nobody else cancels ours
-_LOCKED = "55P03"  # by others, for longer than lock_timeout
+_CANCELED = "57014"  # state of PostgreSQL: the statement exceeded its deadline, the only cause here
+_LOCKED = "55P03"  # state of PostgreSQL: others held the lock for longer than lock_timeout
 
 
 class _Commits(Protocol):
@@ -148,18 +148,18 @@ class _Dialect(Protocol):
         """Return an engine; `pooled` keeps connections for the next transaction where that pays."""
 
     def insert(self, table: Table) -> sqlite.Insert | postgresql.Insert:
-        """Return an insert that can say what happens on a conflict."""
+        """Return an insert that can state its action on a conflict."""
 
     def turn(
         self, engine: Engine, patience_ms: int | None, *, ahead: bool
     ) -> AbstractContextManager[int | None]:
-        """Wait until this process may begin to write; enter to what is left of the patience, ms.
+        """Wait until this process may begin to write; enters with the rest of the patience, ms.
 
         With `ahead` it is the next one of this process. Raises `TurnTimeout`: the patience has ended.
         """
 
     def take_turn(self, connection: Connection) -> None:
-        """Let this transaction be the only one of those that take turns, until it ends."""
+        """Let this transaction be the only one that takes a turn, until it ends."""
 
     def clock(self, connection: Connection) -> float:
         """Return the seconds since 1970 on the one clock that all users of the database read."""
@@ -168,7 +168,7 @@ class _Dialect(Protocol):
         """Return a connection that hears of commits."""
 
     def busy(self, error: DBAPIError) -> bool:
-        """Whether others held what is needed for too long."""
+        """Whether others held a needed lock for too long."""
 
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
@@ -183,7 +183,7 @@ class _Dialect(Protocol):
         """Return the folder of this machine that it writes to; None: it is elsewhere."""
 
     def check(self, connection: Connection) -> str | None:
-        """Look through the whole database where that is cheap; return what is damaged, None if nothing is."""
+        """Check the whole database if that is cheap; return the damage, None: none."""
 
 
 class _SQLite:

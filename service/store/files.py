@@ -44,7 +44,7 @@ class ResultName:
 
     @classmethod
     def of(cls, file: str) -> ResultName | None:
-        """Read the name of a file; None if it is not that of a result."""
+        """Read the name of a file; None: it is not the name of a result."""
         parts = _NAME.fullmatch(file)
         if parts is None:
             return None
@@ -97,7 +97,7 @@ class ResultFiles(Protocol):
         """
 
     def digest(self, name: str) -> str:
-        """Return the SHA-256 of the bytes in the place itself, whatever is kept of them here.
+        """Return the SHA-256 of the bytes in the place itself, not of a local copy.
 
         Raises `FileNotFoundError`: there is no file of this name.
         """
@@ -115,7 +115,7 @@ class ResultFiles(Protocol):
         """Remove a file; it may be gone already."""
 
     def files(self) -> Iterator[KeptFile]:
-        """Return all there are: those set aside, in quarantine or left half-written, and notes too."""
+        """Return all files: also set aside, quarantined or half-written ones, and notes."""
 
 
 class DirectoryFiles:

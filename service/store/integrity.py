@@ -20,7 +20,7 @@ class IntegrityCheck:
     Attributes
     ----------
     fault : ServiceError or None
-        What is damaged, or why it could not be looked at; None: nothing so far.
+        Damage, or the reason why the check failed; None: nothing so far.
     """
 
     def __init__(self, engine: Engine) -> None:

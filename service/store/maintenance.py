@@ -26,7 +26,7 @@ class Quarantine:
     deployment : Deployment
         Asked before each step: what is another's stays.
     days : float
-        How long a file stays.
+        Number of days for which a file stays.
     """
 
     def __init__(self, files: ResultFiles, deployment: Deployment, days: float) -> None:
@@ -50,7 +50,7 @@ class Quarantine:
         return len(quarantined)
 
     def purge(self, *, dry_run: bool) -> Iterator[KeptFile]:
-        """Remove for good what has been here for long enough; what tells no date stays."""
+        """Remove for good the files that have been here for long enough; files without a date stay."""
         before = datetime.now(UTC) - timedelta(days=self.days)
         for file in list(self._files.files()):
             since = _admitted(file.name)
@@ -95,7 +95,7 @@ class Verified:
 
 
 def verify_store(store: ResultStore) -> Verified:
-    """Read every file of the index and compare it with its digest; set aside what differs.
+    """Read every file of the index and compare it with its digest; set differing files aside.
 
     A result that is expired while this runs counts as neither.
     """
@@ -133,7 +133,7 @@ class Leftover:
 def expire_results(
     store: ResultStore, quarantine: Quarantine, older_than_days: float, *, dry_run: bool
 ) -> Iterator[Leftover]:
-    """Take out of the index, and to quarantine, what was not requested in so many days.
+    """Move results without requests for a number of days out of the index, into quarantine.
 
     Only what the index dates goes. A line goes before its file, so that nothing is found whose file is gone;
     it goes only if it is still as it was seen, so that what is requested just now stays.
@@ -179,12 +179,12 @@ def _orphans(store: ResultStore) -> list[KeptFile]:
 
 
 def _is_ours(name: str) -> bool:
-    """Whether a file is there to be named by the index: no note, and not on its way out."""
+    """Whether the index should name a file: it is no note, and not in quarantine."""
     return name not in NOTES and not is_quarantined(name)
 
 
 def purge_quarantine(quarantine: Quarantine, *, dry_run: bool) -> Iterator[Leftover]:
-    """Remove for good what has been in quarantine for long enough."""
+    """Remove for good the files that have been in quarantine for long enough."""
     for file in quarantine.purge(dry_run=dry_run):
         yield Leftover("quarantine ended", file.name, file.size)
 

@@ -117,7 +117,7 @@ def _uses_of_results(op: Operations) -> None:
 
 
 def _durations(op: Operations) -> None:
-    """Count durations by process, outcome and class; what ended before is not counted."""
+    """Count durations by process, outcome and class, from now on."""
     op.create_table(
         "duration",
         *(sa.Column(name, sa.String, primary_key=True) for name in ("process", "outcome", "le")),
@@ -139,7 +139,7 @@ def _deployments(op: Operations) -> None:
 
 
 def _terms_of_jobs(op: Operations) -> None:
-    """Add what callers ask beside inputs; jobs of before have no label, no difference and no limit."""
+    """Add terms of callers beside inputs; earlier jobs have no label, no difference and no limit."""
     for name in ("title", "title_folded"):
         op.add_column("job", _column(name))
     for name in ("tags", "differences"):
@@ -151,7 +151,7 @@ def _terms_of_jobs(op: Operations) -> None:
 
 
 def _changed_jobs(op: Operations) -> None:
-    """Let PostgreSQL notify of each transaction that changes what callers see, whichever program makes it.
+    """Let PostgreSQL notify of each transaction, of any program, that changes jobs for callers.
 
     SQLite tells by its data version.
     """
@@ -166,7 +166,7 @@ def _changed_jobs(op: Operations) -> None:
 
 
 def _projects(op: Operations) -> None:
-    """Add projects; what was there before, or comes from a former program, is in the common one."""
+    """Add projects; earlier items, and items of former programs, are in the common one."""
     op.add_column("job", _column("project"))
     op.create_index("job_by_project", "job", ["project", "created"])
     op.add_column("result", _column("project"))
@@ -206,13 +206,13 @@ def _one_owner(op: Operations) -> None:
 
 
 def _lists_of_jobs(op: Operations) -> None:
-    """Add what lists are chosen and ordered by, and find the computations of a result by an index."""
+    """Add the table that filters and sorts lists, and an index of a result's computations."""
     add_listing(op)
     op.create_index("computation_by_key", "computation", ["key", "state", "created"])
 
 
 def _unused_indexes(op: Operations) -> None:
-    """Remove what no statement is answered by since lists have lines of their own, or what begins another.
+    """Remove indexes that no statement uses since lists have lines, or that begin another index.
 
     By the one of projects a submission looked for its caller's last job among those of all callers.
     """

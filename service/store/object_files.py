@@ -40,7 +40,7 @@ class ObjectFiles:
     cache : Path
         Directory of files under their digests, shared by all processes of a machine.
     cache_bytes : int
-        What it may hold.
+        Largest size of the cache in bytes.
     """
 
     def __init__(self, store: S3Store, address: str, cache: Path, cache_bytes: int) -> None:

@@ -76,6 +76,6 @@ def stored_results(
     database_url: str | None = None,
     results_url: str | None = None,
 ) -> ResultStore:
-    """Return the store of a data directory, or of what the URLs name, for one who reads now and then."""
+    """Return the store of a data directory, or of the URLs, for an occasional reader."""
     engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
     return result_store(engine, data_directory, results_url)

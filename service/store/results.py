@@ -124,13 +124,13 @@ class ResultStore:
     files : ResultFiles
         Place of the files.
     project : str
-        Whose results are put, found, read and listed here: there are no others. Upkeep (`lines`, `enter`,
-        `strike`, `set_aside`) is of all projects.
+        Project whose results are put, found, read and listed here. Upkeep (`lines`, `enter`, `strike`,
+        `set_aside`) covers all projects.
 
     Attributes
     ----------
     lookups : CacheReads
-        How often a result was looked for with `find`, as by submissions, and was there.
+        Number of results that `find` sought, as for submissions, and number found.
     """
 
     def __init__(self, engine: Engine, files: ResultFiles, project: str = COMMON) -> None:
@@ -170,7 +170,7 @@ class ResultStore:
 
     @retried
     def enter(self, line: IndexLine, *, made: str | None = None) -> IndexLine:
-        """Enter a result, unless there is one whose file is there; return the one there is now.
+        """Enter a result unless one with a file is stored; return the stored one.
 
         With `made`, the date of its file, it is marked as entered anew: by `service.store.maintenance`.
         """
@@ -211,7 +211,7 @@ class ResultStore:
 
     @retried
     def page(self, kind: str, limit: int, after: Mark | None = None) -> list[tuple[Mark, IndexLine]]:
-        """Return up to `limit` lines of a kind with their places, the newest first, those behind `after`."""
+        """Return up to `limit` lines of a kind behind `after` with their places, the newest first."""
         statement = select(results).where(results.c.project == self.project, results.c.kind == kind)
         if after is not None:
             last = Mark(after.created, address_of(self.project, after.name))
@@ -277,7 +277,7 @@ class ResultStore:
 
     @optional
     def note_headline(self, key: str, kind: str, headline: Mapping[str, Any]) -> None:
-        """Note what a list shows of a result that was stored without; empty: there is nothing."""
+        """Store the headline of a result that was stored without; empty: it has none."""
         mine = results.c.key == address_of(self.project, key), results.c.kind == kind
         step = update(results).where(*mine, results.c.headline == "").values(headline=json.dumps(headline))
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:

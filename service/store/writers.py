@@ -32,7 +32,7 @@ class WriterQueue:
 
     @contextmanager
     def turn(self, patience_s: float, *, ahead: bool = False) -> Iterator[float]:
-        """Wait for the turn, and have it while the context lasts; yield what is left of the patience, s.
+        """Wait for the turn, and hold it in the context; yield the rest of the patience, s.
 
         With `ahead` it is the next one. Raises `TurnTimeout`: it has not come within `patience_s`.
         """

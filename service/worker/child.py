@@ -152,7 +152,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
 
 
 def stamp_products(order: WorkOrder, products: Sequence[Product]) -> None:
-    """Write into each file what is implausible about what it was made from; a database says so itself."""
+    """Write the warnings of its inputs into each file; a database has them already."""
     others = any(product.kind != "database" for product in products)
     case = list(warnings_of_case(order.inputs["case"])) if others and "case" in order.inputs else None
     for product in products:

@@ -39,7 +39,7 @@ async def dask_setup(worker: Worker) -> None:
 
 
 async def _drain(worker: Worker) -> None:
-    """Finish what is being done, and close."""
+    """Finish the job in progress, and close."""
     from distributed.core import Status  # noqa: PLC0415 (an extra)
 
     logger.info("worker drains", worker=worker.address, tasks=len(_in_work(worker)))

@@ -10,11 +10,12 @@ from pydantic import ValidationError
 
 from fe_contact.analysis.request.model_choice import decide
 from fe_contact.ste import PairGeometry
-from lineofaction.gearbox.convert.case import boundary_errors
-from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings, unique, within
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case_plausibility import case_warnings, unique
+from lineofaction.gearbox.convert.plausibility import scene_warnings, within
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.schemas.scene import SceneInput
 from service.worker.preparations import CASES
 
@@ -44,7 +45,7 @@ def warnings_of_case(case: Json) -> list[Json]:
 def _of_scene(scene: SceneInput) -> list[Json]:
     """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
     cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
-    warnings = left_out_warnings(scene.left_out) + [
+    warnings = omission_warnings(scene.left_out) + [
         within(warning, f"meshes[{index}]")
         for index, mesh in enumerate(scene.meshes)
         if mesh.case is not None
@@ -57,7 +58,7 @@ def _of_scene(scene: SceneInput) -> list[Json]:
 
 
 def predicted_seconds(inputs: Json) -> float | None:
-    """Return the CPU seconds of the table of a case, its studies in proportion; None of what has no case.
+    """Return the CPU seconds of the table of a case, its studies in proportion; None: no case.
 
     The progress of a batch is weighted by them.
     """

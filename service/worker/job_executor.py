@@ -1,4 +1,4 @@
-"""Who does the tasks of a job: the Dask cluster of the service, and this process if it is away."""
+"""Executor of a job's tasks: the service's Dask cluster, or this process while the cluster is away."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ R = TypeVar("R")
 
 @contextmanager
 def table_workers(order: WorkOrder) -> Iterator[Workers]:
-    """Provide the workers of tables: as `cluster_of`, and what they did is kept until the job ends.
+    """Provide the workers of tables, as `cluster_of`, with their finished tasks stored until the job ends.
 
     An attempt after one that died finds it in the workspace. Gears are kept in the cache of the service.
     """
@@ -34,7 +34,7 @@ def table_workers(order: WorkOrder) -> Iterator[Workers]:
 
 @contextmanager
 def cluster_of(order: WorkOrder) -> Iterator[Workers]:
-    """Provide the workers of a job: those of the cluster, if the service has one, as long as they are there.
+    """Provide the workers of a job: the cluster's, if the service has one, as long as it has workers.
 
     A job does not fail because a cluster is away: it takes longer, and gives the same bits. What the cluster
     leaves is done in this process; the log says so, with the reason, and the receipt of a table.

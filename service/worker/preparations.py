@@ -27,7 +27,7 @@ Json = dict[str, Any]
 
 
 def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
-    """Check a scene and the sources of its tables; `BadInput`: it cannot move, or names what is not there."""
+    """Check a scene and the sources of its tables; `BadInput`: it cannot move, or names a missing source."""
     for index, housing in enumerate(scene.housings):
         if housing.modes_file is not None:
             _refuse_file(f"housings[{index}].modes_file", housing.modes_file, "Give its matrices")

@@ -21,7 +21,7 @@ from dynamics.simulation import simulate_to_file
 from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import draft_line, headline_json
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.housings import HousedScene, reduced_in
 from lineofaction.gearbox.convert.measured_housings import read_responses
@@ -55,7 +55,7 @@ class DraftedProgress:
         self._table = TableFraction(refines=refines)
 
     def __call__(self, stage: str, fraction: float) -> None:
-        """Report the fraction done of a stage, with that of the whole table."""
+        """Report the completed fraction of a stage, with the fraction of the whole table."""
         name = f"{stage}; {self._draft}" if self._draft else stage
         self._report(name, fraction, self._table.at(stage, fraction))
 
@@ -105,7 +105,7 @@ def database_of(case: CheckedCase, order: WorkOrder, progress: Progress) -> SteD
 
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Simulate a scene; tables that the store lacks are computed, and are products beside the run."""
+    """Simulate a scene; missing tables are computed, and stored as products of the job."""
     ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
     _run(ordered.tabled.scene, file, progress)

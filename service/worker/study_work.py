@@ -10,7 +10,7 @@ from typing import Any
 from dynamics.results import RunResult
 from lineofaction.gearbox.convert.housings import HousedScene
 from lineofaction.gearbox.registry import STUDIES, SUFFIX
-from lineofaction.gearbox.schemas.plan import left_out_warnings
+from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.studies.computation import Means
 from lineofaction.gearbox.study import Study
 from service.store.results import ResultStore
@@ -58,7 +58,7 @@ def _work(study: Study, order: WorkOrder, progress: Progress) -> tuple[Product, 
     study.run.file.write(result, file)
     result_warnings = study.run.warnings(result) if warnings is None else warnings
     if isinstance(subject, HousedScene):
-        result_warnings = [*left_out_warnings(subject.inputs.left_out), *(result_warnings or ())]
+        result_warnings = [*omission_warnings(subject.inputs.left_out), *(result_warnings or ())]
     runs = (Product(key, "run", run) for key, run in study.run.stored_runs(result, means).items())
     return (*products, *runs, Product(order.key, study.kind, file, result_warnings))
 

@@ -52,7 +52,7 @@ class Done:
 
 @cache
 def program() -> str:
-    """Return the versions that server and workers have to share, and what is missing of the packages."""
+    """Return the versions that server and workers must share, and the missing packages."""
     needed = (*MODULES["analysis"], *MODULES["service"])
     missing = [name for name in needed if find_spec(name) is None]
     lacks = f" without {', '.join(missing)}" if missing else ""

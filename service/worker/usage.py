@@ -45,7 +45,7 @@ class Usage:
 
 
 def machine_memory_mb(group_limit: Path = _GROUP_LIMIT) -> int:
-    """Return the memory of the machine, MB, or what its control group (a container) leaves of it."""
+    """Return the memory of the machine or of its control group (a container), MB, the smaller one."""
     physical = physical_memory()
     try:
         allowed = int(group_limit.read_text())
@@ -60,7 +60,7 @@ def hold_to(limit_mb: int) -> None:
 
 
 def no_space(error: OSError, where: str = "the data directory of the service (LOA_DATA_DIRECTORY)") -> str:
-    """Return the message of a job whose files found no space; empty if that is not what went wrong."""
+    """Return the message of a job whose files found no space; empty for another error."""
     if error.errno not in _FULL:
         return ""
     return (

@@ -16,7 +16,7 @@ from study_service import empty_service
 
 from dynamics.housings import ReducedHousing
 from dynamics.linearize import ModalAnalysis
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.client import JobState, LineOfActionClient
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.computation import Means

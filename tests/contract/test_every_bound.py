@@ -30,7 +30,7 @@ from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Integration, Outputs
 from dynamics.shafts import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.shafts import Shaft as TurningShaft
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.checked_case import check_case
@@ -97,7 +97,7 @@ DEPEND_ON_OTHERS = (
         "root_radius_coefficient",
     ),
     *("thickness_allowance_um", "tip_rounding_mm", "tip_chamfer_mm", "pitches", "tolerance", "time_budget_s"),
-    *(figure.field for figure in (*figures(FlankModification, Kind.LENGTH), *figures(StatedStarts))),
+    *(figure.field for figure in (*figures(FlankModification, Kind.LENGTH), *figures(DrawingStarts))),
     *("position_mm", "diameter_mm"),
     *("rim_thickness_mm", "web_thickness_mm", "hub_diameter_mm", "web_offset_mm", "width_mm", "offset_mm"),
     *("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient", "center_distance_change_mm"),

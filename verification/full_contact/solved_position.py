@@ -22,7 +22,7 @@ class SolvedPosition:
     cpu_seconds: float = 0.0
 
     def with_error(self, coarse: SolvedPosition) -> SolvedPosition:
-        """Return the same points; their differences from those of a coarser mesh are their errors."""
+        """Return the points with errors: their differences from those of a coarser mesh."""
         both = zip(self.contacts, coarse.contacts, strict=True)
         return replace(self, contacts=tuple(_with_differences(point, other) for point, other in both))
 

@@ -73,7 +73,7 @@ class FullContactPoint:
 @brief
 @dataclass(frozen=True)
 class FullContactTable:
-    """Solved positions x torques; each point has its own status."""
+    """Solved positions x torques; each point has a status."""
 
     position: FloatArray
     """Position of the driving gear, base pitches. Shape (P,)."""

@@ -46,7 +46,7 @@ def _spur(pair: ParallelAxes) -> str | None:
 
 
 def _of_pair(pair: ParallelAxes) -> str | None:
-    """Say what of a pair no mesh of sections holds."""
+    """Return why the meshes of sections cannot hold a pair; None if they can."""
     if pair.shafts != (None, None):
         return "shafts: the bores are held rigidly"
     for gear in (pair.pinion, pair.wheel):
@@ -56,7 +56,7 @@ def _of_pair(pair: ParallelAxes) -> str | None:
 
 
 def _of_gear(gear: Toothing) -> str | None:
-    """Say what of a gear it has no room for."""
+    """Return why the meshes of sections cannot hold a gear; None if they can."""
     if gear.web is not None:
         return "rim, web and hub: one section stands for the whole face"
     if gear.seat != CLAMPED:
@@ -71,7 +71,7 @@ def _of_gear(gear: Toothing) -> str | None:
 def check_axes(
     torques: Sequence[float], positions: Sequence[float], misalignments: Sequence[float] = (0.0,)
 ) -> None:
-    """Refuse an axis without a number, torques that are not positive, and what is no number."""
+    """Refuse an axis without a number, torques that are not positive, and values that are no numbers."""
     axes = {"torques": torques, "positions": positions, "misalignments": misalignments}
     for name, values in axes.items():
         if len(values) == 0:

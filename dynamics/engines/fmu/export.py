@@ -93,7 +93,7 @@ def _nearest_zero(knots: Sequence[float] | np.ndarray) -> float:
 
 
 def _parameters(element: MeshElement) -> list[Variable]:
-    """Return what is set before a run, numbers also during it."""
+    """Return the variables that are set before a run, numbers also during it."""
     coast = element.coast
     backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
     along = "Backlash along the transverse line of action at zero displacements"

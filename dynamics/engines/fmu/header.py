@@ -10,7 +10,7 @@ from dynamics.engines.mesh_element import MeshElement
 
 
 def _of_kind(chosen: Sequence[Variable], kind: str) -> list[Variable]:
-    """Return those of `kind` in the order of their value references."""
+    """Return the variables of `kind` in the order of their value references."""
     return [variable for variable in chosen if variable.kind == kind]
 
 

@@ -93,7 +93,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
     is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
-    if not run.edges_left_out:
+    if not run.edges_neglected:
         return
     effect = run.checked.request.named("corner_contact")
     pairs = zip(run.places.places, run.edge_depths, strict=True)

@@ -30,7 +30,7 @@ class ToothGaps:
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (J,)."""
     period: int
-    """Base pitches after which the gears are taken to show the same teeth again."""
+    """Number of base pitches after which the same teeth of both gears count as meeting again."""
     gears: tuple[FloatArray, FloatArray]
     """Gap by each of the R teeth of the pinion and of the wheel, m; zero where no candidate is. Tuple of
     ndarray, shape (J, P, R, M).

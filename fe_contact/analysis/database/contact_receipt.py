@@ -28,7 +28,7 @@ def contact_receipt(
     """
     solutions = [solution for _, solution in solved]
     iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
-    left_out = ~np.all([s.status == Status.CONVERGED for _, s in support], axis=(0, 1))
+    unsolved = ~np.all([s.status == Status.CONVERGED for _, s in support], axis=(0, 1))
     return {
         "newton_iterations_max": int(iterations.max()),
         "newton_iterations_mean": float(iterations.mean()),
@@ -37,7 +37,7 @@ def contact_receipt(
         "condition_number_max": _worst_condition(solved, known) if condition else None,
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
         "failed_points": failed_points(solutions),
-        "support_loads_left_out": support[0][1].load[left_out].tolist(),
+        "support_loads_left_out": support[0][1].load[unsolved].tolist(),
     }
 
 

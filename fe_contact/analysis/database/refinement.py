@@ -29,10 +29,14 @@ AIM = 0.9
 """Part of the tolerance that a pass is planned to use. The rest covers errors of the predictions."""
 
 DOUBT = 2.0
-"""Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
+"""Factor within which predictions are right. No pass begins where even the finest discretization misses the
+tolerance by more than it.
+"""
 
 SMALL = 0.3
-"""Part of the tolerance, a tenth of what may be used, that is refined only where it decides."""
+"""Part of the tolerance below which an error source is refined only where it decides: a tenth of the sum of
+squares.
+"""
 
 MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
 """Error of the next level over that of a level, from the pairs of docs/lab/index.md, "Constants"."""

@@ -10,11 +10,11 @@ import numpy as np
 from fe_contact.analysis.cycle.derived_pitches import DerivedCycle
 from fe_contact.analysis.estimates.curve_errors import curve_errors, load_arm_errors
 from fe_contact.analysis.estimates.error_sources import estimate_errors, largest_known
-from fe_contact.analysis.estimates.held_out_axes import AxisError, held_out_axes
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.estimates.position_errors import position_errors
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
+from fe_contact.analysis.estimates.validation_axes import AxisError, validation_axes
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.planning.plan import Plan
@@ -79,8 +79,8 @@ class AssessedTable:
     inserted: SupportLoads | None
     """Solutions at inserted loads. With these nodes the table has the stated errors between its loads."""
     by_source: Json
-    held_out: Json
-    """`by_source`, `held_out`: The largest errors by source; the errors measured between the nodes of each
+    validation: Json
+    """`by_source`, `validation`: The largest errors by source; the errors measured between the nodes of each
     axis.
     """
     bias: PlaneBias | None
@@ -114,7 +114,7 @@ class AssessedTable:
 
     def to_json(self) -> Json:
         """Return the receipt's fields of the errors as plain JSON."""
-        sources = {"error_by_source": self.by_source, "held_out": self.held_out}
+        sources = {"error_by_source": self.by_source, "held_out": self.validation}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
         return sources | bias | _summary(self.curve_error)
 
@@ -155,17 +155,17 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
         return interval_goal(refined, at_nodes, request, bias)
 
     refined = request.options.tolerance is not None and not request.nodes_alone
-    held_out = held_out_axes(made, goal_of if refined else None)
-    made = held_out.made
-    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), held_out.axes)
+    validation = validation_axes(made, goal_of if refined else None)
+    made = validation.made
+    of_points, of_curves = interval_errors((plan.load.size, *made.places.shape), validation.axes)
     assessed = AssessedTable(
         _at_inserted(sources.total, made.table),
         np.concatenate([_at_inserted(errors, made.table), of_curves]),
         _at_inserted(load_arm_errors(fine, table, arms, plan), made.table),
         of_points,
-        held_out.loads,
+        validation.loads,
         sources.to_json(),
-        {name: error.to_json() for name, error in held_out.axes.items()},
+        {name: error.to_json() for name, error in validation.axes.items()},
         table_bias(made.table, fine, plan),
     )
     return assessed, made

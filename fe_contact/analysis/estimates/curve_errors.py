@@ -1,8 +1,8 @@
 """Errors of mean, peak-to-peak and harmonics, by source.
 
-Each quantity is computed from nested discretizations, the run's own and a rougher one, and the change between
-the two is carried on to the error that is left by the order known, as the point bands are (`error_estimate`).
-Errors common to all positions so count in the mean alone, and what bends the curve in peak-to-peak and
+Each quantity is computed on two discretizations, that of the run and a rougher one. The known order of
+convergence carries their change on to the error that is left, as for the bands of points (`error_estimate`).
+Errors common to all positions count in the mean alone, errors that bend the curve in peak-to-peak and
 harmonics. Between the nodes of an axis the changes at held-out points count.
 """
 
@@ -44,16 +44,20 @@ LEFT_BY_MESH = {
     "thin": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
     "helical": {"draft": (1.1, 2.0, 2.0), "standard": (0.7, 1.3, 1.8)},
 }
-"""Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
-elements half as large; over the face of a spur pair of solid gears, what second order leaves of elements of
-two thirds; of one with a thin rim, more; of a helical pair, over what second order leaves of that change
-(`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in which errors fall with a power of
-the size: a draft in the plane leaves less of its change than a finer mesh, one over the face more. Set on the
-pairs of docs/lab/index.md ("Constants"); the level fine has the parts of standard."""
+"""Errors left in mean, peak-to-peak and harmonics over the change to the coarse mesh, by model and level.
+
+"plane": the coarse mesh has elements twice as large. "spur": a spur pair of solid gears over the face, over
+the error that second order leaves of elements one and a half times as large (`FaceDiscretization.remaining`).
+"thin": the same with a thin rim. "helical": the same for a helical pair. On coarse meshes errors do not fall
+with a power of the size yet: a draft in the plane leaves less of its change than a finer mesh, one over the
+face more. The values were set on the pairs of docs/lab/index.md ("Constants"). The level fine has the values
+of standard.
+"""
 
 HARMONIC_SHARE = 0.3
-"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
-slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
+"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k. Half the
+slices and coarse meshes have errors in other harmonics than the table, whose harmonics may hardly change.
+"""
 
 LEFT_OF_ARM = (1.75, 1.0, 1.25)
 """Errors that meshes leave in mean, peak-to-peak and harmonics of the load arm, over the same errors of the
@@ -61,9 +65,11 @@ transmission error. They differ because the load arm follows from differences of
 """
 
 BALANCE = 0.5
-"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the
-face against the other, so that the change of its mean may cross zero by accident. Both were set on the pairs
-over the face of docs/lab/index.md, three loads on two meshes, against 31 slices on the mesh fine."""
+"""Least change of the mean arm over the mean size of the change about it. An arm balances one end of the face
+against the other, so that the change of its mean may cross zero by accident. `LEFT_OF_ARM` and `BALANCE` were
+set on the pairs over the face of docs/lab/index.md, three loads on two meshes, against 31 slices on the mesh
+fine.
+"""
 
 
 def curve_errors(

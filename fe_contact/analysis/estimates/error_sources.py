@@ -43,8 +43,9 @@ class _ErrorSources:
     contact: FloatArray
     plane: FloatArray
     method: FloatArray
-    """`discretization`, `slices`, `interpolation`, `contact`, `plane`, `method`: Finite elements, slices of
-    the face, table beside the node, contact, the plane for a finite width, and what the method leaves out.
+    """`discretization`, `slices`, `interpolation`, `contact`, `plane`, `method`: Errors by finite elements,
+    slices of the face, interpolation between positions, contact solution, the plane for a finite width, and
+    the method against full contact.
     """
 
     @property

@@ -20,9 +20,10 @@ kinks, which may lie anywhere in an interval.
 """
 
 PASSED_BY = 1.25
-"""Peak-to-peak that is missed over the corners at which chords beside an interval meet: flanks bend towards
-them. Both parts were set on the pairs of docs/lab/index.md ("Constants"), against eight times as many
-positions on the same meshes."""
+"""Missed peak-to-peak over the height of the corners at which the chords of neighboring intervals meet:
+flanks bend towards them. Both factors were set on the pairs of docs/lab/index.md ("Constants"), against eight
+times as many positions on the same meshes.
+"""
 
 
 def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> PositionErrors:

@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.analysis.pairs.contact_lines import solve_operating_points
 from fe_contact.analysis.pairs.operating_points import OperatingPoint, OperatingPoints, operating_points
 from fe_contact.analysis.pairs.solved_contact import SolvedContact
-from fe_contact.analysis.request.solved_run import edges_left_out
+from fe_contact.analysis.request.solved_run import edges_neglected
 from fe_contact.analysis.tables import SolvedTable, assembled_table
 from fe_contact.contact import ContactProblem
 from fe_contact.ste import SteDatabase
@@ -98,7 +98,7 @@ def _solved(made: SolvedTable, places: OperatingPoints) -> list[list[SolvedConta
     for point in places.places:
         take_compliance(made, point)
     loads = made.plan.load, made.plan.support
-    edges = edges_left_out(made.checked)
+    edges = edges_neglected(made.checked)
     sets, _ = solve_operating_points(places, made.nodes.position, loads, conditioned=False, edges=edges)
     needed = made.plan.load, made.table.support_force
     for load, contacts in zip(needed, sets, strict=True):

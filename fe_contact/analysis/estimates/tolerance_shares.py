@@ -132,7 +132,7 @@ def _with_next(values: FloatArray, axis: int, chosen: np.ufunc) -> FloatArray:
 def _failing_intervals(table: SteDatabase, cells: FloatArray, between: FloatArray) -> list[Json]:
     """Return the worst interval of each axis by which a table misses the tolerance, and why it stays so."""
     total = np.sqrt(cells**2 + np.square(between).sum(axis=0))
-    held_out = table.metadata.receipt.get("held_out", {})
+    validation = table.metadata.receipt.get("held_out", {})
     axes = zip(BETWEEN_NODES, (table.force, table.misalignment, table.center_distance_change), strict=True)
     intervals = []
     for i, (name, nodes) in enumerate(axes):
@@ -143,6 +143,6 @@ def _failing_intervals(table: SteDatabase, cells: FloatArray, between: FloatArra
         if beyond.size and beyond.max() > 0.0:
             k = int(np.argmax(beyond))
             interval = [float(nodes[k]), float(nodes[k + 1])]
-            limit = held_out.get(name, {}).get("limit") or "add a value there"
+            limit = validation.get(name, {}).get("limit") or "add a value there"
             intervals.append({"axis": name, "used": float(beyond[k]), "between": interval, "limit": limit})
     return intervals

@@ -77,7 +77,7 @@ def deformed_pairs(
     run: Run = Run(),  # noqa: B008 (frozen)
     *,
     at: ArrayLike = 0.0,
-    beside: int = 1,
+    neighbors: int = 1,
 ) -> tuple[DeformedPair, ...]:
     """Solve the contact at some positions and expand it to the finite elements of both gears.
 
@@ -97,7 +97,7 @@ def deformed_pairs(
         compliances of both gears.
     at : array_like
         Positions in base pitches.
-    beside : int
+    neighbors : int
         Unloaded teeth to show on either side of the loaded ones, in three dimensions.
 
     Returns
@@ -106,9 +106,9 @@ def deformed_pairs(
         One per position.
     """
     checked = as_checked(pair, point, options)
-    integer("beside", beside, 0, 100)
+    integer("neighbors", neighbors, 0, 100)
     solved = solve_operating_point(checked, checked_positions(at), StageClock(run.workers.cost), run)
-    gears = _deformed_gears(solved, beside)
+    gears = _deformed_gears(solved, neighbors)
     run.progress("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
     pair_at_distance = solved.contact.pair
@@ -118,7 +118,7 @@ def deformed_pairs(
     )
 
 
-def _deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both, ...]:
+def _deformed_gears(solved: SolvedOperatingPoint, neighbors: int = 1) -> tuple[Both, ...]:
     """Expand a solution at all its positions; each gear in its own frame."""
     contact, candidates = solved.contact, solved.problem.candidates
     force, made = solved.solution.force[:, 0], contact.plan.discretization
@@ -129,7 +129,7 @@ def _deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both
         solid = [face_flank_forces(candidates, force, p, face, offset) for p in positions]
         first, second = (
             deformed_solids(
-                gear, made.recipes[i], [both[i] for both in solid], beside, seen_from_behind=gear.sign < 0
+                gear, made.recipes[i], [both[i] for both in solid], neighbors, seen_from_behind=gear.sign < 0
             )
             for i, gear in enumerate(gears)
         )

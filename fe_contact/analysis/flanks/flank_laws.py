@@ -108,8 +108,8 @@ class _Flanks:
         yield _OVERLAP.below(np.maximum(-flanks.gap, 0.0) / deflection, OVERLAP, self._at)
         closed = flanks.force == 0.0
         gap = np.where(closed, 0.0, np.abs(flanks.gap))
-        worth = np.abs(flanks.force) * gap / (flanks.scene.normal_force * deflection)
-        yield _LOADED_GAP.below(worth, BALANCE, self._at)
+        relative_gap = np.abs(flanks.force) * gap / (flanks.scene.normal_force * deflection)
+        yield _LOADED_GAP.below(relative_gap, BALANCE, self._at)
 
     def _pressures(self) -> Iterator[LawCheck]:
         """Bound pressures by those of Hertz under their line loads on the flattest and sharpest gaps.

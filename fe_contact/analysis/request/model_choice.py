@@ -1,8 +1,8 @@
-"""Choice of the model by a tolerance or a time, among those that hold what is in the scene.
+"""Choice of the model by a tolerance or a time budget, among the models that can hold the scene.
 
 A spur pair with nothing acting across its face may be computed in the plane, in the plane corrected for its
-finite width, or in three dimensions: the cheapest that is expected to meet the wish is taken. An explicit
-model, or an explicit choice of one of the two effects that tell the models apart, is obeyed.
+finite width, or in three dimensions: the cheapest that is expected to meet the request is taken. An
+explicit model, or an explicit choice of one of the two effects that decide about the model, is obeyed.
 """
 
 from __future__ import annotations

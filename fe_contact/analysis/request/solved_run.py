@@ -19,7 +19,7 @@ forces are those of the first.
 """
 
 
-def edges_left_out(checked: Checked) -> bool:
+def edges_neglected(checked: Checked) -> bool:
     """Whether a request leaves tip edges out in the belief that they stay clear, not for a tolerance."""
     neglected = checked.request.named("corner_contact") in checked.request.neglected
     return not (checked.model.corner_contact or neglected)
@@ -35,9 +35,9 @@ class SolvedRun:
     solved: Solved
 
     @property
-    def edges_left_out(self) -> bool:
+    def edges_neglected(self) -> bool:
         """Whether tip edges were left out in the belief that they stay clear."""
-        return edges_left_out(self.checked)
+        return edges_neglected(self.checked)
 
     @property
     def edge_depths(self) -> list[FloatArray]:

@@ -84,7 +84,7 @@ class Ablation(model_studies.Ablation[Figures, EffectAblation]):
 
     Attributes
     ----------
-    nominal, effects, left_out
+    nominal, effects, omitted
         Figures and effects as in every ablation.
     """
 
@@ -155,10 +155,10 @@ def ablate(
     single_run, workers = (run, InProcess()) if by_blocks else (Run(cache=run.cache), run.workers)
     toggle = partial(_toggled, checked, nominal, estimates, single_run)
     seconds *= sum(not entry.verdict.neutral for entry in ledger.values())
-    effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
+    effects, omitted = run_variants("ablation", ledger, toggle, FAILURES, run.progress, workers, seconds)
     request = checked.request
     misalignment = request.complete_scene.largest_misalignment
-    return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
+    return Ablation(nominal, tuple(effects.values()), omitted, request.torque, request.load, misalignment)
 
 
 class PredictedTables(NamedTuple):

@@ -73,7 +73,7 @@ class Frontier(model_studies.Frontier[FidelityResult]):
 
     Attributes
     ----------
-    results, left_out, knee, chosen
+    results, omitted, knee, chosen
         Of every accuracy study.
     """
 
@@ -124,7 +124,7 @@ def frontier(
     if full_contact is not None:
         integer("full_contact", full_contact, 1, MAX_FULL_CONTACT)
     names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
-    outcomes, left_out = run_fidelities(
+    outcomes, omitted = run_fidelities(
         [fidelity for fidelity in FIDELITIES if fidelity.name in names],
         checked,
         _warm_up,
@@ -140,14 +140,14 @@ def frontier(
     solves = outcomes[-1].result.status.size
     known = known_full_contact(checked.request.pair)
     study = Frontier(
-        results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
+        results, omitted, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
     )
     tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
     if full_contact is None:
         return study
     record = record_of(checked, full_contact_records() if records is None else records)
     if record is None:
-        return replace(study, left_out=study.left_out | {NAME: NO_RECORD})
+        return replace(study, omitted=study.omitted | {NAME: NO_RECORD})
     at_positions, plane_strain = record.at_positions(full_contact), tables.get("plane_strain")
     compared = compare_full_contact(at_positions, tables[study.reference.name], plane_strain)
     return replace(study, full_contact=compared)

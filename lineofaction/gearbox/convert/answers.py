@@ -15,7 +15,7 @@ from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.operating_point import OperatingPoint
 from fe_contact.types import Estimate, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.problems import JobFailed
 from lineofaction.gearbox.units import MM, MPA, UM, as_typed, boundary_ledger
 
@@ -81,7 +81,7 @@ def curve_json(
 
 
 def _bands(curve: Curve) -> Json:
-    """Return the error of every point, and what interpolation between the nodes has of it; if estimated."""
+    """Return the error of every point, and its share by interpolation between nodes, if estimated."""
     bands = {"error_um": (curve.error / UM).tolist(), "interval_error_um": curve.interval_error / UM}
     return {name: band for name, band in bands.items() if np.isfinite(band).all()}
 
@@ -131,7 +131,7 @@ def _tooth_loads(loads: ToothLoads) -> Json:
 
 
 def _figures(curve: Curve) -> Json:
-    """Mean, peak-to-peak and harmonics with their errors; without those if they were not estimated."""
+    """Return mean, peak-to-peak and harmonics with their errors, or without errors if not estimated."""
     figures = {
         "mean_um": curve.mean.value / UM,
         "mean_error_um": curve.mean.error / UM,
@@ -230,7 +230,7 @@ def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:
-    """Return mean and peak-to-peak with their errors at the highest load, and what is refined."""
+    """Return mean and peak-to-peak with errors at the highest load, and the next refinement."""
     curve = table.curve(force=float(table.force[-1]), allow_failed=True)
     mean, ripple = _figure(curve.mean), _figure(curve.peak_to_peak)
     return f"draft: mean {mean} µm, p-p {ripple} µm at {curve.torque:.6g} N m (refining {refining})"

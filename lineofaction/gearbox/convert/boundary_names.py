@@ -21,8 +21,8 @@ from dynamics.shafts.shaft import Shaft as TurningShaft
 from dynamics.solid_housing import Material as HousingMaterial
 from dynamics.solid_housing import ReductionSettings, SeatWall
 from dynamics.temperatures import Temperatures
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.flank.modification import FlankModification
-from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.geometry import Gear, GearPair, RingGear
 from fe_contact.geometry.toothing import MATING
 from fe_contact.material import Material
@@ -59,7 +59,7 @@ def _with_parts(parts: Mapping[str, Declared]) -> Iterator[type]:
 
 
 _ANYWHERE = (
-    *(FlankModification, StatedStarts, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
+    *(FlankModification, DrawingStarts, Material, Shaft, *(Gear, RingGear, *_with_parts(parts_of(Gear)))),
     *(GearBody, DiscBody, Inertia, TurningShaft, BeamSection),
     Outputs,
     *(Bushing, Housing, PlanetBearing, Coupling, FreeRotation, AppliedForce, Unbalance),

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 from bounds import inside
 from bounds.types import Json
 from fe_contact.allowed_error import AllowedError
-from fe_contact.errors import FeContactError
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import (
     FlankModification,
     Gear,
@@ -26,14 +24,12 @@ from fe_contact.geometry import (
 from fe_contact.geometry.flank_tolerances import NO_CLEARANCE, MisalignmentRange, misalignment_range
 from fe_contact.material import Material
 from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.declared import in_si, part_of
-from lineofaction.gearbox.convert.errors import translated
-from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case, ErrorsInput, LoadInput
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.schemas.gear import ToothingInput, with_flank
 from lineofaction.gearbox.units import MM, NM, UM
-from model_studies.workers import WorkersLost
 
 if TYPE_CHECKING:
     pass
@@ -69,7 +65,7 @@ def with_flanks(pair: ParallelAxes, case: Case, changes: Mapping[str, Mapping[st
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-        That of the case.
+        Gear pair of the case.
     changes : mapping
         Figures of flanks of "pinion" and "wheel" by their fields, within the bounds of these.
     """
@@ -92,18 +88,6 @@ def _with_flank(name: str, gear: Toothed, figures: ToothingInput) -> Toothed:
         return replace(gear, modification=_modification(figures, plain))
 
 
-@contextmanager
-def boundary_errors(prefix: str = "") -> Iterator[None]:
-    """Turn errors of the libraries into the boundary's."""
-    try:
-        yield
-    except (FeContactError, WorkersLost) as error:
-        known = translated(error)
-        if isinstance(known, BadInput) and prefix:
-            known = known.within(prefix)
-        raise known or error from None
-
-
 def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
     """One gear of the pair; mating external ones have opposite hands."""
     gear: ToothingInput = getattr(case.pair, name)
@@ -120,7 +104,7 @@ def _gear(kind: type[Toothed], name: str, case: Case) -> Toothed:
 
 def _modification(gear: ToothingInput, plain: Callable[[], Toothing]) -> FlankModification:
     """Return the modification of a gear; `plain` makes the gear without it."""
-    fields, starts = in_si(FlankModification, gear), StatedStarts(**in_si(StatedStarts, gear))
+    fields, starts = in_si(FlankModification, gear), DrawingStarts(**in_si(DrawingStarts, gear))
     return FlankModification(**fields | starts.lengths(fields, plain))
 
 
@@ -169,7 +153,7 @@ def analysis_options(case: Case) -> AnalysisOptions:
 
 
 def study_options(options: AnalysisOptions) -> AnalysisOptions:
-    """Return the options of a case for a study, which measures its errors and repeats what it must."""
+    """Return the options of a case for a study, which measures its errors and repeats passes."""
     return replace(options, receipt="full", on_violation="repeat")
 
 
@@ -210,11 +194,11 @@ def operating_point(case: Case) -> OperatingPoint:
 
 
 def case_json(case: Case) -> Json:
-    """Return the case with all defaults, as JSON: what is hashed and echoed."""
+    """Return the case with all defaults as JSON, which is hashed and echoed."""
     return case.model_dump(mode="json")
 
 
 def case_as_filed(case: Case) -> Json:
-    """Return the case with its title block, on which no result depends: what a file has."""
+    """Return the case with its title block, as in a file; no result depends on the title block."""
     block = {} if case.report is None else {"report": case.report.model_dump(mode="json")}
     return case_json(case) | block

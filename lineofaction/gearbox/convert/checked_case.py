@@ -14,14 +14,8 @@ from bounds.types import Json
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.plausibility import pair_findings
-from lineofaction.gearbox.convert.case import (
-    THICK,
-    analysis_options,
-    boundary_errors,
-    case_json,
-    gear_pair,
-    table_axes,
-)
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import THICK, analysis_options, case_json, gear_pair, table_axes
 from lineofaction.gearbox.schemas.case import Case
 
 if TYPE_CHECKING:
@@ -64,7 +58,7 @@ class CheckedCase:
 
     @cached_property
     def feasible(self) -> Checked:
-        """The request with all its effects: what is refused on submission. Raises `BadInput`."""
+        """The request with all its effects; refusals on submission come from here. Raises `BadInput`."""
         return self._checked(neglect=False)
 
     @cached_property
@@ -141,7 +135,7 @@ def check_case(case: Case) -> ParallelAxes:
 
 
 def check_plain_case(case: Case) -> ParallelAxes:
-    """Return the pair of a case of loads alone, as `check_case` does, without what computes.
+    """Return the pair of a case of loads alone, as `check_case` does, without modules that compute.
 
     A case with default accuracy and effects, one alignment and equal teeth is refused for its loads, or for
     a disc that is too thin; whether one may be is decided here.

@@ -9,8 +9,8 @@ from dynamics.meshes import GearMesh, MeshTable
 from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import PeriodicCurve, stiffness_table
 from fe_contact.ste import PairGeometry
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.closed_form_meshes import PeriodicInput, StiffnessMeshInput
 from lineofaction.gearbox.schemas.meshes import MeshInput

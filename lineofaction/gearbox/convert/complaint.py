@@ -25,7 +25,7 @@ from dynamics.mechanism.passing import (
     shaft_rates,
 )
 from dynamics.scene.scene import Scene
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.complaint import ComplaintInput
@@ -218,7 +218,7 @@ def _harmonics(fields: ComplaintInput) -> int:
 def _complaint(
     fields: ComplaintInput, excitations: Sequence[Excitation], shaft: str, speed: float | None, **known: Any
 ) -> Complaint:
-    """Return the complaint at a speed of a shaft, rad/s, about what passes per revolution of it.
+    """Return the complaint at a speed of a shaft, rad/s, with excitations per revolution of the shaft.
 
     `known` are attributes of it that follow from what the complaint is about.
     """
@@ -240,7 +240,7 @@ def _drivers(every: Iterable[Excitation], scene: SceneInput) -> dict[str, tuple[
 
 
 def leading_shaft(moving: Scene) -> str:
-    """Return the first driven shaft, which speeds of studies are those of."""
+    """Return the first driven shaft, to which speeds of studies refer."""
     return next((part.shaft for part in moving.references if part.speed.extreme), moving.references[0].shaft)
 
 
@@ -306,7 +306,7 @@ def _as_written(every: Iterable[Excitation], scene: SceneInput) -> list[Excitati
 
 
 def _nothing_passes(complaint: Complaint, fields: ComplaintInput) -> BadInput:
-    """Return the answer to a complaint that nothing passes: what is nearest, and how far it is."""
+    """Return the answer to a complaint without a cause: the nearest harmonics and their distances."""
     name = "frequency_hz" if fields.order is None else "order"
     meshes = [line for line in complaint.passing if line.excitation.kind == MESH] or complaint.passing
     nearest = "; ".join(

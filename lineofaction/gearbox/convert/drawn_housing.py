@@ -11,7 +11,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
-from lineofaction.gearbox.convert.errors import named
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.housings import solid_file
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput

@@ -10,7 +10,7 @@ from model_studies.ablation import TRIFLE
 
 Entry = Mapping[str, Any]
 Json = Mapping[str, Any]
-MIN = 1e-3  # um, of the static displacement of an effect whose influence is not estimated
+MIN = 1e-3  # least static displacement of an effect whose influence is not estimated, um
 _RELATIVE = ("relative_mean", "relative_peak_to_peak", "relative_bearing_force")
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -48,7 +46,7 @@ class _CaseReader(Reader):
         return of_name if unit else Unit("", of_name.factor)
 
     def unit(self, value: float, unit: str) -> Unit:
-        """Return the field's unit for what is measured like it; of lengths mm, um for small ones."""
+        """Return the field's unit for a value of its kind; for lengths mm, for small ones um."""
         of_name = unit_of(self.name)
         if of_name and of_name.si == unit != "m":
             return of_name
@@ -60,7 +58,7 @@ class _CaseReader(Reader):
         )
 
     def field_value(self, value: Any) -> Any:
-        """Return a value in the unit of its field, rounded to what was typed; lists and tables one by one."""
+        """Return a value in the unit of its field, rounded to the typed number; lists entry by entry."""
         unit = factor(self.name)
         if isinstance(value, dict):
             return {boundary_name(key): self.at(key).field_value(item) for key, item in value.items()}
@@ -94,15 +92,6 @@ def translated(error: Exception) -> ServiceError | None:
     if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
         return JobFailed(str(missing))
     return None
-
-
-@contextmanager
-def named(part: str) -> Iterator[None]:
-    """Turn input errors of dynamics into the boundary's, named inside `part`."""
-    try:
-        yield
-    except DynamicsInputError as error:
-        raise translated(error.within(part) if part else error) or error from None
 
 
 def _fault(error: RefusedValue, reader: _CaseReader) -> Fault:

@@ -82,7 +82,7 @@ def check_columns(names: Sequence[str]) -> None:
 
 
 def _points(columns: dict[str, FloatArray], size: int) -> FloatArray:
-    """Put columns in SI units into the rows of an array; what is not given is 0."""
+    """Put columns in SI units into the rows of an array; a missing column is 0."""
     points = np.zeros((len(_ROW), size))
     for name, column in columns.items():
         np.multiply(column, _FACTOR[name], out=points[_ROW[name]])

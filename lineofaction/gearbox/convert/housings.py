@@ -19,8 +19,8 @@ from dynamics.identity_cache import identity_cached
 from dynamics.joints import Housing
 from dynamics.mesh_content import check_mesh_content
 from dynamics.solid_housing import MESH_SUFFIXES, STEP_SUFFIXES
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.bearings import BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.file_content import FileContentInput
@@ -43,7 +43,7 @@ _NUMBERED = re.compile(r"^housings\[(\d+)\]")
 
 
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
-    """Return the field that holds the file of a solid, how its name ends, and what is in it.
+    """Return the field of the file of a solid, the ending of its name, and its content.
 
     Raises `BadInput`: another kind of file, damaged content, or a mesh that names further files, which are
     not here.
@@ -151,7 +151,7 @@ def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
 
 @identity_cached
 def housings_of(pairs: tuple[tuple[HousingInput, ReducedHousing | None], ...]) -> tuple[Housing, ...]:
-    """Return housings, reduced those that are given by their solids; scenes that have the same share them.
+    """Return housings, those with solids reduced; scenes with the same solids share them.
 
     Measured ones are left out.
     """

@@ -25,8 +25,9 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from host import cpu_seconds
 from lineofaction.gearbox.convert.answers import curve_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair, with_flanks
+from lineofaction.gearbox.convert.case import gear_pair, with_flanks
 from lineofaction.gearbox.problems import BadInput, Fault, NotAnalyzed, NotFound
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.live import LiveInput
@@ -252,7 +253,7 @@ def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
 
 
 def _answer(bodies: CondensedPair, pair: ParallelAxes, change: LiveInput) -> Json:
-    """Return the curves, and of each what else the question is about, with its cost."""
+    """Return the curves, each with the further answers that the question requests, and the cost."""
     torques = np.array(change.torque_n_m)
     alignment = change.misalignment_um * UM, change.center_distance_change_mm * MM
     table, solved = bodies.solve_table(pair, torques, *alignment, preview=change.preview)

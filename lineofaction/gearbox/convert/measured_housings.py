@@ -29,7 +29,7 @@ SAME_LINES = 2e-5
 """Relative difference of frequencies that are the same line: a universal file has six digits of its step."""
 _RATES = {"m/N": 1, "m/(N s)": 0, "m/(N s²)": -1}
 """Derivatives in time from a response to a mobility."""
-_LISTED = 12  # nodes in a message
+_LISTED = 12  # most nodes in a message
 _CACHE_SIZE = 8
 """Housings whose mobilities stay in memory: the check of a scene and its study read the file once."""
 _PLAIN = re.compile(r"\w[\w .+-]{0,99}")
@@ -95,7 +95,7 @@ def measured_mobility(
     axes : (3, 3) array, optional
         Columns: the axes of the file in the scene; by default the same.
     field : str
-        What names the file, for errors.
+        Field that names the file, for errors.
     """
     file = Path(file)
     channels, where = read_frequency_responses(file, field), (field, file.name)

@@ -10,7 +10,8 @@ from bounds.types import Json
 from fe_contact.analysis.flanks.deformed_pair import mesh_angles
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.live import _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS
 from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.units import DEGREE, MM

@@ -8,7 +8,7 @@ from bounds.types import Json
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.planning.cost_model import Prediction
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.units import in_um
 

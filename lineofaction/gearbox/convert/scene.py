@@ -18,11 +18,10 @@ from dynamics.meshes.standard_sliding import StandardTeeth
 from dynamics.meshes.stiffness_table import straight_table
 from dynamics.scene import Scene
 from fe_contact.ste import PairGeometry, SteDatabase
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors, named
 from lineofaction.gearbox.convert.closed_form_meshes import _closed_forms
 from lineofaction.gearbox.convert.complaint import complaint_of
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import (
     ANY_STIFFNESS,
     check_measured,
@@ -40,7 +39,7 @@ if TYPE_CHECKING:
 
 ANY_TEETH = StandardTeeth((20, 20), 0.04, 0.35, 0.0, 0.02)
 """Teeth of placeholders of tables: these have sliding data."""
-_SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
+_SAME = 1e-6  # relative difference within which lengths typed with a few digits are equal
 NO_SOLIDS: Mapping[str, ReducedHousing] = {}
 
 
@@ -69,7 +68,7 @@ def _teeth_of(scene: SceneInput, geometry: Mapping[str, PairGeometry]) -> dict[s
 
 
 def _side(geometry: PairGeometry, side: int) -> GearTeeth:
-    """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
+    """Return one gear of a pair; the hands are opposite for external gears, equal in a ring gear."""
     radius = geometry.base_radius[side]
     hand = geometry.helix_hand if side == 0 or geometry.internal else -geometry.helix_hand
     diameter = 2.0 * radius / math.cos(geometry.working_pressure_angle)
@@ -79,7 +78,7 @@ def _side(geometry: PairGeometry, side: int) -> GearTeeth:
 
 
 def _check_center_distances(scene: SceneInput, geometry: Mapping[str, PairGeometry]) -> None:
-    """Refuse axes of meshing gears that are not as far apart as their database says."""
+    """Refuse axes of meshing gears at another distance than their database states."""
     origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
     carrier = {gear.name: gear.shaft for gear in scene.gears}
     number = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
@@ -134,9 +133,9 @@ def dynamic_scene(
     Parameters
     ----------
     databases : mapping of str to SteDatabase
-        By name of the mesh; of all meshes that do not state their stiffness.
+        STE databases by name of the mesh, of all meshes that do not state their stiffness.
     reduced : mapping of str to ReducedHousing
-        By name of the housing; of all housings that are given by their solids.
+        Reduced housings by name, of all housings that are given by their solids.
 
     Raises
     ------

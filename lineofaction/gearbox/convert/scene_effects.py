@@ -36,7 +36,7 @@ class SceneEffect(NamedTuple):
 
 
 def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
-    """Return the decisions on the effects of a scene, and apart those on what changes next to nothing."""
+    """Return the decisions on the effects of a scene, and separately on effects of negligible size."""
     estimates, effects = ledger.get("influences", {}), dict[str, list[Json]]()
     for entry in ledger.get("entries", ()):
         effects.setdefault(entry["effect"], []).append(entry)
@@ -52,7 +52,7 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
 
 
 def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
-    """Return columns and a row for each effect of a scene, on or off, and what is said of the trifles.
+    """Return columns and a row for each effect of a scene, on or off, and a line on negligible effects.
 
     Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
     """

@@ -25,8 +25,8 @@ from dynamics.scene import Integration, Outputs
 from dynamics.shafts import BeamSection, DiscBody, GearBody, Inertia, Shaft, hollow_cylinder
 from dynamics.solid_housing import Material
 from dynamics.temperatures import Temperatures
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si, part_of
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.schemas.bearings import BearingInput, BushingInput, RollingBearingInput
 from lineofaction.gearbox.schemas.bodies import DiscInput, GearBodyInput
 from lineofaction.gearbox.schemas.closed_form_meshes import CoastFlankInput
@@ -173,7 +173,7 @@ def meshes_of(
     Parameters
     ----------
     base_pitch : tuple of float
-        Of each, m.
+        Base pitch of each, m.
     bent : tuple of bool
         Whether the bending of its shafts is in the table.
     """

@@ -35,8 +35,8 @@ from dynamics.housings import (
     reduced_housing,
 )
 from dynamics.work_cost import announce
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.convert.housings import solid_file
 from lineofaction.gearbox.convert.placement import Placement
 from lineofaction.gearbox.problems import BadInput, JobFailed

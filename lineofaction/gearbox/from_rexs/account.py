@@ -54,7 +54,7 @@ class Account:
         return self._places[id(component)]
 
     def say(self, component: Component, item: str, fate: Fate, text: str) -> None:
-        """State what becomes of an attribute that a component has or lacks; `item` "" is the component."""
+        """State the fate of an attribute that a component has or lacks; `item` "" is the component."""
         self._said[id(component)][item] = (fate, text)
 
     def has_entry(self, component: Component) -> bool:

@@ -27,7 +27,7 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 
 LOAD_INTENSITIES = (5e6, 15e6, 30e6)
 """F_t / (b m_n) in Pa of the load levels of a stage without torques."""
-_SAME_ANGLE = 1e-6  # rad
+_SAME_ANGLE = 1e-6  # difference within which angles are equal, rad
 _HELIX = "helix_angle_reference_diameter"
 
 
@@ -106,7 +106,7 @@ def _refuse_strangers(pair: ToothedPair) -> None:
 def _strangers(
     pair: ToothedPair, labels: Sequence[str], bound: str, item: str = "", factor: int = 1
 ) -> BadInput:
-    """Return the error of gears that do not mate: what each is, and its mate's value as an assumption."""
+    """Return the error of gears that do not mate: both values, and the mate's value as an assumption."""
     parts = [gear.part for gear in pair.gears]
     named = [f"{part.id} {part.name}: {fact}" for part, fact in zip(parts, labels, strict=True)]
     values = [None if (entry := part.attribute(item)) is None else entry.value for part in parts]

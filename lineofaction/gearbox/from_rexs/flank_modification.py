@@ -16,7 +16,7 @@ from lineofaction.gearbox.units import MM
 Removed = Callable[[FloatArray, FloatArray], FloatArray]
 """Material removed in m at roll lengths and at coordinates from the datum face, both in m."""
 
-_SAME = 1e-6  # of the flank: places that a writer's rounding sets apart are one
+_SAME = 1e-6  # distance over the flank within which places are equal: a writer's rounding
 
 
 @dataclass(frozen=True)
@@ -76,14 +76,14 @@ class PlainFlank:
         return (part.number(length, f"{meaning}: a roll length") if roll is None else roll) or end
 
     def roll_range(self, part: Part, start: str, ends: Sequence[str]) -> tuple[float, float]:
-        """Return the roll lengths over which an amount is stated, those of the whole flank by default."""
+        """Return the roll lengths over which an amount is stated, by default of the whole flank."""
         first = self.roll_length(part, start, "range of the amount")
         rolls = (self.roll_length(part, end, "range of the amount") for end in ends)
         last = next((roll for roll in rolls if roll is not None), None)
         return (self.root if first is None else first), (self.tip if last is None else last)
 
     def face_field(self, name: str, *, datum: bool) -> str:
-        """Return a field of one face: the case's datum face is the end of negative z, whatever the file's."""
+        """Return a field of one face: the case's datum face is the end of negative z in any file."""
         at_negative_z = datum == (self.loaded.datum < 0.0)
         return f"{name}_{'datum_face' if at_negative_z else 'non_datum_face'}"
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.geometry import FlankGrid
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.from_rexs.flank_modification import Modification, PlainFlank
 from lineofaction.gearbox.from_rexs.gear_unit import rounded
 from lineofaction.gearbox.units import MM, UM
@@ -18,7 +18,7 @@ from lineofaction.gearbox.units import MM, UM
 COUNTS = (17, 33, 65, 129)
 """Lines each way: the grid is refined until it differs from the sum of modifications by less than allowed."""
 
-ALLOWED_DIFFERENCE = 0.05e-6  # m; a tenth of what a gear measuring machine resolves
+ALLOWED_DIFFERENCE = 0.05e-6  # error of a grid, m: a tenth of the resolution of a gear measuring machine
 
 _SAMPLE = 65
 
@@ -77,7 +77,7 @@ def _through(axis: FloatArray, kinks: Sequence[float]) -> FloatArray:
 
 
 def _difference(flank: PlainFlank, modifications: Sequence[Modification], grid: FlankGrid) -> float:
-    """Return the largest difference between a grid and what it stands for, m."""
+    """Return the largest difference between a grid and the modifications that it represents, m."""
     axes = [_finer(np.array(axis)) for axis in (grid.roll_length, grid.face_position)]
     expected = _removed(flank, modifications, *axes)
     rolls, faces = np.meshgrid(*axes, indexing="ij")

@@ -14,7 +14,7 @@ RIM = 3.5
 
 _THINNEST = 1.0  # normal modules between bore and root circle; less is one piece with the shaft
 
-_INTEGRAL = 0.5  # of the root diameter
+_INTEGRAL = 0.5  # bore over root diameter of a gear without a stated bore
 
 STEEL = (210e9, 0.3)
 

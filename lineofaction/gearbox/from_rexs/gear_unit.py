@@ -132,7 +132,7 @@ class Part:
         return None if (attribute := self.attribute(item)) is None else attribute.value
 
     def say(self, item: str, fate: Fate, text: str) -> None:
-        """State what becomes of an attribute that the component has or lacks; "" is the component."""
+        """State the fate of an attribute that the component has or lacks; "" is the component."""
         self.unit.account.say(self.component, item, fate, text)
 
     def related(self, relation: str, role: str, other: str) -> tuple[Part, ...]:
@@ -183,12 +183,12 @@ class GearUnit:
     Parameters
     ----------
     model : Model
-        Of the newest version, its references checked.
+        Model in the newest version, with checked references.
 
     Attributes
     ----------
     account : Account
-        What becomes of its values.
+        Fates of the model's values.
     """
 
     def __init__(self, model: Model) -> None:
@@ -234,7 +234,7 @@ class GearUnit:
 
     @cached_property
     def planetary_sets(self) -> tuple[PlanetarySet, ...]:
-        """The planetary sets that have a carrier and planets; the account says what the others lack."""
+        """The planetary sets with a carrier and planets; the account names missing parts of others."""
         return tuple(_planetary_sets(self))
 
     def say(self, item: str, fate: Fate, text: str) -> None:

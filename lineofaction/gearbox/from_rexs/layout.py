@@ -108,7 +108,7 @@ class Layout:
 def _shaft_places(
     unit: GearUnit, stages: Sequence[GearStage], sets: Sequence[PlanetarySet]
 ) -> dict[int, Placement]:
-    """Return the places of the shafts by their ids; those that nothing places are left out.
+    """Return the places of the shafts by their ids, without shafts that nothing places.
 
     A shaft without a place of its own follows from a placed one: in a stage at the center distance, in the
     direction w turned about -u by the stage's angle, the gears face to face; or along a coupling. If none is

@@ -49,7 +49,7 @@ class SceneMotion:
         self.drivers = list(self._drivers())
 
     def _external(self) -> Iterator[AppliedTorque]:
-        """Yield the external loads that pass torque on, and what balances them at an end without one."""
+        """Yield the external loads that pass torque on, and balancing torques at ends without a load."""
         layout, by_rotor = self._layout, self._shafts.by_rotor
         for load, torque in self._flow.loads.items():
             part = layout.unit.part(load)
@@ -93,7 +93,7 @@ class SceneMotion:
                 yield max(acting, key=lambda torque: torque.torque * speed(torque.rotor))
 
     def _trains(self) -> list[set[int]]:
-        """Return the rotors of the scene by what stages and couplings join."""
+        """Return the rotors of the scene by train: stages and couplings join the rotors of a train."""
         layout, stages = self._layout, self._shafts.stages
         trains = [{rotor} for rotor in self._shafts.by_rotor]
         joined = [{layout.rotor(shaft.id) for shaft in stage.shafts} for stage in stages]

@@ -45,7 +45,7 @@ class Meshing:
         driver : int, optional
             Id of the driving gear; else the file's `is_driving_gear`, else gear 1.
         torques : tuple of float, optional
-            On the driving gear about its u axis, N m; their sign is its sense of rotation.
+            Torques on the driving gear about its u axis, N m; their sign is the gear's sense of rotation.
         """
         gears = _stage_gears(stage)
         if gears is None or all(gear.type == "ring_gear" for gear in gears):
@@ -110,7 +110,7 @@ def _senses(unit: GearUnit) -> dict[int, _Sense]:
 
 
 def _sense_of_speed(shaft: Part) -> float | None:
-    """Return the sign of a shaft's speed: its own, else that of a load case; None without one."""
+    """Return the sign of a shaft's stated speed, else of its speed in a load case; None: no speed."""
     cases = shaft.unit.load_cases()
     for part in (shaft, *(part for case in cases for part in case if part.id == shaft.id)):
         speed = part.number("rotational_speed", "sense in which the gears turn")

@@ -66,7 +66,7 @@ class OpenedUnit:
     """The components that the parts of the scene are; none without a scene."""
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def omitted(self) -> tuple[str, ...]:
         """The parts of the file that the scene lacks, one sentence for each reason."""
         return refusal_texts(self.lines)
 
@@ -119,7 +119,7 @@ class OpenedUnit:
         Parameters
         ----------
         document : Document
-            Of any version of REXS.
+            Document in any version of REXS.
         assumptions : iterable of Assumption
             Values over those of the file.
         """
@@ -146,7 +146,7 @@ class OpenedUnit:
 
 
 def _flows(layout: Layout) -> list[PowerFlow]:
-    """Return the flows of power of the load cases, that of the largest share first."""
+    """Return the flows of power of the load cases, the flow of the largest share first."""
     train = Train.of(layout)
     flows = []
     points = OperatingPoint.all_of(layout.unit)
@@ -184,10 +184,10 @@ def _torques(layout: Layout, flows: Sequence[PowerFlow]) -> Mapping[int, tuple[f
 
 
 def _scene(layout: Layout, table: SceneTable) -> SceneInput | None:
-    """Return the validated scene, marked by what is left out; None if the account says what it lacks."""
-    left_out = refusal_texts(layout.unit.account.lines())
+    """Return the validated scene with its omissions; None: it lacks parts, named in the account."""
+    omitted = refusal_texts(layout.unit.account.lines())
     try:
-        return validated(SceneInput, table.table | ({"left_out": list(left_out)} if left_out else {}))
+        return validated(SceneInput, table.table | ({"left_out": list(omitted)} if omitted else {}))
     except BadInput as error:
         layout.unit.say("scene", "refused", str(error))
         return None

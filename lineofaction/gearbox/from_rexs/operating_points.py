@@ -48,7 +48,7 @@ class OperatingPoint:
 
     @staticmethod
     def all_of(unit: GearUnit) -> tuple[OperatingPoint, ...]:
-        """Return the load cases of the first spectrum, or what components themselves state as one case."""
+        """Return the load cases of the first spectrum, or the components' own values as one case."""
         unit_parts = unit.of_type("shaft", "external_load", "gear_unit")
         cases = unit.load_cases()
         for number, spectrum in enumerate(unit.model.spectra[1:], 2):
@@ -80,7 +80,7 @@ def _share(case: tuple[Part, ...]) -> float | None:
 def _point(
     name: str, number_and_share: tuple[int, float], unit_parts: tuple[Part, ...], case: tuple[Part, ...]
 ) -> OperatingPoint:
-    """Return an operating point: what a case sets counts before what the component itself states."""
+    """Return an operating point; values of a load case replace values of the component itself."""
     parts = [*unit_parts, *case]
     loads = [part for part in parts if part.type == "external_load"]
     speeds = {

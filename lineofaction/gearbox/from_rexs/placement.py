@@ -35,7 +35,7 @@ class Placement:
         return float(self.u @ (point - self.origin))
 
     def within(self, outer: Placement) -> Placement:
-        """Return the place of what is stated in the frame of `outer`."""
+        """Return the placement in the model of a placement in the frame of `outer`."""
         return Placement(outer.origin + self.origin @ outer.axes, self.axes @ outer.axes)
 
     @staticmethod

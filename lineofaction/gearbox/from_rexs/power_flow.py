@@ -158,7 +158,7 @@ class _Problem:
         return self._train.forces(torques, rotors)
 
     def at_open_ends(self, flow: Flow, opened: list[int]) -> dict[int, float]:
-        """Return the torques of the train's other end by the load that is there, else by the shaft."""
+        """Return the torques of the train's open end, by its load if it has one, else by the shaft."""
         loaded = set(map(self.rotor, opened))
         return {self._at(rotor): torque for rotor, torque in flow.outside.items() if rotor not in loaded}
 

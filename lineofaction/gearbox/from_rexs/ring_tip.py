@@ -17,7 +17,7 @@ _STEP = 0.01 * MM  # tip diameters are rounded up to it
 
 
 def clearing_tip(pair: ToothedPair, depths: Sequence[ToothDepth], shifts: Mapping[int, float]) -> ToothDepth:
-    """Return the ring gear's depth, of those of both, with a tip that stays on the involute of its mate.
+    """Return the ring gear's depth with a tip on the involute of its mate; `depths` are of pinion and ring.
 
     The tip meets the mate's form circle at the roll length l_F1 + a sin(alpha_wt) of the ring gear.
     """

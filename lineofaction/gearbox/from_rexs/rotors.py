@@ -38,7 +38,7 @@ class Rotors:
 
 
 def rotors_of(unit: GearUnit, sets: Sequence[PlanetarySet]) -> Rotors:
-    """Return the rotors: the parts of a carrier are one, with what is rigidly coupled to them."""
+    """Return the rotors: the parts of a carrier are one rotor, with all parts rigidly coupled to them."""
     of = {part.id: part.id for part in unit.of_type("shaft", "side_plate")}
     joined = [
         entry

@@ -91,7 +91,7 @@ def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
 def _say_without_mesh(
     layout: Layout, cases: Sequence[StageCase], computed: Sequence[GearStage], shafts: SceneShafts
 ) -> None:
-    """State which stages have a case but no mesh in the scene, but for those of equal planets."""
+    """State the stages with a case but without a mesh in the scene, except stages of equal planets."""
     meshed = {stage.stage.id for stage in shafts.stages}
     meshed |= {s.stage.id for s in computed} & {equal for case in cases for equal in case.equal}
     on_shafts = {stage.stage.id for stage in layout.stages}

@@ -51,7 +51,7 @@ class SceneBearings:
         self.housings = list(elastic_housings(layout, self.seats))
 
     def _enter(self, entry: Connection) -> None:
-        """Enter a bearing, or a coupling on the ground, by what it joins."""
+        """Enter a bearing, or a coupling on the ground, by the parts that it joins."""
         ends = [self._rotor(side) for side in (entry.inner, entry.outer)]
         planets = {planets.planets[0].id: planets for planets in self._layout.rotors.sets}
         planet = next((side for side in (entry.inner, entry.outer) if side.id in planets), None)

@@ -105,7 +105,7 @@ def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaf
 
 
 def _refuse(layout: Layout, load: Part, reason: str) -> None:
-    """State of a load's forces and moments, its own and those of load cases, that they are left out."""
+    """State that a load's forces and moments are left out, also those of load cases."""
     cases = (part for case in layout.unit.load_cases() for part in case if part.id == load.id)
     for part in (load, *cases):
         for item in FORCES:

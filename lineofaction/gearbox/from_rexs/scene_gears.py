@@ -101,7 +101,7 @@ def _body(gear: Part, shaft_diameter: float, *, is_shaft_massless: bool) -> dict
 
 
 def _ring(gear: Part, pitch: float, module: float, is_shaft_massless: bool) -> Inertia:
-    """Return the inertia of a ring gear: none if its shaft's sections have it, else that of a rim."""
+    """Return the inertia of a ring gear: none if its shaft's sections include it, else of a rim."""
     width = gear.number("face_width", "width of the ring, mm") or 0.0
     if not is_shaft_massless or pitch <= 0.0 or width <= 0.0:
         gear.say("inertia", "derived", "0: the ring is a section of its shaft")

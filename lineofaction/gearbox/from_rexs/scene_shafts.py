@@ -35,7 +35,7 @@ class SceneShaft:
         return float(self.table["origin_mm"][2]) * MM
 
     def seat(self, name: str, z: float) -> dict[str, Any]:
-        """Return the table of what stands on the shaft at a z, m."""
+        """Return the table of a part on the shaft at a z, m."""
         return {"name": name, "shaft": self.name, "position_mm": self.position_mm(z)}
 
     def position_mm(self, z: float) -> float:
@@ -87,7 +87,7 @@ class SceneShafts:
 
 
 def _joined(layout: Layout, stages: Sequence[GearStage]) -> set[int]:
-    """Return the rotors of the stages, their carriers, and what is coupled to them."""
+    """Return the rotors of the stages, their carriers, and the rotors coupled to them."""
     rotors: set[int] = set().union(*map(layout.joined, stages))
     known: set[int] = set()
     while rotors != known:

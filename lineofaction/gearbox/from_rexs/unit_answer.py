@@ -38,7 +38,7 @@ def unit_json(unit: OpenedUnit) -> Json:
         for c in unit.cases
     ]
     return {
-        "left_out": list(unit.left_out),
+        "left_out": list(unit.omitted),
         "cases": cases,
         "scene": None if unit.scene is None else _with_cases(unit.scene, cases),
         "load_cases": [{"forces": [], **case.table()} for case in unit.load_cases],

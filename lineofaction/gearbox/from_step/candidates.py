@@ -39,7 +39,7 @@ def placements(bores: Sequence[Bore], bearings: Bearings) -> Iterator[Placement]
 
 
 def _once(points: FloatArray) -> FloatArray:
-    """Return points without those that others have, to 1 µm."""
+    """Return points without duplicates, to 1 µm."""
     _, first = np.unique(np.round(points, 6), axis=0, return_index=True)
     return points[first]
 

@@ -49,9 +49,9 @@ class StepHousing:
     """Fields of the table `[[housings]]` except name and file."""
     seated: Seated
     """Bores by bearing."""
-    left_out: tuple[str, ...]
+    omitted: tuple[str, ...]
     replaced: tuple[str, ...]
-    """`left_out`, `replaced`: Bearings in no bore; housings of the scene whose bearings are in this one,
+    """`omitted`, `replaced`: Bearings in no bore; housings of the scene whose bearings are in this one,
     which it replaces.
     """
     stand: Stand
@@ -91,11 +91,11 @@ def step_housing(
         "feet": [{"name": "base", "point_mm": _typed(stand.point), "normal": (stand.normal + 0.0).tolist()}],
         "seats": [_seat(name, seating) for name in seating.bores],
     }
-    left_out = tuple(name for name in bearings if name not in seating.bores)
+    omitted = tuple(name for name in bearings if name not in seating.bores)
     modeled = (part for part in scene.housings if not part.is_measured)
     replaced = tuple(part.name for part in modeled if seating.bores.keys() & {*part.bushings})
     mass = MATERIALS[material].density * solid.volume
-    return StepHousing(fields, seating, left_out, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
+    return StepHousing(fields, seating, omitted, replaced, stand, mass, 2.0 * solid.volume / solid.surface)
 
 
 def _bearings(scene: SceneInput) -> Bearings:

@@ -69,7 +69,7 @@ def _holds(bore: Bore, x: float, y: float, z: float) -> bool:
 
 
 def best_seating(bores: Sequence[Bore], bearings: Bearings) -> Seated:
-    """Return the placement in which most bearings are in bores: that of the file, if no other has more.
+    """Return the placement with most bearings in bores; the file's own counts unless another has more.
 
     Raises `BadInput` naming ``step_file``: no placement has three bearings of two shafts in bores, or several
     are equally good.

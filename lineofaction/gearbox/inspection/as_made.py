@@ -18,7 +18,8 @@ from fe_contact.geometry.flank_tolerances import (
 )
 from fe_contact.microgeometry.drawn_teeth import PitchBounds
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_json, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, measured_gear
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.inspection.sheet import Flank
@@ -45,7 +46,7 @@ class Inspected:
 
 
 def measured_case(case: Case, text: str, name: str, of: Inspected) -> tuple[Case, MeasuredGear]:
-    """Return a case with what the text of a sheet says of one gear, and the account of its lines.
+    """Return a case with the measured deviations of one gear by a sheet, and the account of its lines.
 
     Raises `BadInput`: a line that is none, a trace that cannot be evaluated, or a gear that cannot be.
     """
@@ -72,7 +73,7 @@ def _gear(case: Case, name: str) -> Toothing:
 
 
 def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
-    """Return the case with the fields of gears in place of those they had; it is one that can be computed."""
+    """Return the case with other fields of its gears; the case is checked to be computable."""
     content = case_json(case)
     for name, replacement in fields.items():
         replaced = {*replacement, *(_PITCHES if {*replacement} & {*_PITCHES} else ())}

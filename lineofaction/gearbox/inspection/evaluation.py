@@ -20,7 +20,7 @@ _PER_CUTOFF = 2
 
 @dataclass(frozen=True)
 class Split:
-    """A trace split into a line and what is left; m."""
+    """A trace split into its mean line and the rest, m."""
 
     coordinate: FloatArray
     """Stations, even over the length of the trace."""
@@ -33,7 +33,7 @@ class Split:
 
     @property
     def form(self) -> float:
-        """Form deviation: the range of what is left."""
+        """Form deviation: the range of `rest`."""
         return float(np.ptp(self.rest))
 
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from fe_contact.geometry import Toothing
-from lineofaction.gearbox.inspection.sheet import LARGEST_UM, LEFT_OUT, MAX_POINTS, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.sheet import LARGEST_UM, MAX_POINTS, OMITTED, Flank, Point, Sheet
 from lineofaction.gearbox.units import MM, UM
 
 _FIRST = re.compile(r"HEADER\s+KS\.MK\.FILE")
@@ -38,9 +38,9 @@ _FLANKS: dict[str, Flank] = {"links": "left", "rechts": "right", "linke": "left"
 _KINDS = {"Profil": "profile", "Flankenlinie": "helix"}
 _ENDS = {"profile": ("da", "de"), "helix": ("ba", "be")}
 """Symbols of begin and end of a trace in the heading, mm: diameters, and places along the face."""
-OTHER_TRACE = f"{LEFT_OUT}a trace of twist or topography"
-UNMEASURED = f"{LEFT_OUT}not measured by the machine"
-UNKNOWN = f"{LEFT_OUT}a line that is not understood"
+OTHER_TRACE = f"{OMITTED}a trace of twist or topography"
+UNMEASURED = f"{OMITTED}not measured by the machine"
+UNKNOWN = f"{OMITTED}a line that is not understood"
 _OTHER = "other table or heading"
 
 

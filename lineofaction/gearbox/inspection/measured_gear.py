@@ -13,11 +13,11 @@ from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.evaluation import Split, split
 from lineofaction.gearbox.inspection.reading import FIELD, REMEDY
-from lineofaction.gearbox.inspection.sheet import LEFT_OUT, PITCHES, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.sheet import OMITTED, PITCHES, Flank, Point, Sheet
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
-OTHER_FLANK = f"{LEFT_OUT}not the loaded flank"
+OTHER_FLANK = f"{OMITTED}not the loaded flank"
 _LISTED = 61
 """Number of points of a trace that is written."""
 
@@ -62,12 +62,12 @@ class MeasuredGear:
     """Evaluated traces by tooth of the sheet and trace."""
 
     @property
-    def left_out(self) -> list[str]:
+    def omitted(self) -> list[str]:
         """Return which points of the loaded flanks are left out."""
         counts = (
-            (fate.removeprefix(LEFT_OUT), count)
+            (fate.removeprefix(OMITTED), count)
             for fate, count in self.account.items()
-            if fate.startswith(LEFT_OUT) and fate != OTHER_FLANK
+            if fate.startswith(OMITTED) and fate != OTHER_FLANK
         )
         return [f"{why} (points: {count})" for why, count in counts]
 
@@ -83,9 +83,9 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
     for point in sheet.points:
         fate = _taken(point, chart)
         if fate in ("profile", "helix") and point.tooth in over_flank:
-            fate = f"{LEFT_OUT}the tooth has a topography"
+            fate = f"{OMITTED}the tooth has a topography"
         account[fate] += 1
-        if not fate.startswith(LEFT_OUT):
+        if not fate.startswith(OMITTED):
             traces[point.tooth, point.trace].append(point)
     try:
         pitches = _pitches(traces, chart)
@@ -108,9 +108,9 @@ def _taken(point: Point, chart: Chart) -> str:
         return OTHER_FLANK
     ends = sorted((gear.form_roll_length, gear.tip_roll_length))
     if point.roll is not None and not ends[0] - 1e-9 <= point.roll <= ends[1] + 1e-9:
-        return f"{LEFT_OUT}beyond the usable profile"
+        return f"{OMITTED}beyond the usable profile"
     if point.face is not None and abs(point.face) > 0.5 * gear.face_width + 1e-9:
-        return f"{LEFT_OUT}beyond the face width"
+        return f"{OMITTED}beyond the face width"
     return point.trace
 
 
@@ -165,7 +165,7 @@ def _surface(points: list[Point]) -> dict[str, Any]:
 def _flank(
     tooth: int, splits: Mapping[tuple[int, str], Split], surfaces: Mapping[int, dict[str, Any]], chart: Chart
 ) -> dict[str, Any]:
-    """Return the entry of a tooth: slopes over the whole flank, and what is left of its traces as a grid."""
+    """Return the entry of a tooth: slopes over the whole flank, and the rest of its traces as a grid."""
     entry: dict[str, Any] = {"tooth": chart.meshing(tooth)}
     if tooth in surfaces:
         return entry | {"flank_grid": surfaces[tooth]}

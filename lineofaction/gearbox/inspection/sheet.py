@@ -15,7 +15,7 @@ from lineofaction.gearbox.schemas.csv_rows import Cells, csv_rows, number_in
 from lineofaction.gearbox.units import DEGREE, MM, UM
 
 Flank = Literal["left", "right"]
-LEFT_OUT = "left out: "
+OMITTED = "left out: "
 PITCHES = ("pitch", "cumulative_pitch")
 TRACES = (*PITCHES, "profile", "helix", "topography")
 PROFILE = ("roll_length_mm", "roll_angle_deg", "diameter_mm")

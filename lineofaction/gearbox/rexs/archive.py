@@ -71,7 +71,7 @@ def _unpacked(archive: zipfile.ZipFile, size: int) -> dict[str, bytes]:
 
 
 def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, limit: int) -> bytes:
-    """Return a file of an archive, of at most so many bytes, whatever the archive says."""
+    """Return a file of an archive up to a limit in bytes; the size that the archive states is not trusted."""
     with archive.open(entry) as stream:
         data = stream.read(limit + 1)
     if len(data) > limit:

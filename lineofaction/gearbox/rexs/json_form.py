@@ -34,7 +34,7 @@ class _Table(Element):
 
     @classmethod
     def of(cls, value: Any, location: str) -> _Table:
-        """Return a table, refuse what is none."""
+        """Return a table; refuse any other value."""
         return cls(location, _typed(value, dict, location))
 
     def text(self, name: str) -> str:
@@ -117,7 +117,7 @@ def read_json(data: bytes) -> Model:
 
 
 def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpectrum]:
-    """Yield the load spectrum, if there is one, with its accumulation, which stands beside it.
+    """Yield the load spectrum, if any, with its accumulation, which is its sibling in the file.
 
     A component of a load case may leave its type to the component of its id.
     """

@@ -121,7 +121,7 @@ class Model:
         return next((component for component in self.components if component.id == number), None)
 
     def mapped(self, change: Callable[[str, Component], Component]) -> Model:
-        """Return the model with what `change` makes of each place and component, load cases included."""
+        """Return the model with `change` applied to each place and component, load cases included."""
         places = (location for location, _ in self.all_components())
 
         def changed(parts: Iterable[Component]) -> tuple[Component, ...]:
@@ -135,7 +135,7 @@ class Model:
         return replace(self, components=components, spectra=tuple(spectra))
 
     def all_components(self) -> Iterator[tuple[str, Component]]:
-        """Yield the components with their place in the file, those of load cases too."""
+        """Yield the components with their places in the file, including components of load cases."""
         yield from ((f"component {component.id}", component) for component in self.components)
         for spectrum in self.spectra:
             for case in spectrum.cases:

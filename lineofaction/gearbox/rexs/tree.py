@@ -64,12 +64,12 @@ class Element(ABC):
         """Take all that is left."""
 
     def type_of(self, inherited: str | None) -> str:
-        """Take the type of a component; `inherited` is that of the component of its id."""
+        """Take the type of a component; `inherited` is the type of the model's component of the same id."""
         del inherited
         return self.text("type")
 
     def component(self, types: Mapping[int, str]) -> Component:
-        """Return a component, by the types of those of the model."""
+        """Return a component; its type may follow from the types of the model's components."""
         number = self.number("id")
         return Component(
             id=number,

@@ -36,7 +36,7 @@ class Change:
 
 
 def upgrade(model: Model, version: str = NEWEST) -> tuple[Model, tuple[Change, ...]]:
-    """Return a model in a newer version of REXS, and what changed; one of that version or a newer as it is.
+    """Return a model in a newer version of REXS, and the changes; a model of that version stays as it is.
 
     Names and spellings that the changelogs of REXS rename are renamed. What they remove, move to another
     component or give another quantity stays as it is and is reported.

@@ -25,7 +25,7 @@ def owners(name: str) -> dict[str, str]:
 
 
 def terms(name: Literal["descriptive_components", "bearing_types"]) -> frozenset[str]:
-    """Return words that say what a component is."""
+    """Return the words for a type of component."""
     return frozenset(table("vocabulary")[name])
 
 
@@ -52,7 +52,7 @@ def si_value(value: float, unit: str | None, expected: str, location: str) -> fl
     Parameters
     ----------
     value, unit : float, str or None
-        As the file has them.
+        Value and unit as the file has them.
     expected : str
         A unit of the value's quantity, as the schema has it.
     location : str
@@ -79,7 +79,7 @@ def quantity(component: Component, name: str, location: str) -> float | None:
     Parameters
     ----------
     component : Component
-        Of a model of the newest version.
+        Component of a model in the newest version.
     name : str
         An attribute of `quantities.toml`.
     location : str

@@ -257,7 +257,7 @@ def _lines(element: Written | Attribute, indent: str = "") -> Iterator[str]:
 
 
 def _fields(fields: Mapping[str, str | int]) -> str:
-    """Return fields in quotes; ends of lines stay what they are."""
+    """Return fields in quotes; ends of lines in values are preserved."""
     escapes = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
     return "".join(f" {name}={quoteattr(str(value), escapes)}" for name, value in fields.items())
 

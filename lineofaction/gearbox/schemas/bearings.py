@@ -13,14 +13,14 @@ from dynamics.bearings.rolling_bearing import RollingBearing
 from dynamics.bearings.seat import Bushing, PlanetBearing
 from lineofaction.gearbox.schemas.declared import declared_in, with_fields
 from lineofaction.gearbox.schemas.model import BoundaryModel, Listed, Name, Number, SeatRows, refuse
-from lineofaction.gearbox.schemas.rules import all_of, both, exactly_one_of, left_out, required
+from lineofaction.gearbox.schemas.rules import absent, all_of, both, exactly_one_of, required
 from lineofaction.gearbox.units import MRAD, UM
 
 ROWS = ("ball", "roller", "catalog")
 _TILTS_OR_NOT = {
     "if": {"properties": {"direction": {"enum": ["x", "y", "z"]}}},
-    "then": both(required("displacement_um", "force_n"), left_out("tilt_mrad", "moment_n_m")),
-    "else": both(required("tilt_mrad", "moment_n_m"), left_out("displacement_um", "force_n")),
+    "then": both(required("displacement_um", "force_n"), absent("tilt_mrad", "moment_n_m")),
+    "else": both(required("tilt_mrad", "moment_n_m"), absent("displacement_um", "force_n")),
 }
 _Curve = Annotated[Listed[Number], Field(min_length=2, max_length=1000)]
 

@@ -23,7 +23,7 @@ from lineofaction.gearbox.schemas.rules import all_of, exactly_one_of
 
 _PIN = next(figure for figure in figures(PlanetBearing) if figure.name == "radial_error")
 PinErrors = Annotated[tuple[Annotated[float, *_PIN.limits], ...], Strict(False)]
-LENGTHS_AGREE = 1e-6  # relative
+LENGTHS_AGREE = 1e-6  # relative difference within which lengths are equal
 
 
 @with_fields(declared_in(Inertia, required=True))

@@ -75,7 +75,7 @@ class LoadInput(BoundaryModel):
         return self
 
 
-def _left_out(value: object) -> bool:
+def _is_absent(value: object) -> bool:
     """Whether a field that came after results had been stored is not there."""
     return value is None
 
@@ -95,7 +95,7 @@ class ErrorsInput(BoundaryModel):
         description="Accuracy class in place of misalignment_um: five misalignments, to both sides, over "
         "the range that gears and axes of this class allow (ISO 1328-1:2013, ISO/TR 10064-3)",
         examples=[7],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     bearing_clearance_um: Listed[Clearance] | None = Field(
         default=None,
@@ -104,7 +104,7 @@ class ErrorsInput(BoundaryModel):
         description="Radial internal clearance in µm of the bearings of both shafts, by which the shafts "
         "tilt; needs misalignment_class",
         examples=[[20.0, 25.0]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     center_distance_change_mm: CenterDistanceChanges = Field(
         default=(0.0,), description="Changes of the center distance in mm", examples=[[0.0]]
@@ -200,7 +200,7 @@ class Case(BoundaryModel):
 
         @model_validator(mode="after")
         def _one_wish(self) -> Self:
-            """Refuse a tolerance or a time budget beside a level, which is a mesh."""
+            """Refuse a tolerance or a time budget together with a level, which fixes the mesh."""
             wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
             if wishes and self.level is not None:
                 remedy = "A level is a mesh, regardless of cost."
@@ -223,7 +223,7 @@ class Case(BoundaryModel):
         description="Complaint about a sound: plots of the table mark its order, loa complaint lists its "
         "causes",
         examples=[{"frequency_hz": 400.0, "speed_rpm": 1200.0}],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     effects: dict[EffectName, Switch] = Field(
         default={},
@@ -236,7 +236,7 @@ class Case(BoundaryModel):
 
     @model_validator(mode="after")
     def _complaint_of_pair(self) -> Self:
-        """Refuse a complaint about other shafts, or about what a pair has not."""
+        """Refuse a complaint about other shafts, or about parts that a pair lacks."""
         for name in ("shaft", "final_shaft", "bearing", "microphone_mm"):
             value = None if self.complaint is None else getattr(self.complaint, name)
             if value is not None and name.endswith("shaft") and value not in ("pinion", "wheel"):

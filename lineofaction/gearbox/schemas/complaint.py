@@ -134,7 +134,7 @@ class ComplaintInput(ComplaintFields):
 
 
 def with_options(complaint: ComplaintInput | None, options: ComplaintFields) -> dict[str, Any]:
-    """Return the fields of a complaint with those of options before them, not yet validated.
+    """Return the fields of a complaint, overridden by the options' fields, not yet validated.
 
     An option also replaces the field that it is an alternative to.
     """

@@ -103,7 +103,7 @@ class Figure:
 
 
 def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
-    """Return the declared numbers and names of a dataclass, those of some kinds if any are given."""
+    """Return the declared numbers and names of a dataclass, of some kinds if any are named."""
     defaults = {entry.name: entry.default for entry in fields(kind)}
     return tuple(
         Figure(name, fact, defaults[name])
@@ -113,7 +113,7 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
 
 
 def declared_in(kind: type[Any], *, required: bool = False, marked: bool = True) -> Fields:
-    """Return the declared fields of a dataclass as those of a model; `required`: numbers have no default."""
+    """Return the declared fields of a dataclass as fields of a model; `required`: without defaults."""
     declared = (replace(figure, marked=marked) for figure in figures(kind))
     declared = (replace(figure, default=MISSING) if required else figure for figure in declared)
     return {**as_fields(declared), **parts_in(parts_of(kind))}

@@ -13,7 +13,7 @@ from fe_contact.geometry.ring_gear import RingGear
 from lineofaction.gearbox.schemas.declared import as_fields, figures, with_fields
 from lineofaction.gearbox.schemas.gear import ToothingInput
 from lineofaction.gearbox.schemas.model import refuse
-from lineofaction.gearbox.schemas.rules import all_of, both, left_out, required
+from lineofaction.gearbox.schemas.rules import absent, all_of, both, required
 
 RING = tuple(figure for figure in figures(RingGear) if figure not in figures(Gear))
 """Fields that only a ring gear has, or that differ from the fields of an external gear."""
@@ -23,12 +23,12 @@ _DEFAULTS = {
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
-_RING_HAS = both(required("rim_diameter_mm"), left_out("bore_diameter_mm", "blank", "seat"))
-_GEAR_HAS = both(required("bore_diameter_mm"), left_out(*(figure.field for figure in _RING_ONLY)))
+_RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat"))
+_GEAR_HAS = both(required("bore_diameter_mm"), absent(*(figure.field for figure in _RING_ONLY)))
 
 
 def _of_either_kind(schema: dict[str, Any]) -> None:
-    """Say in a schema what belongs to which kind, and what a ring gear has where nothing is stated."""
+    """Add to a schema the fields of each kind of gear, and the defaults of a ring gear."""
     schema |= all_of({"if": _IS_RING, "then": _RING_HAS, "else": _GEAR_HAS})
     for name, value in _DEFAULTS.items():
         schema["properties"][name]["x-usual"] = {"value": value, "with": ["internal"]}
@@ -56,7 +56,7 @@ class WheelInput(ToothingInput):
 
     @model_validator(mode="after")
     def _one_kind(self) -> Self:
-        """Refuse what is missing from one kind, and what belongs to the other."""
+        """Refuse missing fields of one kind, and fields that belong to the other."""
         if self.internal:
             self._check_ring()
             return self

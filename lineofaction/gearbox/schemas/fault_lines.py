@@ -17,7 +17,7 @@ _KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"\n]*"|'[^'\n]*')(?:\s*\.\s*(?:[\w-]+|"[
 
 @contextmanager
 def located(file: InputFile) -> Iterator[None]:
-    """Name file and line in the faults of what is read from it; a value that was set stands in no line."""
+    """Name file and line in the faults of a file; a value that was set over the file has no line."""
     try:
         yield
     except BadInput as error:

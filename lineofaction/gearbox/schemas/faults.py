@@ -52,7 +52,7 @@ def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ..
 
 
 def innermost(items: Sequence[Any]) -> list[Any]:
-    """Return the errors without those of a list or table whose own parts are at fault already.
+    """Return the errors without errors of a list or table whose parts are at fault already.
 
     At most the first 50; see `lineofaction.gearbox.schemas.model`.
     """

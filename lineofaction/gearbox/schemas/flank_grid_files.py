@@ -78,7 +78,7 @@ def flank_grid(text: str, field: str, name: str) -> Table:
 
 
 def _nodes(text: str) -> Nodes:
-    """Material removed by roll length and face position; `ValueError` says what the file must hold."""
+    """Return the removed material by roll length and face position; `ValueError`: the required content."""
     file = csv_rows(text, _MAX_NODES)
     if sorted(file.heading) != sorted(COLUMNS):
         raise ValueError(

@@ -8,8 +8,8 @@ from typing import Annotated, Self, TypeVar
 
 from pydantic import Field, model_validator
 
+from fe_contact.flank.drawing_starts import RELIEFS, DrawingStarts, starts_of
 from fe_contact.flank.modification import FlankModification
-from fe_contact.flank.stated_start import RELIEFS, StatedStarts, starts_of
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.tooth_flank import MAX_NODES
 from fe_contact.geometry.toothing import MATING, Toothing
@@ -58,10 +58,10 @@ class _ToothingFigures(BoundaryModel):
 
 def _start_fields(relief: str) -> tuple[str, ...]:
     """Return the fields of a gear that state where a relief starts."""
-    return tuple(figure.field for figure in figures(StatedStarts) if figure.name in starts_of(relief))
+    return tuple(figure.field for figure in figures(DrawingStarts) if figure.name in starts_of(relief))
 
 
-@with_fields({**declared_in(FlankModification), **declared_in(StatedStarts), **parts_in(parts_of(Gear))})
+@with_fields({**declared_in(FlankModification), **declared_in(DrawingStarts), **parts_in(parts_of(Gear))})
 class ToothingInput(_ToothingFigures):
     """Fields of all gears. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
@@ -131,8 +131,8 @@ def with_flank(gear: ToothingT, figures: Mapping[str, object]) -> ToothingT:
     A length replaces where the relief starts.
     """
     replaced = {field for name in figures if name in _STARTS for field in _start_fields(_STARTS[name])}
-    left_out = {field: type(gear).model_fields[field].get_default() for field in replaced}
-    return gear.model_copy(update=left_out | dict(figures))
+    defaults = {field: type(gear).model_fields[field].get_default() for field in replaced}
+    return gear.model_copy(update=defaults | dict(figures))
 
 
 def has_extent(gear: ToothingInput, relief: str) -> bool:

@@ -12,7 +12,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 def in_brief(kind: type[Model]) -> type[Model]:
-    """Give a model the short text and HTML of what it states; a decorator."""
+    """Give a model the short text and HTML of its tables; a decorator."""
     kind.headlines = headlines  # type: ignore[attr-defined]
     kind.__repr__ = kind.__str__ = text_of  # type: ignore[method-assign]
     kind._repr_html_ = html_of  # type: ignore[attr-defined]

@@ -26,7 +26,7 @@ class HousingMaterialInput(BoundaryModel):
 
 
 def material_by_name(value: object) -> object:
-    """Return the figures of a material by name; without those that came after results had been stored."""
+    """Return the figures of a material by name, without figures that are newer than stored results."""
     return _figures_of(value, later=False)
 
 

@@ -44,7 +44,7 @@ _FOREIGN = {
 """Fields that a housing must leave out, by the kind of housing and by the kind that the fields belong to."""
 
 
-def _left_out(value: object) -> bool:
+def _is_absent(value: object) -> bool:
     """Whether a field that came after results had been stored is not there."""
     return value is None or value == ()
 
@@ -75,14 +75,14 @@ class _MatrixHousing(BoundaryModel):
     mass_matrix: HousingRows | None = Field(
         default=None,
         description="Mass over all seats, likewise; kg, m, rad; left out: no mass",
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     seat_positions_mm: Listed[Point] | None = Field(
         default=None,
         min_length=1,
         max_length=1000,
         description="Positions of the seats in the fixed frame, x, y, z in mm; checked against the bearings",
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
 
 
@@ -114,33 +114,33 @@ class HousingInput(_MatrixHousing):
         description="Measured damping ratios of the modes of the solid in rising order, in place of "
         "loss_factor and damping_ratio; the last holds for all that follow",
         examples=[[0.006, 0.004, 0.008]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     modes_file: str | None = Field(
         default=None,
         max_length=1000,
         description="File of the reduced housing that has the matrices, on the disk of who wrote the scene",
         examples=["case.nc"],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     step_file: FileContentInput | None = Field(
         default=None,
         description="STEP file of its solid; a scene file has the name of the file",
         examples=[{"name": "case.step", "content": "eJwDAAAAAAE="}],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     mesh_file: FileContentInput | None = Field(
         default=None,
         description="Mesh of its solid in tetrahedra: gmsh, Abaqus, Nastran, VTK; a scene file has the name "
         "of the file",
         examples=[{"name": "case.inp", "content": "eJwDAAAAAAE="}],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     mesh_unit: Literal["mm", "m"] | None = Field(
         default=None,
         description="Unit of the coordinates in mesh_file, which does not say it",
         examples=["mm"],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     material: (
         Annotated[
@@ -152,54 +152,54 @@ class HousingInput(_MatrixHousing):
         default=None,
         description="Material of the solid: gray_cast_iron, spheroidal_cast_iron, cast_aluminum, or a table",
         examples=["gray_cast_iron"],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     seats: Listed[HousingSeatInput] = Field(
-        default=(), max_length=100, description="Bearing seats of the solid", exclude_if=_left_out
+        default=(), max_length=100, description="Bearing seats of the solid", exclude_if=_is_absent
     )
     feet: Listed[HousingFootInput] = Field(
-        default=(), max_length=100, description="Faces that hold the solid", exclude_if=_left_out
+        default=(), max_length=100, description="Faces that hold the solid", exclude_if=_is_absent
     )
     points: Listed[HousingPointInput] = Field(
-        default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_left_out
+        default=(), max_length=1000, description="Points of interest of the solid", exclude_if=_is_absent
     )
     frf_file: FileContentInput | None = Field(
         default=None,
         description="Universal file (dataset 58) of measured frequency responses from bearing seats to "
         "points; a scene file has the name of the file",
         examples=[{"name": "gearcase.uff", "content": "eJwDAAAAAAE="}],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     seat_nodes: Listed[SeatNodeInput] = Field(
         default=(),
         max_length=1000,
         description="Bearings by the reference nodes of frf_file",
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     point_nodes: Listed[PointNodeInput] = Field(
         default=(),
         max_length=1000,
         description="Points by the response nodes of frf_file",
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     origin_mm: Point | None = Field(
         default=None,
         description="Position of the file's origin in the scene, x, y, z in mm; left out: at the scene's "
         "origin",
         examples=[[0.0, 0.0, 60.0]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     x_axis: Direction | None = Field(
         default=None,
         description="Direction of the x axis of the file in the scene; left out: x",
         examples=[[1.0, 0.0, 0.0]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
     z_axis: Direction | None = Field(
         default=None,
         description="Direction of the z axis of the file in the scene; left out: z",
         examples=[[0.0, 1.0, 0.0]],
-        exclude_if=_left_out,
+        exclude_if=_is_absent,
     )
 
     @property
@@ -214,7 +214,7 @@ class HousingInput(_MatrixHousing):
 
     @property
     def has_surface(self) -> bool:
-        """Whether its file may have a surface: matrices alone do not say what the air touches."""
+        """Whether the housing's file may have a surface; matrices alone have none."""
         return self.is_solid or self.modes_file is not None
 
     @property
@@ -244,7 +244,7 @@ class HousingInput(_MatrixHousing):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        """Refuse what is missing from one kind of housing, and what belongs to another."""
+        """Refuse missing fields of one kind of housing, and fields that belong to another."""
         every = ("stiffness_matrix", *SOURCES, RESPONSES)
         sources = [name for name in every if getattr(self, name) is not None]
         if len(sources) != 1:

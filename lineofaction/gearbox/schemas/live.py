@@ -16,7 +16,7 @@ Torques = Annotated[Listed[Load], Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
-def _left_out(name: str) -> Any:
+def _optional_field(name: str) -> Any:
     """Return a field of a gear that may be left out: it is then as in the case."""
     field = ToothingInput.model_fields[name]
     kind: Any = Annotated[field.annotation, *field.metadata] if field.metadata else field.annotation
@@ -28,7 +28,7 @@ FlankChange = create_model(
     "FlankChange",
     __base__=BoundaryModel,
     __doc__="Flank modifications of one gear; > 0 is material removed.",
-    **{figure.field: _left_out(figure.field) for figure in figures(FlankModification)},
+    **{figure.field: _optional_field(figure.field) for figure in figures(FlankModification)},
 )
 
 

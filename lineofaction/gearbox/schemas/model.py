@@ -46,8 +46,8 @@ HousingRows = Annotated[Listed[HousingRow], Field(min_length=3, max_length=6000)
 CouplingRow = Annotated[Listed[Number], Field(min_length=6, max_length=6)]
 CouplingRows = Annotated[Listed[CouplingRow], Field(min_length=6, max_length=6)]
 Json = dict[str, Any]
-_LEFT_OUT: Json = {"type": "null"}
-_NOT_NULL: Json = {"not": _LEFT_OUT}
+_ABSENT: Json = {"type": "null"}
+_NOT_NULL: Json = {"not": _ABSENT}
 _NAMED = "x-named"
 
 
@@ -65,7 +65,7 @@ def _with_few_faults(schema: CoreSchema) -> CoreSchema:
 
 
 def _nodes(node: dict[str, Any], *, of_field: bool = False) -> Iterator[dict[str, Any]]:
-    """Yield a schema and those inside it, but for models of its fields, which are bounded by themselves.
+    """Yield a schema and its inner schemas, except models of fields, which have their own bounds.
 
     A schema comes back as it was left for every model that has it in a field: what is bounded is not again.
     """

@@ -16,13 +16,13 @@ class Named:
     Parameters
     ----------
     schema : str
-        Of requests, such as ``Case``, or of a model that `service.routes.openapi` adds.
+        Name of a schema of requests, such as ``Case``, or of a model that `service.routes.openapi` adds.
     """
 
     def __init__(self, schema: str) -> None:
         self._schema = schema
 
-    def __get_pydantic_json_schema__(self, _own: CoreSchema, _handler: GetJsonSchemaHandler) -> Json:
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> Json:
         """Return the name of the schema, for `with_named`."""
         return {_NAMED: self._schema}
 

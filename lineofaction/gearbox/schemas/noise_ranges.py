@@ -49,7 +49,7 @@ class NoiseRanges(BoundaryModel):
 
     @model_validator(mode="after")
     def _about_one(self) -> Self:
-        """Refuse ranges without what the scene states."""
+        """Refuse ranges of factors that do not contain 1, the value of the scene."""
         for name in RANGES:
             low, high = getattr(self, name) or (1.0, 1.0)
             if not low <= 1.0 <= high:

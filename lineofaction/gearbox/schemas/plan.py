@@ -27,7 +27,7 @@ class InputWarning(BaseModel):
     message: str = Field(description="The warning as a sentence")
 
 
-def left_out_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str, Any]]:
+def omission_warnings(texts: Iterable[str], of: str = "scene") -> list[dict[str, Any]]:
     """Return the omissions of an import from a scene or a case as warnings."""
     nothing = {"value": None, "unit": "", "low": None, "high": None, "reason": "", "source": "", "whole": ""}
     return [

@@ -71,7 +71,7 @@ class QueryInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _same_length(self) -> Self:
-        """All lists of one length, but for those of a single value."""
+        """Refuse lists of different lengths, except lists of a single value."""
         points = len(self.position)
         for name in tuple(LIMITS)[1:]:
             values = getattr(self, name)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from lineofaction.gearbox.schemas.model import _LEFT_OUT, _NOT_NULL, Json
+from lineofaction.gearbox.schemas.model import _ABSENT, _NOT_NULL, Json
 
 
 def all_of(*rules: Json) -> Json:
@@ -17,7 +17,7 @@ def exactly_one_of(*names: str) -> Json:
 
 def at_most_one_of(*names: str) -> Json:
     """Return the rule that none or one of some fields is given."""
-    return {"oneOf": [left_out(*names), *(_with(name, *names) for name in names)]}
+    return {"oneOf": [absent(*names), *(_with(name, *names) for name in names)]}
 
 
 def at_least_one_of(*names: str) -> Json:
@@ -27,8 +27,8 @@ def at_least_one_of(*names: str) -> Json:
 
 def values_or_factor(*names: str) -> Json:
     """Return the rule that one or more of some fields are given, or a factor on all of them."""
-    of_factor = both(required("factor"), left_out(*names))
-    return {"oneOf": [of_factor, at_least_one_of(*names) | left_out("factor")]}
+    of_factor = both(required("factor"), absent(*names))
+    return {"oneOf": [of_factor, at_least_one_of(*names) | absent("factor")]}
 
 
 def required(*names: str) -> Json:
@@ -36,9 +36,9 @@ def required(*names: str) -> Json:
     return {"required": list(names), "properties": dict.fromkeys(names, _NOT_NULL)}
 
 
-def left_out(*names: str) -> Json:
+def absent(*names: str) -> Json:
     """Return the schema of tables without some fields."""
-    return {"properties": dict.fromkeys(names, _LEFT_OUT)}
+    return {"properties": dict.fromkeys(names, _ABSENT)}
 
 
 def both(first: Json, second: Json) -> Json:
@@ -48,4 +48,4 @@ def both(first: Json, second: Json) -> Json:
 
 
 def _with(name: str, *names: str) -> Json:
-    return both(required(name), left_out(*(other for other in names if other != name)))
+    return both(required(name), absent(*(other for other in names if other != name)))

@@ -193,7 +193,7 @@ def _with_field(name: str) -> Iterator[str]:
 
 
 def _references() -> dict[str, dict[str, str]]:
-    """Return the fields by which parts name others, and the kind of what they name, by kind of part."""
+    """Return the fields by which parts name other parts, and the kind of the named part, by kind of part."""
     further = {
         "shafts": {"frame": "shafts"},
         "couplings": {"first": "shafts", "second": "shafts"},

@@ -26,7 +26,7 @@ def spelling_of(field: FieldInfo) -> Spelling | None:
 
 
 def item_type(field: FieldInfo) -> object:
-    """Return the type of the items of a field's list, of which there may be none; None of what is no list."""
+    """Return the type of the items of a field's list, which may be absent; None: the field is no list."""
     for kind in map(_bare, (field.annotation, *get_args(field.annotation))):
         if get_origin(kind) is tuple:
             return _bare(get_args(kind)[0])
@@ -34,5 +34,5 @@ def item_type(field: FieldInfo) -> object:
 
 
 def _bare(kind: Any) -> Any:
-    """Return a type without what is written beside it."""
+    """Return a type without its metadata."""
     return kind.__origin__ if get_origin(kind) is Annotated else kind

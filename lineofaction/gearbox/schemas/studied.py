@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, model_validator
 
 from lineofaction.gearbox.schemas.case import Case
 from lineofaction.gearbox.schemas.model import HASH, BoundaryModel, Row, refuse, refuse_unsorted
-from lineofaction.gearbox.schemas.rules import all_of, both, exactly_one_of, left_out, required
+from lineofaction.gearbox.schemas.rules import absent, all_of, both, exactly_one_of, required
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.schemas.spelling import Spelling
 
@@ -18,9 +18,7 @@ TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
 Orders = Annotated[int, Field(ge=1, le=100)]
 RunHash = Annotated[str, Field(pattern=HASH)]
 _OF_RUN = both(required("run"), {"properties": {"speed_rpm": {"maxItems": 0}}})
-_OVER_SPEEDS = both(
-    left_out("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}}
-)
+_OVER_SPEEDS = both(absent("run"), {"required": ["speed_rpm"], "properties": {"speed_rpm": {"minItems": 1}}})
 Factor = Annotated[float, Field(ge=0.05, le=20.0)]
 Factors = Row[Factor]
 RANGES = (

@@ -27,7 +27,7 @@ def toml_table(text: str, field: str) -> dict[str, Any]:
     Parameters
     ----------
     field : str
-        What the text is called in an error.
+        Name of the text in an error.
     """
     if _LONG_KEY.search(text) is not None:
         raise BadInput.of(

@@ -24,7 +24,7 @@ from lineofaction.gearbox.signals.units import measured_unit
 _EXTRAS = {"universal": ("pyuff", "uff"), "frequency_responses": ("pyuff", "uff"), "mdf": ("asammdf", "mdf")}
 """Module and extra of the readers that a base install lacks."""
 _WORKER = Path(__file__).with_name("worker.py")
-_LONGEST = 80  # characters of a name that is shown
+_LONGEST = 80  # most characters of a name in a message
 _LISTED = 12  # names in a message
 _OVER, _DIRECTIONS = ("time", "order", "frequency", ""), ("x", "y", "z", "")
 
@@ -62,7 +62,7 @@ def _may_be(channel: Channel, quantities: Sequence[str]) -> bool:
 
 
 def read_recording(path: Path, field: str, names: Sequence[str] = ()) -> Recording:
-    """Return the channels of a file; of those named alone if some are.
+    """Return the channels of a file, only the named ones if any are named.
 
     Raises `BadInput`: the ending is not known, an extra or the file is missing, the file is too large, cannot
     be read within the limits, or holds something else.
@@ -121,7 +121,7 @@ def _channels(path: Path, form: tuple[str, str], field: str, names: Sequence[str
 
 
 def _channel(fields: dict[str, Any], arrays: Any, index: int) -> Channel:
-    """Return a channel of what the child wrote, which foreign bytes may have misled."""
+    """Return a channel from the child's output, which foreign bytes may have corrupted."""
     values = arrays[f"values_{index}"]
     if (even := fields["even"]) is None:
         abscissa = np.asarray(arrays[f"abscissa_{index}"], dtype=np.float64)
@@ -137,7 +137,7 @@ def _channel(fields: dict[str, Any], arrays: Any, index: int) -> Channel:
 
 
 def _printable(text: str, longest: int = _LONGEST) -> str:
-    """Return a text of a file without what moves a cursor or breaks a line."""
+    """Return a text of a file without characters that move a cursor or break a line."""
     return "".join(sign if sign.isprintable() else " " for sign in text[:longest]).strip()
 
 

@@ -63,7 +63,7 @@ def array_file(kind: type[ArrayFile]) -> ResultFile:
 
 
 def record_file(*kinds: tuple[str, type]) -> ResultFile:
-    """Return the file of dataclasses, which follows from their fields: what each is, and its type."""
+    """Return the file of dataclasses, whose fields determine its contents, by kind."""
     by_schema = {f"lineofaction {name}": kind for name, kind in kinds}
 
     def write(result: object, file: Path) -> None:
@@ -125,7 +125,7 @@ class Computation(ABC, Generic[Written, Subject, Inputs, Answer, Result]):
         return subject
 
     def check(self, subject: Written, inputs: Inputs) -> None:
-        """Refuse what a schema accepts, and compute nothing; raises `BadInput`."""
+        """Refuse inputs that the schema accepts and the work cannot use; raises `BadInput`."""
 
     def predicted(self, _subject: Written, _inputs: Inputs, _cache: Path | None) -> StudyCost | None:
         """Return the cost once a scene has its tables; None: nothing predicts it.

@@ -35,7 +35,7 @@ class Work(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Say the work: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
+        """Return the work as text: "24 values at 1.6 s", of a single piece "gears 3.2 s"."""
         piece_seconds = engineering(self.piece_seconds, 2)
         return (
             f"{self.name} {piece_seconds} s"
@@ -62,7 +62,7 @@ class StudyCost:
 
     @property
     def text(self) -> str:
-        """Say the cost: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
+        """Return the cost as text: "about 40 CPU s, 1.2 GiB: gears 3.2 s, 24 values at 1.6 s"."""
         total = self.seconds
         memory = f", {engineering(self.bytes / 2**30, 2)} GiB" if self.bytes else ""
         parts = ", ".join(part.text for part in self._by_name if part.seconds > _SMALL * total)
@@ -73,7 +73,7 @@ class StudyCost:
 
     @property
     def _by_name(self) -> Iterator[Work]:
-        """The parts, those of one name as one with their mean."""
+        """The parts, with parts of one name joined to one with their mean."""
         for name in dict.fromkeys(part.name for part in self.parts):
             same = [part for part in self.parts if part.name == name]
             count = sum(part.pieces for part in same)

@@ -77,7 +77,7 @@ class _Declared:
     source: Source | None
 
     def lookup(self, members: Json, sources: tuple[Any, ...]) -> tuple[Any, Callable[[Any], Any]]:
-        """Return the value of the figure, and what turns it into its unit."""
+        """Return the value of the figure, and the conversion to its unit."""
         convert = _unit(self.name)[1]
         if self.name in members:
             return members[self.name], _same
@@ -101,7 +101,7 @@ class _Declared:
 
 @cache
 def _declared(model: type[Part]) -> tuple[_Declared, ...]:
-    """Return the figures of a model, but for those of its file."""
+    """Return the figures of a model, except figures of its file."""
     of_file = Figures.model_fields if issubclass(model, Figures) else {}
     fields = {name: field for name, field in model.model_fields.items() if name not in of_file}
     bare = {name: _unit(name)[0] for name in fields}
@@ -125,7 +125,7 @@ def _names(model: type[Part]) -> frozenset[str]:
 
 
 def metadata_of(result: Any) -> Mapping[str, Any]:
-    """Return the plain metadata of the result of a scene; empty for that of a pair."""
+    """Return the plain metadata of the result of a scene; empty for the result of a pair."""
     metadata = getattr(result, "metadata", None)
     return metadata if isinstance(metadata, Mapping) else {}
 
@@ -138,7 +138,7 @@ def _member(result: Any, name: str) -> Any:
 
 @cache
 def _unit(name: str) -> tuple[str, Callable[[Any], Any]]:
-    """Return the name of a figure without its unit, and what turns a value in SI into it."""
+    """Return the name of a figure without its unit, and the conversion from SI to the unit."""
     ending = ending_of(name)
     bare, divisor = name.removesuffix(ending), factor(name)
     if ending == "_deg":

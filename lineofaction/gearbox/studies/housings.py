@@ -24,7 +24,7 @@ from dynamics.settings.level_quantity import LevelQuantity
 from dynamics.types import FloatArray
 from dynamics.vibration import ReportedHarmonics
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

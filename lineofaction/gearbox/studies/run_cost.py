@@ -10,7 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError, SolveError
 from dynamics.scene import Scene
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scene_before_tables import SceneText, moving_before_tables, scene_in_motion
@@ -24,7 +24,7 @@ Receipt = Literal["minimal", "full"]
 def runs_cost(
     scene: SceneInput, runs: Callable[[Scene], tuple[list[float], float]], receipt: Receipt | None = None
 ) -> StudyCost | None:
-    """Return the cost of runs of a scene: so many times its steps each, and CPU seconds beside the steps.
+    """Return the cost of runs of a scene: number of runs times steps, and CPU seconds outside the steps.
 
     None: nothing predicts it.
     """

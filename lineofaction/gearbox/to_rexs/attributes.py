@@ -63,7 +63,7 @@ def _refuse_unknown(document: Document, results: Results) -> None:
 
 
 def _with(component: Component, results: Iterable[Attribute]) -> Component:
-    """Return a component with results, after what else it has."""
+    """Return a component with results appended to its attributes."""
     new = tuple(results)
     names = {attribute.id for attribute in new}
     others = tuple(attribute for attribute in component.attributes if attribute.id not in names)

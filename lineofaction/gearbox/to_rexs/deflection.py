@@ -32,11 +32,11 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     Parameters
     ----------
     document : Document
-        As read, of any version.
+        Document as read, in any version.
     unit : OpenedUnit
-        What it opens to.
+        Unit opened from the document.
     result : GearboxDeflection
-        Of the unit's scene under all or some of its load cases.
+        Deflection of the unit's scene under all or some of its load cases.
     """
     check_same_scene(unit, result)
     numbers = {case.name: case.number for case in unit.load_cases}
@@ -51,7 +51,7 @@ def deflected(document: Document, unit: OpenedUnit, result: GearboxDeflection) -
     return written
 
 
-def left_out(unit: OpenedUnit, result: GearboxDeflection) -> list[str]:
+def omissions(unit: OpenedUnit, result: GearboxDeflection) -> list[str]:
     """Return the names of shafts, bearings and meshes of the result that are no component of the document."""
     parts = unit.parts
     meshes = (mesh.name for case in result.deflection.cases[:1] for mesh in case.meshes)

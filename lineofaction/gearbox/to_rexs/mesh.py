@@ -27,7 +27,7 @@ def alignment_results(mesh: MeshAlignment, sense: int) -> tuple[Attribute, ...]:
 
 
 def flank_results(flanks: MeshFlanks, sense: int) -> tuple[Attribute, ...]:
-    """Return the load along the face and what follows from it, by increasing u of gear 1's shaft.
+    """Return the load along the face and derived figures, by increasing u of gear 1's shaft.
 
     Nodes count from the end of the face of the lower u. K_Hbeta is left out where the model is plane.
     `sense` is as of `alignment_results`.

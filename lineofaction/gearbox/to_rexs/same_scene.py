@@ -86,7 +86,7 @@ def _rounded(value: Any) -> Any:
 
 
 def _check_load_cases(unit: OpenedUnit, cases: Sequence[CaseDeflection]) -> None:
-    """Refuse load cases that the unit has not, and those that were not found."""
+    """Refuse load cases that the unit lacks, and load cases without a solution."""
     known = {case.name: case for case in unit.load_cases}
     for case in cases:
         if case.name not in known:

@@ -10,7 +10,8 @@ import numpy as np
 from bounds.types import FloatArray
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import Curve, SteDatabase
-from lineofaction.gearbox.convert.case import boundary_errors, gear_pair
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.from_rexs.stage_case import StageCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.rexs.model import Attribute, Document
@@ -40,11 +41,11 @@ def exported(
     Parameters
     ----------
     document : Document
-        As read, of any version.
+        Document as read, in any version.
     cases : sequence of StageCase
-        Of the document; a database belongs to the stage whose pair its case has, and to those equal to it.
+        Cases of the document; a database belongs to the stage with the pair of its case, and to equal stages.
     torque : float, optional
-        On gear 1, N m; each table's largest by default.
+        Torque on gear 1, N m; by default the largest of each table.
     """
     results: dict[int, tuple[Attribute, ...]] = {}
     for database in databases:

@@ -39,7 +39,7 @@ _SEED = 20260101
     "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
 )
 def _gap_beyond_deflection() -> Sequence[Measured]:
-    """Relieve both tips by 0.3 mm, so that most pairs cannot touch whatever the load."""
+    """Relieve both tips by 0.3 mm, so that most pairs cannot touch at any load."""
     relief = FlankModification(tip_relief=300e-6, tip_relief_length=3e-3)
     case = posed(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
     problem, solution = case.solve(even_positions(200))

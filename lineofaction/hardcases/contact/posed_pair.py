@@ -44,7 +44,7 @@ class Posed:
     def solve(
         self, position: FloatArray, load: FloatArray | None = None, pitch: IntArray | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: those of the plan."""
+        """Solve positions (P,) in base pitches at normal forces (L,) in N; None: the forces of the plan."""
         return self.contact.solve(self.model, position, self.plan.load if load is None else load, pitch)
 
     def ste(self, position: FloatArray) -> FloatArray:

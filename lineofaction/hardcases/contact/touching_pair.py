@@ -104,6 +104,6 @@ def _off_the_ramp(case: Posed, relief: float) -> float:
 
 
 def _share(problem: ContactProblem, solution: ContactSolution) -> float:
-    """Return the load share of the weakest pair but those that carry nothing."""
+    """Return the load share of the weakest pair that carries load."""
     force = np.sort(solution.force[0, 0])
     return float(force[-2] / force.sum())

@@ -25,7 +25,7 @@ from lineofaction.hardcases.scene import Measured, Scenes
 SCENES = Scenes("dynamics")
 
 _RIPPLE = 1e-6
-_FASTEST = 100.0  # rad/s
+_FASTEST = 100.0  # highest speed of the runs, rad/s
 _LARGE_RIPPLE = 1.5e-6
 
 

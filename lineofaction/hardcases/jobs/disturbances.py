@@ -46,7 +46,7 @@ def _out_of_memory() -> Sequence[Measured]:
     f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
 )
 def _past_the_deadline() -> Sequence[Measured]:
-    """Run the large job with a deadline of a few times what the small one takes."""
+    """Run the large job with a deadline of a few times the duration of the small one."""
     allowed = []
 
     def settle(seconds: float) -> dict[str, float]:

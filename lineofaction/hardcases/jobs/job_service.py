@@ -74,7 +74,7 @@ class JobService:
         return SteDatabase.from_netcdf(file).static_transmission_error
 
     def end_processes(self) -> None:
-        """Kill what should have ended before, so that a scene that fails leaves nothing either."""
+        """Kill processes that should have ended, so that a failed scene leaves none."""
         for pid in self.processes():
             with suppress(ProcessLookupError):
                 kill(pid)

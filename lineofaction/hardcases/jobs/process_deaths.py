@@ -41,7 +41,7 @@ time.sleep(3600.0)
 
 @contextmanager
 def replaced_mesher(does: str) -> Iterator[Path]:
-    """Put what the mesher loads first on the path of the workers, which hand it on; undone once unlinked."""
+    """Replace the module that the mesher loads first, on the path of the workers; undone once unlinked."""
     undisturbed()
     before = os.environ.get("PYTHONPATH")
     with tempfile.TemporaryDirectory(prefix="loa-hard-mesher-") as name:

@@ -18,7 +18,7 @@ BAND = f"{100 * (HIGH - LOW):.0f} %"
 
 
 def _loads(result: FlankChange) -> tuple[str, ...]:
-    """Name the load cases by their torques, those of the same torque by their numbers as well."""
+    """Return names of the load cases: their torques, with a number if a torque repeats."""
     torques = [f"{torque:.4g} N m" for torque in result.torque]
     return tuple(name if torques.count(name) == 1 else f"{name} ({k + 1})" for k, name in enumerate(torques))
 

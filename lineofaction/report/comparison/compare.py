@@ -73,7 +73,7 @@ class _Side(RunSignal):
 
 
 def compare_runs(runs: dict[str, RunResult], view: RunView, measured: MeasuredOrders | None) -> Page:
-    """Put the comparison of two runs by their names together, or of one with what was measured."""
+    """Return the page that compares two runs by their names, or a run with a measurement."""
     sides = tuple(_side(run_signal) for run_signal in run_signals(runs, view))
     signal = sides[0].signal
     highest = int(min(side.blocks.line[-1] for side in sides))
@@ -182,7 +182,7 @@ def compare(
     torque: float | None = None,
     measurement: Measurement = Measurement(),  # noqa: B008 (frozen)
 ) -> Page:
-    """Compare one or two tables or runs, and what was measured where one of them is a measurement.
+    """Compare two tables or runs, or one of them with a measurement.
 
     Of two folders the tables and runs that both have by name; `measurement` says of a recording what its file
     does not. Raises `BadInput`: the files are not one or two
@@ -286,7 +286,7 @@ def _page(
 
 
 def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders | None:
-    """Read what was measured, None if nothing was; of a universal file what is in the unit."""
+    """Read the measurement, None: no file is one; of a universal file the functions in the unit."""
     if not files:
         return None
     if files[0].suffix.lower() == ".csv":
@@ -295,7 +295,7 @@ def _measured(files: Sequence[Path], teeth: int, unit: str) -> MeasuredCurve | M
 
 
 def named_files(files: Sequence[Path]) -> list[tuple[str, Path]]:
-    """Name results by their files: as short as tells them apart."""
+    """Return names of results by their files, as short as distinguishes them."""
     stems = [file.stem for file in files]
     short = len(set(stems)) == len(stems)
     return [((short and file.stem) or str(file), file) for file in files]

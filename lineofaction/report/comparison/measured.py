@@ -30,7 +30,7 @@ VALUES = {
     "amplitude_m_per_s2": "m/s²",
 }
 PER_PITCH = 256
-NEAR = 0.1  # of an order
+NEAR = 0.1  # distance from an order within which a line belongs to it, in orders
 _FEWEST = 8  # samples in a base pitch
 _REMEDY = (
     "The first line names two columns: position (base pitches) or angle_deg (of the driving gear) and "
@@ -73,7 +73,7 @@ class Difference:
         return "the second is larger" if self.value > 0.0 else "the second is smaller"
 
     def __str__(self) -> str:
-        """Write the difference with its error and what follows."""
+        """Return the difference with its error and its verdict as text."""
         return f"{self.written}: {self.finding}"
 
     @property
@@ -96,7 +96,7 @@ class Difference:
 
 
 def differences_table(differences: Sequence[Difference], names: Sequence[str]) -> Table:
-    """Tabulate differences, each with what follows from it."""
+    """Tabulate differences, each with its verdict."""
     rows = tuple(
         (one.name, one.where, _estimate(one.first), _estimate(one.second), one.written, one.finding)
         for one in differences
@@ -165,7 +165,7 @@ class MeasuredOrders:
     unit: str
 
     def require(self, unit: str) -> None:
-        """Refuse to be shown beside amplitudes in another unit."""
+        """Refuse amplitudes in another unit."""
         if self.unit != unit:
             raise BadInput.of("measured", f"amplitudes in {self.unit}", f"amplitudes in {unit}")
 
@@ -176,7 +176,7 @@ class MeasuredOrders:
 
 
 def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
-    """Read a CSV file with a line of names; `teeth` are those of the driving gear.
+    """Read a CSV file with a line of names; `teeth` are the driving gear's.
 
     Raises `BadInput`: the columns are not known, a cell is no number, or less than one base pitch is sampled.
     """

@@ -50,7 +50,7 @@ Named = dict[str, SteDatabase]
 def compare_tables(
     tables: Named, measured: MeasuredCurve | MeasuredOrders | None, torque: float | None = None
 ) -> Page:
-    """Return the page that compares two tables with each other, or one with what was measured.
+    """Return the page that compares two tables with each other, or one with a measurement.
 
     Ripples and harmonics are drawn at `torque` on the driving gear, N m; None takes the middle one of the
     torques that all tables cover. Raises `BadInput` if the tables have no torque in common, if one does not

@@ -91,7 +91,7 @@ class _Side:
 def compare_recording(
     named: tuple[str, RunResult], recording: Recording, view: RunView, measurement: Measurement
 ) -> Page:
-    """Set a recording beside a run, by the same analysis of both.
+    """Compare a recording with a run, by the same analysis of both.
 
     Raises `BadInput`: no channel measures what is shown, units or speeds are missing, the run is shown along
     no direction, or both pass no common speed.
@@ -115,7 +115,7 @@ def compare_recording(
 
 
 def _channel(recording: Recording, signal: Signal, measurement: Measurement) -> tuple[Channel, str]:
-    """Return the channel that measures what is shown, and the direction that its file states."""
+    """Return the channel of the shown quantity, and the direction that its file states."""
     quantity = _QUANTITIES.get(signal.quantity.series)
     if quantity is None:
         bound = f"a quantity that sensors record: {', '.join(dict.fromkeys(_QUANTITIES))}"

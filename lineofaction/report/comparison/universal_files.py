@@ -24,7 +24,7 @@ def read_universal(path: Path, teeth: int, unit: str) -> MeasuredCurve | Measure
 
 
 def of_universal(recording: Recording, teeth: int, unit: str) -> MeasuredCurve | MeasuredOrders:
-    """Return the one function of a file that can be compared; `teeth` are those of the driving gear.
+    """Return the one comparable function of a file; `teeth` are the driving gear's.
 
     `unit` is "µm", "N" or "m/s²": of what it is compared with. Complex values count by their amplitude.
     """

@@ -23,7 +23,7 @@ from lineofaction.report.presentation import Presentation
 CAUSE_LABELS = ("of shafts", "bearings", "clearance", "housing", "couplings", "set")
 COLORS = (palette.BLUE, palette.VERMILLION, palette.GREEN, palette.PURPLE, palette.MUTED, palette.INK)
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
-LOADED = 1e-3  # of the largest pressure: less is blank
+LOADED = 1e-3  # share of the largest pressure below which a pattern is blank
 
 
 def _meshes_worst_first(result: GearboxDeflection) -> list[str]:
@@ -49,7 +49,7 @@ def _mesh_of(case: CaseDeflection, name: str) -> MeshAlignment:
 
 
 def _mesh_table(result: GearboxDeflection) -> Table:
-    """List every mesh under every load case, the worst mesh first; of the causes those that act."""
+    """List every mesh under every load case, the worst mesh first, with the causes that act."""
     acting = np.any([mesh.causes for case in result.deflection.cases for mesh in case.meshes], axis=0)
     flanks = {(flanks.mesh, flanks.case): flanks for flanks in result.flanks}
     head = (

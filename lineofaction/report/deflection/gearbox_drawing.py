@@ -145,7 +145,7 @@ def _along(outline: Outline, case: CaseDeflection, across: FloatArray, scale: fl
 
 
 def _shaft_names(outline: Outline, heights: FloatArray) -> tuple[Note, ...]:
-    """Write the names of shafts at their right ends; those that would cover each other in one row."""
+    """Write the names of shafts at their right ends, names that would overlap in one row."""
     ends = outline.origin[:, 2] + outline.length
     row = NEAR * max(float(np.max(outline.length)), float(np.ptp(heights)))
     rows: list[tuple[float, float, list[str]]] = []

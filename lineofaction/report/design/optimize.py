@@ -52,7 +52,7 @@ def _harris(result: Optimization) -> Figure:
 
 
 def _chosen(result: Optimization) -> list[int]:
-    """Torques whose curves are drawn: those that count, those that get worse, and some between them."""
+    """Return the torques whose curves are drawn: counted ones, ones that get worse, and some between."""
     torque = result.start.harris_map.torque
     drawn = {*np.flatnonzero(np.isin(torque, result.torque)).tolist(), *result.rising.tolist()}
     even = np.linspace(torque[0], torque[-1], max(2, MAX_CURVES - len(drawn)))

@@ -152,7 +152,7 @@ def _short(study: Study, factor: int) -> str:
 
 
 def _tornado_figure(study: Study) -> Figure:
-    """Draw what each factor does to the first response: by means of its levels, or by rank correlation."""
+    """Draw the influence of each factor on the first response: by level means, or by rank correlation."""
     return Figure(
         "study_tornado",
         "What matters",

@@ -132,7 +132,7 @@ def _series(result: SweepResult) -> Table:
 
 
 def _headlines(result: SweepResult) -> tuple[Headline, ...]:
-    """Return the best of the first quantity with what is as low within the errors, and its largest."""
+    """Return the best value of the first quantity with points as low within the errors, and the largest."""
     if not result.sweep.usable:
         return ()
     quantity = result.quantities[0]

@@ -16,7 +16,7 @@ def attached(pdf: bytes, name: str, content: bytes) -> bytes:
     pdf : bytes
         With a table of references at its end, no stream of them, and a catalog without names.
     name : str
-        Of the file, in ASCII without brackets.
+        Name of the file, in ASCII without brackets.
     """
     last, size, root = _end(pdf)
     catalogs = re.findall(rb"\n%d 0 obj\n<<(.*?)>>\nendobj" % root, pdf, re.S)

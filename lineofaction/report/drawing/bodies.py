@@ -216,7 +216,7 @@ class _Picture:
             self.color[pixels][before] = np.outer(lit, color)
 
     def cover(self, hull: Hull, color: Sequence[float]) -> None:
-        """Draw what the eye sees of a surface from outside over all that is behind it."""
+        """Draw the visible outside of a surface over everything behind it."""
         nearest, lit = np.full(self.distance.shape, np.inf), np.zeros(self.distance.shape)
         for corners in hull.points[hull.facets]:
             across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
@@ -265,7 +265,7 @@ def rendered(
     colors: Mapping[str, Sequence[float]],
     hulls: Sequence[Hull] = (),
 ) -> Rendered:
-    """Return the picture of bodies on white, seen through surfaces; colors by what a body is."""
+    """Return the picture of bodies on white, seen through surfaces; colors by kind of body."""
     picture = _Picture.blank(camera.finer())
     owner = [-1]
     for index, body in enumerate(bodies):

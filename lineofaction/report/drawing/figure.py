@@ -22,7 +22,7 @@ BLANK = 0.01
 DRAWING_WIDTH, TALLEST = 3.3, 2.0
 """Width of a panel over its usual height, and the height of the tallest drawing over that."""
 _SLIM = 1.5  # height of a drawing over the usual one from which on half the width does
-_SHORT = 12  # characters of a label at a line beside which a panel of half the width stands
+_SHORT = 12  # most characters of a line's label in a panel of half the width
 _MAX_INTEGER = 30  # an axis of whole numbers up to here has no ticks between them
 _FEW_ORDERS = 4.0  # an axis of fewer orders, with fractions of them, has ticks between
 
@@ -40,7 +40,7 @@ class Axis:
     names: tuple[tuple[float, str], ...] = ()
 
     def __post_init__(self) -> None:
-        """Let the data decide where nothing lies between the limits, as those of a spectrum of zeros."""
+        """Drop limits that contain no data, as for a spectrum of zeros."""
         low, high = self.limits or (0.0, 0.0)
         if not (low < high and self.shows(low) and self.shows(high)):
             object.__setattr__(self, "limits", None)
@@ -155,7 +155,7 @@ class HeatMap:
 
     @classmethod
     def spanning(cls, x: FloatArray, y: FloatArray, z: FloatArray, label: str) -> HeatMap:
-        """Return the map whose colors run from the least to the largest value, apart where all are alike."""
+        """Return the map whose colors run from the least to the largest value, widened if all are equal."""
         known = z[np.isfinite(z)]
         minimum, largest = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
         return cls(x, y, z, label, largest if largest > minimum else minimum + 1.0, minimum)
@@ -219,7 +219,7 @@ class Table:
     def of(
         cls, caption: str, entries: Iterable[_Entry], columns: Mapping[str, Callable[[_Entry], str]]
     ) -> Table:
-        """Write a row for each entry; columns by their heads say what they write of one."""
+        """Return a table with a row for each entry; a column is a head and the function of its cells."""
         rows = tuple(tuple(write(entry) for write in columns.values()) for entry in entries)
         return cls(caption, tuple(columns), rows)
 
@@ -293,7 +293,7 @@ def ordered_lines(
     *,
     labeled: bool = True,
 ) -> tuple[Line, ...]:
-    """Draw curves (n,) over `x`, dark for the first, named at their ends; those with bands as points too."""
+    """Return curves (n,) over `x`, dark for the first, with names at their ends; with bands also points."""
     count, points = len(names), bands is not None
     sizes: Iterable[FloatArray | float] = [0.0] * count if bands is None else bands
     return tuple(
@@ -342,7 +342,7 @@ def _extent(panel: Panel, axis: Literal["x", "y"]) -> float:
 
 
 def legend_names(panels: Sequence[Panel]) -> list[str]:
-    """Return the names that a legend lists: of what neither labels nor notes nor axes of its panel name."""
+    """Return the names in a legend: names without a label, note or axis in their panel."""
     named = [
         {note.text for note in panel.notes}
         | {name for axis in (panel.x, panel.y) for _, name in axis.names}

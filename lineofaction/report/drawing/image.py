@@ -53,12 +53,12 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.placing import line_labels, rewritten, vertical_limits
 
 THIN, THICK = 0.7, 4.0  # points, width of strokes at zero and at the largest value
-_WIDTH = 9.0  # inches, of the sheet
+_WIDTH = 9.0  # width of the sheet, inches
 _DPI = 150
-_PANEL_HEIGHT = 2.0  # inches, of a wide panel
-_NARROW_HEIGHT = 1.64  # inches, of a narrow panel
-_DRAWING_HEIGHT = 2.6  # inches, of a panel with equal units in both directions
-_LEGEND_HEIGHT = 0.9  # inches, of title and legend together
+_PANEL_HEIGHT = 2.0  # height of a wide panel, inches
+_NARROW_HEIGHT = 1.64  # height of a narrow panel, inches
+_DRAWING_HEIGHT = 2.6  # height of a panel with equal units in both directions, inches
+_LEGEND_HEIGHT = 0.9  # height of title and legend together, inches
 _SHADED_WIDTH = 0.82  # width of a panel beside its color bar, over the width without one
 _LEGEND_CHARACTERS = 120  # characters of the legend's type across the sheet
 _HANDLE_CHARACTERS = 9  # the same, for the sample of the curve and the gap beside a name
@@ -254,7 +254,7 @@ def _edges(middles: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
 
 
 def _strokes(ax: Axes, shade: Strokes) -> Any:
-    """Draw strokes in the order of their values: the largest on top, and those without a value below all."""
+    """Draw strokes in the order of their values, the largest on top, strokes without a value below all."""
     order = np.argsort(shade.value, kind="stable")
     ends = np.stack([shade.x[order], shade.y[order]], axis=-1)  # (strokes, 2 ends, x and y)
     value = shade.value[order]
@@ -348,7 +348,7 @@ def _finish(ax: Axes, panel: Panel) -> None:
 
 
 def _write_note(ax: Axes, note: Note, *, boxed: bool) -> None:
-    """Write a note beside its point, in a white box where colors lie under it."""
+    """Write a note at its point, in a white box where colors lie under it."""
     right = -5 if note.left else 5  # points
     above = 4 + _NOTE_ROW * note.row
     if note.row < 0:

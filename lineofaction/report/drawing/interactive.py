@@ -39,9 +39,9 @@ _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
 _LABEL_ROW, _LEADER, _LABEL_CHARACTER = 15, 18, 6.6  # pixels of a label at a line: row, way to it, character
-_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
+_BAND_ALPHA = "33"  # opacity of an error band, after the six digits of its color
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
-_TINT = "22"  # of what an outline holds
+_TINT = "22"  # opacity of the area in an outline
 _BOX = "rgba(255,255,255,0.8)"  # under a text on colors
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 _MAX_TICKS = 10
@@ -302,7 +302,7 @@ def _panel_title(panel: Panel, suffix: str) -> list[Json]:
 
 
 def _notes(panel: Panel, suffix: str) -> list[Json]:
-    """Put short texts beside their points; annotations count decades on a logarithmic axis."""
+    """Put short texts at their points; annotations count decades on a logarithmic axis."""
     notes = []
     for note in panel.notes:
         annotation = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}

@@ -49,7 +49,7 @@ def of_run(marks: Marks, mesh: str) -> Marks:
 
 
 def order_label(order: float, metadata: Mapping[str, Any]) -> str:
-    """Return an order with what it is where that is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
+    """Return an order, with its name if it is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
     text, turning = f"{order:.4g}", metadata.get("turning")
     if turning is None or np.isclose(order, round(order), rtol=1e-6):
         return text
@@ -64,7 +64,7 @@ def drawn_orders(order: FloatArray, sizes: FloatArray, count: int, metadata: Map
 
 
 def marked_page(page: Page, marks: Marks) -> Page:
-    """Return a page with the marks in all its plots, and what they stand for in its lead."""
+    """Return a page with the marks in all its plots, and their meaning in its lead."""
     sections = marked_sections(page.sections, marks)
     lead = " ".join(text for text in (page.lead, f"Complaint: {marks['words']}.") if text)
     return replace(page, lead=lead, sections=sections)

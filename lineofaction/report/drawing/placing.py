@@ -19,7 +19,7 @@ _MARGIN = 0.05
 beyond the margin runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
-_ROOM = 0.05  # of the height beyond the curves where the axis has no limits
+_ROOM = 0.05  # share of the height above and below the curves of an axis without limits
 Description = TypeVar("Description")
 
 
@@ -57,7 +57,7 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     Parameters
     ----------
     x, y : Axis
-        Of the panel; `x` with limits, and `y`, too, where the panel ends with `y_range`.
+        Axes of the panel; `x` has limits, and `y` too if the panel ends with `y_range`.
     y_range : (float, float)
         Values between which the panel's curves lie.
     """
@@ -77,7 +77,7 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
 
 
 def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
-    """Return the box of a text beside the point (x, y)."""
+    """Return the box of a text at the point (x, y)."""
     width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
     return _Box(start, start + width, low, low + _HEIGHT)
@@ -119,7 +119,7 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
 
 
 def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
-    """Return the middles of texts (n,) of given heights that lie apart and nearest to where they are wanted.
+    """Return the middles of texts (n,) of given heights without overlap, nearest to the wanted places.
 
     The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is
     moved into 0 to 1, its top first.
@@ -140,7 +140,7 @@ def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
 
 
 def vertical_limits(panel: Panel) -> tuple[float, float]:
-    """Return the ends of a panel's vertical axis: its own, or those of the curves with some room."""
+    """Return the ends of a panel's vertical axis: stated limits, or the ends of the curves with a margin."""
     if panel.y.limits is not None:
         return panel.y.limits
     edges = [line.y + side * np.nan_to_num(line.band) for line in panel.lines for side in (-1.0, 1.0)]

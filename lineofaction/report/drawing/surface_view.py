@@ -81,8 +81,8 @@ def surface_panels(
         one_number = [len(points), 1]  # turns the two nodes of an edge into one number
         inner = folds[~np.isin(folds @ one_number, outline @ one_number)]  # not drawn twice
         visible_folds = _in_sight(view, points[inner], depth_at_rest)
-        whole_outline = _in_sight(view, points[outline], depth_at_rest, np.inf)
-        edges = 1e3 * view.step * np.concatenate([visible_folds, whole_outline])
+        outline_folds = _in_sight(view, points[outline], depth_at_rest, np.inf)
+        edges = 1e3 * view.step * np.concatenate([visible_folds, outline_folds])
         line = Line("edges at rest", edges[:, 0], edges[:, 1], palette.INK, width=0.6)
         across, up = (Axis("mm", limits=(0.0, float(along[-1]))) for along in (x, y))
         shade = HeatMap(x, y, image, label, largest, minimum)

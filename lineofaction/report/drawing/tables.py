@@ -36,7 +36,7 @@ def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Table:
-    """Tabulate settings of the same names beside each other, for example of both gears."""
+    """Tabulate settings of the same names side by side, for example of both gears."""
     contents = {name: dict(_rows(content)) for name, content in columns.items()}
     labels = dict.fromkeys(label for content in contents.values() for label in content)
     rows = tuple((label, *(content.get(label, "") for content in contents.values())) for label in labels)
@@ -94,7 +94,7 @@ def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, .
 
 
 def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
-    """Return sections with those of effects as one: their rows in one table, in the order of the sections.
+    """Return sections with all effect sections as one: rows in one table, in the order of the sections.
 
     A decision that several state has one row: its last size that is more than a displacement at rest.
     """
@@ -115,16 +115,16 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
 
 
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
-    """Tabulate what was simulated and what the model leaves out, by the effect ledger of a scene."""
+    """Tabulate the simulated and the neglected effects by the effect ledger of a scene."""
     rows, trifles = (
         [(one.name, one.parts, one.on, one.size, one.reason) for one in effects]
         for effects in scene_effects(ledger)
     )
     small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
-    left_out = settings_table("Not in the model", ledger.get("left_out", {}))
+    neglected = settings_table("Not in the model", ledger.get("left_out", {}))
     phases = tuple((row["part"], row["words"]) for row in ledger.get("assumed", ()))
     assumed = Table("Assumed of phases", ("part", "assumed"), phases)
-    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), left_out)
+    folded = (*((small,) if trifles else ()), *((assumed,) if phases else ()), neglected)
     return effects_section("", rows, folded)
 
 

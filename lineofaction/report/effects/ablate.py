@@ -34,7 +34,7 @@ _CASE_HEAD = (
     "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
     "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
 )  # fmt: skip
-_SMALLEST = 1e-3  # um; smaller changes are nothing
+_SMALLEST = 1e-3  # least change that counts, um
 
 
 @dataclass(frozen=True)
@@ -272,8 +272,8 @@ def _ablation_page(ablation: Ablation | SceneAblation) -> Page:
         entry = look.ordered(ablation)[0]
         name, change = entry.name.replace("_", " "), look.change_text(ablation, entry)
         heads.append(Headline(f"without {name}", change, "of peak to peak, the largest influence"))
-    left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.left_out.items()))
-    tables = (look.table(ablation), *([left] if ablation.left_out else []))
+    left = Table("Effects that were not toggled", ("effect", "because"), tuple(ablation.omitted.items()))
+    tables = (look.table(ablation), *([left] if ablation.omitted else []))
     figures = (replace(_ablation_figure(ablation), table=None),) if ablation.effects else ()
     lead = f"{len(ablation.effects)} effects of the {look.what}, each toggled by itself"
     return Page("Influence of every effect", lead, tuple(heads), (Section("Effects", "", figures, tables),))
@@ -285,7 +285,7 @@ def _look(ablation: Ablation | SceneAblation) -> _Look:
 
 def _text(ablation: Ablation | SceneAblation) -> Iterator[Table | str]:
     yield _look(ablation).table(ablation)
-    for name, reason in ablation.left_out.items():
+    for name, reason in ablation.omitted.items():
         yield f"not toggled: {name}: {reason}"
 
 

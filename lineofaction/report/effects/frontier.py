@@ -243,8 +243,8 @@ def _frontier_page(study: Study) -> Page:
         for text, name in ((look.chosen, study.chosen), ("knee", study.knee))
         if name in by_name and name is not None
     ]
-    left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.left_out.items()))
-    tables = (table, *([left] if study.left_out else []))
+    left = Table("Fidelities that were not run", ("fidelity", "because"), tuple(study.omitted.items()))
+    tables = (table, *([left] if study.omitted else []))
     section = Section(table.caption, "", (replace(figure, table=None),), tables)
     return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
 
@@ -252,7 +252,7 @@ def _frontier_page(study: Study) -> Page:
 def _panel(
     study: Study, look: _Look, peers: Sequence[_Peer], across: Axis, figure: str, title: str, label: str
 ) -> Panel:
-    """One panel: points by family, what stands beside them, and the marks."""
+    """Return one panel: points by family, peers, and the marks."""
     drawn = [(result, 100.0 * getattr(result, figure)) for result in study.results]
     drawn = [(result, error) for result, error in drawn if error > 0.0]
     lines = []
@@ -302,7 +302,7 @@ def _quickest(study: Study) -> str:
 
 def _text(study: Study) -> Iterator[Table | str]:
     yield _frontier_table(study)
-    for name, reason in study.left_out.items():
+    for name, reason in study.omitted.items():
         yield f"not run: {name}: {reason}"
 
 

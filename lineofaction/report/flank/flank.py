@@ -34,20 +34,21 @@ from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.pair import pair_lead, pair_title
 from lineofaction.report.presentation import Presentation
 from lineofaction.report.ste.curves import POSITION_LABEL
-from lineofaction.report.ste.page import case_tables, contact_effects, edge_text
+from lineofaction.report.ste.headlines import edge_text
+from lineofaction.report.ste.page import case_tables, contact_effects
 
 N_PER_MM = 1e3
 """One N/mm in N/m."""
 
-MAX_LINES = 8  # positions
+MAX_LINES = 8  # most positions with a contact line in a plot
 Gear = Literal["pinion", "wheel"]
 GEARS: tuple[Gear, ...] = ("pinion", "wheel")
 PRESSURE = "Hertz pressure, MPa"
 _MAX_ISOLINES = 6
-_HIGHEST_ISOLINE = 0.92  # of the largest; a curve about a ridge narrower than the positions breaks up
+_HIGHEST_ISOLINE = 0.92  # share of the largest: curves about a ridge narrower than the positions break up
 _Map = tuple[FloatArray, FloatArray]
 """Roll lengths (R,) in mm and pressures (R, K) in MPa of a contact pattern."""
-MAX_CURVES = 4  # positions
+MAX_CURVES = 4  # most positions with a curve in a plot
 _VISIBLE_GAP = 0.01
 """Least gap that is drawn, um; a plot of a smaller gap shows nothing."""
 _ROUNDING = 1e-9
@@ -61,7 +62,7 @@ def _face_axis(flanks: LoadDistribution) -> Axis:
 
 
 def contact_lines(flanks: LoadDistribution) -> Figure:
-    """Draw contact lines at positions spread over the cycle, and those of the largest pressure alone."""
+    """Draw contact lines at positions spread over the cycle, and separately at the largest pressure."""
     worst = int(flanks.pressure.max(axis=(1, 2)).argmax())
     step = max(flanks.position.size // MAX_LINES, 1)
     chosen = np.arange(0, flanks.position.size, step)
@@ -211,7 +212,7 @@ def _curve(flanks: LoadDistribution, gear: Gear, one: _Map) -> Panel:
 
 
 def _extent(flanks: LoadDistribution, gear: Gear, roll: FloatArray) -> tuple[float, float]:
-    """Return the range in mm from what is touched, or the start of the active profile, to the tip."""
+    """Return the range in mm from the touched flank, or the start of the active profile, to the tip."""
     scene, index = flanks.scene, GEARS.index(gear)
     ends = scene.start_of_active_profile[index], scene.tip[index]
     marks = [*(1e3 * end for end in ends), float(roll[0]), float(roll[-1])]
@@ -358,7 +359,7 @@ def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
 
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
-    """Return the page of flank results; beside their database, which has its own effects and case."""
+    """Return the page of flank results, with their database if known, which has effects and case."""
     pair = flanks.scene.geometry
     sections = (*_results(flanks), *_making(flanks, alone=database is None))
     return Page(
@@ -392,7 +393,7 @@ def _kink_text(flanks: LoadDistribution) -> str:
 
 
 def _edge_load(flanks: LoadDistribution) -> str:
-    """Name the line load at edges apart, a mean over a slice; nothing where none is reached."""
+    """Return text on the line load at edges, a mean over a slice; empty: no edge is reached."""
     load = flanks.edge_line_load
     if load.value <= 0.0:
         return ""
@@ -420,7 +421,7 @@ def _results(flanks: LoadDistribution) -> tuple[Section, ...]:
 
 
 def _making(flanks: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
-    """Show what the flank results cost; `alone`, without their database, also effects and case."""
+    """Show the cost of the flank results; `alone`, without their database, also effects and case."""
     metadata = flanks.metadata
     if not metadata.receipt:
         return ()

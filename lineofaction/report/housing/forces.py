@@ -17,7 +17,7 @@ from dynamics.types import FloatArray
 from lineofaction.gearbox.schemas.figures import LINEAR
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, number, shaded_levels
-from lineofaction.report.response.excitations import orders_left_out
+from lineofaction.report.response.excitations import omitted_orders
 
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
 """Smearing of 1 dB, above which a window does not resolve an order."""
@@ -28,7 +28,7 @@ LABEL = "sound power level, dB(A)"
 
 
 def of_run(metadata: Json) -> Json | None:
-    """Return the metadata `forces` of a result if they are those of a run; None for the linear response."""
+    """Return the metadata `forces` of a result by a run; None: they are of the linear response."""
     forces: Json = metadata.get("forces", LINEAR)
     return forces if forces["source"] == "run" else None
 
@@ -51,7 +51,7 @@ def force_rows(metadata: Json) -> tuple[tuple[str, str], ...]:
     run = of_run(metadata)
     if run is None:
         about = ("forces on bearings", "linear steady response: stiffness varies, flanks in contact")
-        return (about, *orders_left_out(metadata))
+        return (about, *omitted_orders(metadata))
     windows = f"{len(run['time_s'])} windows of {run['window_pitches']} base pitches"
     if run["windows_left_out"]:
         windows += f", {run['windows_left_out']} left out: standstill, or too fast a change of speed"

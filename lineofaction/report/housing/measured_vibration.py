@@ -26,7 +26,7 @@ _LARGEST_HEAD = (
     "velocity of", "order", "speed, rpm", "frequency, Hz", "rms, mm/s", "level, dB re 1 nm/s",
     "measured along",
 )  # fmt: skip
-_LEFT_OUT = "What the measured responses replace and leave out"
+_OMITTED = "What the measured responses replace and leave out"
 
 
 def measured_figure(result: MeasuredHousingVibration) -> Figure:
@@ -101,7 +101,7 @@ def _fastest(result: MeasuredHousingVibration) -> int:
 
 
 def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
-    """Draw what bearings contribute to the point that moves fastest; None where all are at rest."""
+    """Draw the contributions of bearings to the fastest point; None: all points are at rest."""
     point, shares = _fastest(result), result.bearing_shares
     part = shares.point[point]
     if not np.all(np.isfinite(part)):
@@ -118,12 +118,12 @@ def _contribution_figure(result: MeasuredHousingVibration) -> Figure | None:
 
 
 def measured_page(result: MeasuredHousingVibration) -> Page:
-    """Return the page of a measured housing; a table says what its responses replace and leave out."""
+    """Return the page of a measured housing, with a table of parts that its responses replace or omit."""
     figures = (measured_figure(result), _contribution_figure(result))
     drawn = (*(figure for figure in figures if figure is not None), *excitation_figures(result.metadata))
     page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.metadata)
     rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.metadata))
-    absent = Table(_LEFT_OUT, (result.file,), tuple((sentence,) for sentence in result.left_out))
+    absent = Table(_OMITTED, (result.file,), tuple((sentence,) for sentence in result.left_out))
     accuracy = Section("Accuracy of the velocities", tables=(absent, rests), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 
@@ -141,7 +141,7 @@ def _headlines(result: MeasuredHousingVibration) -> tuple[Headline, ...]:
 
 
 def measured_text(result: MeasuredHousingVibration) -> Iterator[Table | str]:
-    """Yield velocities, contributions, excitations, and sentences on what is absent."""
+    """Yield velocities, contributions, excitations, and sentences on missing parts."""
     yield _largest_table(result)
     yield _contribution_table(result)
     if (excites := excitation_table(result.metadata)) is not None:

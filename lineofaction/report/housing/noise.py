@@ -423,8 +423,8 @@ def _text(sound: RadiatedSound) -> Iterator[Table | str]:
     yield from narrowest(sound.metadata)
     if (pressure := sound.metadata.get("pressure")) is not None:
         yield _pressure_table(pressure, sound.metadata)
-    left_out = sound.metadata["sensitivities_left_out"]
-    yield from (f"no sensitivity to {name}: {why}" for name, why in left_out.items())
+    omitted = sound.metadata["sensitivities_left_out"]
+    yield from (f"no sensitivity to {name}: {why}" for name, why in omitted.items())
     yield from model_text(sound.metadata)
 
 

@@ -26,7 +26,7 @@ NARROWER = {
 
 
 def uncertainty_tables(metadata: Json) -> Iterator[Table]:
-    """Yield the table of bands and that of sensitivities, as far as they are known."""
+    """Yield the table of bands and the table of sensitivities, if they are known."""
     if metadata["band"] is not None:
         yield _band_table(metadata["band"], metadata)
     if metadata["sensitivities"]:
@@ -66,7 +66,7 @@ def narrowest(metadata: Json) -> Iterator[str]:
 
 
 def _cost_table(rows: list[Json]) -> Table:
-    """List what steps change of the largest level, the largest change first."""
+    """List changes of the largest level by steps, the largest change first."""
     caption = "What 1 dB costs: largest level of all orders; factors are on what the scene states"
     columns = {
         "figure": lambda row: str(row["figure"]),

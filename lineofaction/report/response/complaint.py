@@ -68,7 +68,7 @@ def _figure(answer: AnsweredComplaint) -> Figure:
 
 
 def _groups(complaint: Complaint) -> list[tuple[Passing, ...]]:
-    """Return the groups that are shown: those within the tolerance, then the nearest of the others."""
+    """Return the shown groups: within the tolerance, then the nearest of the others."""
     within = complaint.within
     others = grouped(passing for passing in complaint.passing if passing not in within)
     return [*grouped(within), *others[:MAX_BEYOND]]

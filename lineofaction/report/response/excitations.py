@@ -43,7 +43,7 @@ _QUANTITIES = (
 
 
 def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
-    """List what excites, of every mesh its first harmonics; None where it is not known, as of a run."""
+    """List the excitations, of every mesh its first harmonics; None: not known, as for a run."""
     rows = _low_harmonics(metadata)
     if not rows:
         return None
@@ -61,19 +61,19 @@ def excitation_table(metadata: Mapping[str, Any]) -> Table | None:
     return Table("What excites: amplitudes at the static mesh forces, each with its error", head, cells)
 
 
-def orders_left_out(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
+def omitted_orders(metadata: Mapping[str, Any]) -> tuple[tuple[str, str], ...]:
     """Return rows on the share of a long table's excitation that a response does not list; else empty."""
-    if not (left_out := metadata.get("lines_left_out")):
+    if not (omitted := metadata.get("lines_left_out")):
         return ()
-    share = engineering(100.0 * left_out["force"], 2)
+    share = engineering(100.0 * omitted["force"], 2)
     part = f"up to {share} % of the exciting force of a mesh order (rms)"
-    totals = "have" if left_out.get("in_totals") else "lack"
-    text = f"{left_out['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
+    totals = "have" if omitted.get("in_totals") else "lack"
+    text = f"{omitted['count']} not listed, {part}, which totals {totals}: fewer speeds list more"
     return (("weaker orders of a long table", text),)
 
 
 def excitation_figures(metadata: Mapping[str, Any]) -> tuple[Figure, ...]:
-    """Draw what excites: a panel for each quantity that does, a color for each mesh."""
+    """Draw the excitations: a panel for each exciting quantity, a color for each mesh."""
     rows, table = _low_harmonics(metadata), excitation_table(metadata)
     if table is None:
         return ()

@@ -48,7 +48,7 @@ def whirling(run: RunResult) -> bool:
 
 
 def mode_lines(run: RunResult, mesh_frequency: FloatArray, top: float) -> list[ModeLine]:
-    """Return the lowest modes below `top` (Hz) that lie apart, over mesh frequencies (B,), Hz."""
+    """Return the lowest modes below `top` (Hz) that do not overlap, over mesh frequencies (B,), Hz."""
     frequencies, whirls = _frequencies(run, mesh_frequency)
     modes = run.modes["over_speed"] if whirling(run) else run.modes
     lines: list[ModeLine] = []
@@ -104,7 +104,7 @@ def mode_table(run: RunResult, top: float, orders: int) -> Table | None:
 
 
 def _moves(modes: dict[str, Any], index: int) -> str:
-    """Write what moves in a mode; of a run that does not hold it, the freedom that moves most."""
+    """Return the moving parts of a mode as text; if they are not known, the freedom that moves most."""
     if "moves" not in modes:
         return str(modes["freedom"][index])
     return "; ".join(f"{name} {number(100.0 * share, 2)} %" for name, share in modes["moves"][index].items())
@@ -138,9 +138,9 @@ def mode_bars(modes: Sequence[str], shares: Sequence[Mapping[str, float]], energ
     modes : sequence of str, (a,)
         Names, below the bars.
     shares : sequence of mapping of str to float, (a,)
-        By part, each at least 0; the rest up to 1 is drawn as others.
+        Shares by part, each at least 0; the rest up to 1 is drawn as others.
     energy : str
-        Of the label.
+        Name of the energy in the label.
     """
     position, base = np.arange(float(len(modes))), np.zeros(len(modes))
     bars = []

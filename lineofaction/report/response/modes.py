@@ -29,12 +29,14 @@ from lineofaction.report.drawing.surface_view import shape_figure
 from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.mode_lines import mode_bars, whirl_name
 
-ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
+ALIKE = 1e-3  # relative difference of frequencies or speeds that share a line of the tables
 MAX_PARTS = 2
 MAX_MODES, PRINTED_MODES = 10, 20
-HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
-MIN_TOP = 1.0  # Hz
-ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
+HEADROOM = (
+    1.15  # top of the plot over the highest mode or order; modes that no order reaches are left to the table
+)
+MIN_TOP = 1.0  # least top of the plot, Hz
+ROOM = 0.03  # share of the width for the name of an order; orders that end closer have no name
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
     "backward whirl": (palette.VERMILLION, "dash"),
@@ -119,7 +121,7 @@ def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterato
 
 
 def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
-    """Every mode by its sense of whirl; points between two speeds take that of the first."""
+    """Return points of every mode by its sense of whirl; points between two speeds have the first's."""
     for name, (color, dash) in WHIRLS.items():
         for mode in range(modes.frequency.shape[1]):
             at_whirl = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
@@ -131,7 +133,7 @@ def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
 
 
 def _energies(modes: ModalAnalysis) -> tuple[Figure, Figure]:
-    """Show what holds each natural mode (meshes, bearings, drives), and what moves in it (shafts)."""
+    """Show the strain energy of each natural mode (meshes, bearings, drives) and the kinetic (shafts)."""
     lowest = np.flatnonzero(modes.natural_frequency > 0.0)[:MAX_MODES]
     names = [f"{number(modes.natural_frequency[mode], 4)} Hz" for mode in lowest]
     strain = [modes.strain_shares(modes.natural_strain_energy[mode]) for mode in lowest]
@@ -164,7 +166,7 @@ def _energy_text(names: list[str], shares: list[dict[str, float]], energy: str) 
 
 
 def _modes_table(modes: ModalAnalysis, maximum: int | None = None) -> Table:
-    """List so many natural modes at rest; those of one frequency are still one line each."""
+    """List the first natural modes at rest, a line each, also for modes of equal frequency."""
     strain, kinetic = modes.natural_strain_energy, modes.natural_kinetic_energy
     columns = {
         "mode": lambda mode: str(mode + 1),

@@ -25,7 +25,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.marks import drawn_orders, order_label
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
-from lineofaction.report.response.excitations import excitation_figures, excitation_table, orders_left_out
+from lineofaction.report.response.excitations import excitation_figures, excitation_table, omitted_orders
 
 MIN_SHARE = 1e-3
 """Least share that is listed."""
@@ -207,15 +207,15 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield from (f"{what}: {text}" for what, text in orders_left_out(response.metadata))
-    yield from _left_out_text(response)
+    yield from (f"{what}: {text}" for what, text in omitted_orders(response.metadata))
+    yield from _omission_text(response)
     if _loses_power(response):
         yield _power_table(response)
     left = response.power.residual
     yield f"residual of the solves {leftover(response.residual)}, of the power balance {leftover(left)}"
 
 
-def _left_out_text(response: ForcedResponse) -> Iterator[str]:
+def _omission_text(response: ForcedResponse) -> Iterator[str]:
     """Yield a sentence on unlisted orders: their part in the largest bearing force of all orders."""
     if response.bearing_floor.size:
         square, floor = response.bearing_mean_square, response.bearing_floor

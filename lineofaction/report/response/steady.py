@@ -26,7 +26,7 @@ from lineofaction.report.drawing.figure import (
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.presentation import dynamics_presentation
 
-MIN_DISTANCE = 0.1  # of the axis: nearer folds share a label
+MIN_DISTANCE = 0.1  # share of the axis within which folds share a label
 MARKED = 80  # sweeps of more motions are drawn as lines
 _BEARING_HEAD = ("bearing", "state", "rms force, N")
 _MESH_HEAD = (
@@ -80,7 +80,7 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
-    """Return the folds in rpm that lie apart: corners come in clusters, of which the outermost counts."""
+    """Return the distinct folds in rpm: of a cluster of corners the outermost counts."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     separate: list[float] = []
     if folds.size:

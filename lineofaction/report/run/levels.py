@@ -42,7 +42,7 @@ MAPPED, NAMED = 10, 5
 """Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
 BLOCKS, ORDERS = 90, 8
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
-MIN_PITCHES = 64  # of a run whose orders are shown
+MIN_PITCHES = 64  # least base pitches of a run whose orders are shown
 
 
 def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
@@ -155,7 +155,7 @@ def _table(
 
 
 def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
-    """Draw spectra over mesh orders side by side: what follows the mesh lies level."""
+    """Draw spectra over mesh orders side by side: a component that follows the mesh lies level."""
     valid = highest_valid_order(run, signal.mesh)
     last = max(min(MAPPED, valid), 1)
     amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
@@ -232,7 +232,7 @@ def _order_notes(made: Waterfall, along: FloatArray, top: float) -> Iterator[Not
 
 
 def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
-    """Name every mode where the run is slowest: what moves most, and its frequency there."""
+    """Return a note on every mode where the run is slowest: the part that moves most, and its frequency."""
     start = int(np.argmin(along))
     for mode in modes:
         at = float(mode.frequency[start])

@@ -44,7 +44,7 @@ from lineofaction.report.run.sound import RunSignal, sound_of
 from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, selected_signal
 
 PITCHES = 16
-SHARE, ROWS = 1e-3, 12  # of the largest mesh order
+SHARE, ROWS = 1e-3, 12  # least share of the largest mesh order in the table, and most rows
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
@@ -53,7 +53,7 @@ _ERRORS = {
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:
-    """Draw what each planet carries at sun and ring; None without planets."""
+    """Draw the load of each planet at sun and ring; None: no planets."""
     sharings = planet_load_sharing(run)
     if not sharings:
         return None
@@ -140,7 +140,7 @@ def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
 
 
 def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
-    """Say loudly that a run ended early, or what makes its result wrong."""
+    """Return alarms: the run ended early, or its result is wrong for a stated reason."""
     wrong = [check for check in run.effect_ledger.get("checks", ()) if check.get("valid") is False]
     alarms = [f"Not valid: {check['assumption']} ({check['part']}); {check['reason']}." for check in wrong]
     if not run.status.usable:
@@ -167,7 +167,7 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
 
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
-    """Show how exact the run is, what it cost, and what it was made from."""
+    """Show the errors of the run, its cost, and its inputs."""
     audit = {} if run.energy is None else run.energy.to_json()
     accuracy = Section(
         "Accuracy of the run",
@@ -233,10 +233,10 @@ def _accuracy(run: RunResult) -> Table:
     for name, (title, unit) in _ERRORS.items():
         rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
     rows += _tolerance(run.receipt.get("error", {}).get("time_step", {}))
-    left_out = run.receipt.get("error", {}).get("left_out_effects", {})
-    if "decibels" in left_out:
-        size = number(left_out["decibels"], 2)
-        rows.append((f"neglected effects, {left_out['unit']} ({left_out['source']})", size))
+    neglected = run.receipt.get("error", {}).get("left_out_effects", {})
+    if "decibels" in neglected:
+        size = number(neglected["decibels"], 2)
+        rows.append((f"neglected effects, {neglected['unit']} ({neglected['source']})", size))
     if run.energy is not None:
         rows.append(
             ("energy unaccounted for, % of the turnover of vibration", leftover(100 * run.energy.relative, 2))

@@ -42,9 +42,9 @@ from lineofaction.report.run.view import (
 
 AXES = "Components in the fixed frame; of a planet bearing in its carrier's."
 DETAIL = "Second: less the mean of the window."
-WINDOW = (0.9, 0.95)  # of the duration
+WINDOW = (0.9, 0.95)  # start and end of the shown window over the duration
 ORDERS = 8
-MIN_SAMPLES = 8  # of a window
+MIN_SAMPLES = 8  # least samples of a window
 TOO_SHORT = f"Too short for a spectrum: 90 to 95 % of the duration holds fewer than {MIN_SAMPLES} samples."
 _NAMES = {"hann": "Hann", "rectangular": "rectangular", "flat_top": "flat top"}
 DEPTH = 80.0
@@ -124,7 +124,7 @@ def signal_spectrum(run: RunResult, signal: Signal) -> Figure:
 
 
 def has_spectrum(run: RunResult) -> bool:
-    """Whether a run is long enough for one: its window holds a line beside the mean."""
+    """Whether a run is long enough for a spectrum: its window resolves a line above the mean."""
     window = spectrum_window(run.time)
     return len(run.time[window]) >= MIN_SAMPLES
 

@@ -32,7 +32,7 @@ from model_studies.record_file import read_record
 PAGE_RATE, PAGE_BYTES, SAMPLE_BYTES = 24_000, 2_000_000, 4
 """Sampling rate, Hz, of a sound in a page whose run holds higher frequencies; most bytes of the sounds of a
 plot; bytes of a sample."""
-POINTS = 200  # of the way along an axis
+POINTS = 200  # number of times at which the place of a sound on its axis is known
 LONGEST = 300.0
 """Longest run in s of which the service makes a sound file: 58 MB."""
 
@@ -59,7 +59,7 @@ class RunSignal:
 
 
 def run_signals(runs: dict[str, RunResult], view: RunView) -> Iterator[RunSignal]:
-    """Yield runs by their names as they are heard; the others are heard as the first one is.
+    """Yield runs as sounds by their names, all with the view of the first.
 
     Raises `BadInput`: a run does not hold what the view names.
     """
@@ -83,7 +83,7 @@ def full_scale_of(recordings: list[Recording]) -> float:
 
 
 def sound_of(signals: tuple[RunSignal, ...], axis: Axis) -> Sound | None:
-    """Return the sound of runs beside a plot over `axis`, their speed or time; None if one is silent."""
+    """Return the sound of runs for a plot over `axis`, their speed or time; None: a run is silent."""
     passed = max(_passed(one) for one in signals)
     rate = PAGE_RATE if passed <= PASSED * PAGE_RATE else SAMPLE_RATE
     try:
@@ -155,7 +155,7 @@ def _recordings(files: Sequence[Path], named: Mapping[str, Any]) -> list[Recordi
 
 
 def _require_short(lasting: float) -> None:
-    """Refuse what lasts too long, s."""
+    """Refuse a run that lasts too long, s."""
     if lasting > LONGEST:
         remedy = "Fetch the file of the run and write it by loa listen."
         raise BadInput.of("duration_s", lasting, f"at most {LONGEST:g} s", remedy)

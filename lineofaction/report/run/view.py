@@ -18,14 +18,14 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.studies.listen.run import DIRECTIONS, PRINCIPAL
 from lineofaction.report.drawing.figure import Axis, FloatArray, number
 
-MONOTONE = 0.2  # least change of speed over the run, of the highest, for a speed axis
+MONOTONE = 0.2  # least change of speed over the highest speed of a run for a speed axis
 SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
 """Factors from a peak amplitude to the amplitude of each scale."""
 
 PITCHES = 3
 STEADY = 0.1
 """Largest change of speed over a run, relative to the highest speed, at which the run counts as steady."""
-ROUNDING = 1e-12  # of the largest value: what varies less is constant
+ROUNDING = 1e-12  # variation over the largest value below which a series is constant
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ class Signal:
         return f"{self.quantity.unit} {self.scale}"
 
     def components(self, run: RunResult) -> dict[str, FloatArray]:
-        """Return the components (n,) over time by name, in the unit; those that stay at zero are left out."""
+        """Return the components (n,) over time by name, in the unit, without components that stay at zero."""
         values = self.quantity.factor * getattr(run, self.quantity.series)[self.row]
         if values.ndim == 1:
             return {"": values}
@@ -139,7 +139,7 @@ class Signal:
 
 
 def selected_signal(run: RunResult, view: RunView) -> Signal:
-    """Find what the view names in a run.
+    """Return the signal of a run that the view names.
 
     Raises `BadInput`: the run has no such quantity, part or order, or the view no such window or scale.
     """
@@ -167,7 +167,7 @@ def selected_signal(run: RunResult, view: RunView) -> Signal:
 
 
 def same_view(view: RunView, signal: Signal) -> RunView:
-    """Return the view that shows of another run what `signal` shows of the first."""
+    """Return the view that shows the same signal of another run as `signal` of the first."""
     quantity = next(name for name, value in QUANTITIES.items() if value is signal.quantity)
     bearing = signal.part if signal.quantity.part == "bearing" else ""
     return replace(view, quantity=quantity, bearing=bearing)
@@ -195,7 +195,7 @@ def run_axis(run: RunResult, time: FloatArray, mesh: int = 0) -> tuple[Axis, Flo
 
 
 def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
-    """Return the axis of what is at speeds (rad/s) over time: the speed where it rises or falls all along."""
+    """Return the axis of values at speeds (rad/s) over time: the speed if it rises or falls all along."""
     speed = speed * 30.0 / np.pi
     steps = np.diff(speed)
     swept = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
@@ -235,7 +235,7 @@ class Travel:
 
 
 def travel(run: RunResult, mesh: int = 0) -> Travel:
-    """Return the way of one mesh; of a run without meshes that of its leading shaft."""
+    """Return the travel of one mesh; of a run without meshes the travel of its leading shaft."""
     speed = np.abs(run.speed[run.shaft.index(driving_shaft(run, mesh))]) * 30.0 / np.pi
     if run.mesh:
         return Travel(speed, np.abs(np.unwrap(run.position[mesh], period=1.0)))
@@ -311,7 +311,7 @@ def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_R
 
 
 def _axis(run: RunResult, signal: Signal) -> tuple[FloatArray, str]:
-    """Return the direction (3,) of a vector that is heard, and what to say of it beside the signal's name."""
+    """Return the direction (3,) of a vector signal, and the remark on it for the signal's name."""
     if signal.direction not in ("", PRINCIPAL):
         return np.eye(3)["xyz".index(signal.direction)], ""
     values = getattr(run, signal.quantity.series)[signal.row]

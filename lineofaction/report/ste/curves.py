@@ -29,22 +29,22 @@ from lineofaction.report.drawing.figure import (
 
 POINTS_PER_PITCH = 240
 POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
-MAX_PITCHES = 40  # of a long period
-MAX_LINES = 5  # of loads in one panel
+MAX_PITCHES = 40  # most base pitches of a long period in a plot
+MAX_LINES = 5  # most loads in one panel
 _FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
 """Curves of a database by load index: figures of one page share them."""
 _EQUAL = 1e-6
 MAX_CURVES = 8
-_MIN_SPACING = 1.1  # of what would let two neighbors touch
-_MIN = 0.15  # of the largest ripple, between neighbors that would not touch anyway
-_ROOM = 0.04  # of the height
+_MIN_SPACING = 1.1  # least distance of two curves over the distance at which they would touch
+_MIN = 0.15  # least distance of curves that would not touch anyway, over the largest ripple
+_ROOM = 0.04  # margin above and below the curves over the height
 _TONES = 3
 _MIN_ROOM, _MAX_ROOM = 0.08, 0.45
 """Least and largest room above and below the ripple, over the ripple. The error band fills the room up to the
 largest, so that the ripple takes at least half of the height."""
-_FLAT = 1e-3  # µm, the height of a curve without any ripple
+_FLAT = 1e-3  # height of a curve without any ripple, µm
 
 
 def aligned_index(database: SteDatabase) -> tuple[int, int]:
@@ -147,7 +147,7 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
 
 
 def few_loads(database: SteDatabase, maximum: int = MAX_LINES) -> tuple[int, ...]:
-    """Return the indices of the loads shown, at most `maximum`: those nearest to evenly spaced torques."""
+    """Return the indices of the shown loads, at most `maximum`, nearest to evenly spaced torques."""
     loads = np.array(drawn_loads(database))
     if loads.size <= maximum:
         return drawn_loads(database)
@@ -306,7 +306,7 @@ def _less_mean(database: SteDatabase, curves: list[Curve]) -> tuple[FloatArray, 
 
 
 def _bands(ripple: Panel) -> str:
-    """Return a sentence on the error bands, if any, and on those that are cut."""
+    """Return a sentence on the error bands, if any, and on cut bands."""
     if not any(line.has_band for line in ripple.lines):
         return ""
     said = "Bands: half the error of peak-to-peak on either side"

@@ -38,8 +38,8 @@ from lineofaction.report.ste.curves import (
 )
 
 HARMONICS = 8
-_DEPTH = 1e-4  # of the largest harmonic: 80 dB, the lowest level drawn
-_ROOM = 0.02  # of the range of torques, beside its ends
+_DEPTH = 1e-4  # lowest level drawn over the largest harmonic, -80 dB
+_ROOM = 0.02  # margin at both ends of the axis over the range of torques
 
 
 def ripple_over_torque(database: SteDatabase) -> Figure:

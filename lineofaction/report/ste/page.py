@@ -9,14 +9,12 @@ from typing import Any
 import numpy as np
 
 from bounds import leftover
-from bounds.error_digits import error_text, to_error
-from fe_contact.ste import Curve, SteDatabase
-from fe_contact.types import Estimate
+from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import inserted_json, source_rows
 from lineofaction.gearbox.convert.effects import by_size, influence_point, influence_text, trifles_title
-from lineofaction.gearbox.units import UM, boundary_ledger
+from lineofaction.gearbox.units import boundary_ledger
 from lineofaction.report.drawing.figure import Figure, Table, number, um
-from lineofaction.report.drawing.page import Headline, Part, Section
+from lineofaction.report.drawing.page import Part, Section
 from lineofaction.report.drawing.tables import (
     EffectRow,
     effect_table,
@@ -27,10 +25,8 @@ from lineofaction.report.drawing.tables import (
 )
 from lineofaction.report.pair import data_sheet_section, pair_of, tolerance_class_of
 from lineofaction.report.ste.curves import (
-    aligned_index,
     drawn_loads,
     headline_load,
-    load_curve,
     load_labels,
     ste_curves,
 )
@@ -44,7 +40,7 @@ from lineofaction.report.ste.over_torque import (
 )
 from lineofaction.report.ste.spectrum import ste_spectrum, ste_waterfall
 from lineofaction.report.ste.stiffness import budget_figure, load_sharing, mesh_stiffness
-from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines, tooth_sections
+from lineofaction.report.ste.teeth import tooth_sections
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 _INSERTED = {
@@ -61,49 +57,13 @@ _DECISIONS = {
 }
 
 
-def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
-    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
-    load = headline_load(database, force)
-    at = (slice(None), load, *aligned_index(database))
-    pressure = float(np.nanmax(database.max_pressure[at]))
-    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
-    remark = f"{UNBOUNDED}{edge_text(edge)}"
-    curve, label = load_curve(database, load), load_labels(database)[load]
-    figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
-    biases = _over_face(curve)
-    return (
-        *(
-            Headline(f"{name} STE at {label}", f"{_to_error(one)} µm", f"{_band(one)}{bias}")
-            for (name, one), bias in zip(figures.items(), biases, strict=True)
-        ),
-        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
-        *tooth_headlines(database, load),
-    )
-
-
-def _over_face(curve: Curve) -> tuple[str, str]:
-    """Say mean and peak-to-peak of the gears of finite width; nothing where the table has them."""
-    if curve.over_face is None:
-        return "", ""
-    figures = curve.over_face.mean, curve.over_face.peak_to_peak
-    mean, ripple = (f"; gears of this width {_to_error(one)} µm {_band(one)}" for one in figures)
-    return mean, ripple
-
-
-def edge_text(pressure: float) -> str:
-    """Name the pressure (Pa) of contacts that reach an edge apart from that of the flank; nothing for 0."""
-    if pressure <= 0.0:
-        return ""
-    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"
-
-
 def static_alarms(database: SteDatabase) -> tuple[str, ...]:
     """Say loudly which points failed."""
     return (database.failure_message(),) if database.n_failed else ()
 
 
 def static_results(database: SteDatabase, force: float | None = None) -> tuple[Section, ...]:
-    """Show what one database says of its pair; the deflection is split at the load nearest to `force` (N)."""
+    """Show the results of a pair's database; the deflection is split at the load nearest to `force` (N)."""
     pair = pair_of(database)
     sheet = () if pair is None else (data_sheet_section(pair, tolerance_class_of(database)),)
     sharing = Section("Load sharing", figures=(load_sharing(database),))
@@ -122,7 +82,7 @@ def _transmission_error(database: SteDatabase) -> Section:
 
 
 def _stiffness(database: SteDatabase, force: float | None) -> tuple[Section, ...]:
-    """Show the mesh stiffness and what yields.
+    """Show the mesh stiffness and the deflections by part.
 
     Over a longer period the deflection holds the teeth's errors, and a secant through them means nothing.
     """
@@ -144,7 +104,7 @@ def _flanks(database: SteDatabase) -> tuple[Section, ...]:
 
 
 def static_making(database: SteDatabase) -> tuple[Section, ...]:
-    """Show how exact the database is, what it cost, and what it was made from."""
+    """Show the errors of the database, its cost, and its inputs."""
     metadata = database.metadata
     text = "Errors are half-widths of the band around each number."
     if bias := metadata.receipt.get("bias"):
@@ -191,7 +151,7 @@ def _effect_row(entry: Mapping[str, Any]) -> EffectRow:
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
-    """Tabulate both gears beside each other, then the rest of the case."""
+    """Tabulate both gears side by side, then the rest of the case."""
     pair = case.get("pair")
     if not isinstance(pair, dict) or not {"pinion", "wheel"} <= set(pair):
         return (settings_table("Case", case),)
@@ -235,13 +195,3 @@ def _by_source(database: SteDatabase) -> Table:
     head = ("source", "mean, µm", "peak to peak, µm", "harmonic 1, µm")
     title = f"Errors by source at {load_labels(database)[-1]}"
     return Table(title, head, tuple((name, *(um(error, 2) for error in errors)) for name, *errors in rows))
-
-
-def _band(estimate: Estimate) -> str:
-    if math.isnan(estimate.error):
-        return "not estimated"
-    return f"± {error_text(estimate.value / UM, estimate.error / UM)} µm"
-
-
-def _to_error(estimate: Estimate) -> str:
-    return to_error(estimate.value / UM, estimate.error / UM)

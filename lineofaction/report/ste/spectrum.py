@@ -25,15 +25,15 @@ from lineofaction.report.ste.curves import drawn_loads, load_curve, load_labels,
 ORDERS = 20
 LONG_ORDERS = 4  # over a period of many pitches, where as many lines lie between two mesh orders
 _UM = 1e6
-_DEPTH = 10.0  # dB below the least error, or below the level that counts where none is known
-_UNKNOWN = -80.0  # dB below the largest
+_DEPTH = 10.0  # range drawn below the least error, or below the least relevant level if none is known, dB
+_UNKNOWN = -80.0  # lowest level re the largest if no error is known, dB
 _CELLS = 480  # across the map: a line of one of them is still seen
-_RANGE = 60.0  # dB between the ends of the colors
-_COLUMNS = 8  # of the table
+_RANGE = 60.0  # range of levels between the ends of the colors, dB
+_COLUMNS = 8  # most columns of the table
 
 
 def ste_spectrum(database: SteDatabase) -> Figure:
-    """Draw the amplitude of every order at the middle load, what is below its error veiled."""
+    """Draw the amplitude of every order at the middle load, veiled below its error."""
     load = middle_load(database)
     curve, label = load_curve(database, load), load_labels(database)[load]
     order, amplitude, error = _spectrum_of(curve)
@@ -79,7 +79,7 @@ def _panel(order: FloatArray, amplitude: FloatArray, error: FloatArray) -> Panel
 
 
 def _level(values: FloatArray) -> FloatArray:
-    """Return lengths in dB re 1 µm; NaN for nothing, and for what is not known."""
+    """Return lengths in dB re 1 µm; NaN for zero and for unknown lengths."""
     with np.errstate(divide="ignore", invalid="ignore"):
         level = 20.0 * np.log10(_UM * values)
     return np.where(np.isfinite(level), level, np.nan)
@@ -96,7 +96,7 @@ def _spectrum_text(label: str, names: Sequence[str], amplitude: FloatArray, erro
 
 
 def ste_waterfall(database: SteDatabase) -> Figure:
-    """Draw the level of every order at every load; what is below its error stays blank."""
+    """Draw the level of every order at every load; a level below its error stays blank."""
     loads = drawn_loads(database)
     curves = [load_curve(database, load) for load in loads]
     order = _spectrum_of(curves[0])[0]

@@ -47,13 +47,13 @@ _STANDARD = (
     " The dashed line is the mean mesh stiffness c γα of ISO 6336-1 method B, which includes a correction of "
     "0.8 for real gears."
 )
-_MAX_NAMES = 8  # of pairs that are named in full
-_SHARING_MARGIN = 1.12  # of the largest share: for the names
-_END = 0.03  # of the panel's width
-_CHARACTER = 0.008  # of a name, in parts of the panel's width
+_MAX_NAMES = 8  # most pairs that are named in full
+_SHARING_MARGIN = 1.12  # top of the axis over the largest share, with room for names
+_END = 0.03  # share of the width within which a high part of a curve counts as its end
+_CHARACTER = 0.008  # width of a name's character over the panel's width
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
-_BUDGET_MARGIN = 1.2  # of the largest part: for the numbers
-_NOTE = 0.4  # of the distance of bars: for the number of the last one on a narrow screen
+_BUDGET_MARGIN = 1.2  # top of the axis over the largest part, with room for numbers
+_NOTE = 0.4  # room over the distance of bars for the number of the last bar on a narrow screen
 _MIN = 0.0005
 """Part of the mean below which there is no bar."""
 
@@ -272,7 +272,7 @@ def _budget(database: SteDatabase, load: int) -> DeflectionBudget | None:
 
 
 def _parts(budget: DeflectionBudget) -> dict[str, tuple[float, ...]]:
-    """Return the means in um by name, one value or those of pinion and wheel."""
+    """Return the means in um by name, one value, or two for pinion and wheel."""
 
     def means(*values: FloatArray) -> tuple[float, ...]:
         return tuple(1e6 * float(np.mean(value)) for value in values)

@@ -27,10 +27,10 @@ UNBOUNDED = "no error is stated for it"
 """Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
 _WAY = "way of the pair through mesh, base pitches (0 = at the pitch point in mid-face)"
 _COLORS = palette.BLUE, palette.VERMILLION
-_WIDTH = 0.8  # of a bar
-_ABOVE = 1.15  # of the largest: for the number of its tooth
+_WIDTH = 0.8  # width of a bar over the distance of teeth
+_ABOVE = 1.15  # top of the axis over the largest bar, with room for the number of its tooth
 _RANKED = 5  # teeth of a gear in the table
-_NAMED = 3  # of equal ones in the picture
+_NAMED = 3  # most teeth of equal load that are named in the picture
 _STEPS, _TICKS = (1, 2, 5, 10, 20, 50, 100), 12  # between ticks of teeth, and how many there are at most
 
 

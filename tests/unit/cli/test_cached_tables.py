@@ -13,13 +13,14 @@ from spur_case import spur_case
 
 from fe_contact.ste import SteDatabase
 from host.directories import cache_home
-from lineofaction.cli import cached_tables
+from lineofaction.cli import cached_tables, scene_tables
 from lineofaction.gearbox.convert.scene import TabledScene
-from lineofaction.gearbox.problems import JobFailed
+from lineofaction.gearbox.problems import EXIT_WARNINGS, JobFailed
 from lineofaction.gearbox.schemas import Case, read_model
 from lineofaction.gearbox.subjects import scene_of
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
+RECEIPT = {"cpu_seconds": 1.0, "stages": {}, "peak_memory_bytes": 0}
 LOST = ("static_transmission_error", "tangent_compliance", "error_estimate", "max_pressure", "face_centroid")
 
 
@@ -28,11 +29,12 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[SteDatabase]:
     """The tables that are computed."""
     made: list[SteDatabase] = []
 
-    def analyzed(*_: object) -> SteDatabase:
-        made.append(small_table())
+    def computed_table(*_: object) -> SteDatabase:
+        table = small_table()
+        made.append(replace(table, metadata=replace(table.metadata, receipt=RECEIPT)))
         return made[-1]
 
-    monkeypatch.setattr("lineofaction.cli.analyze.analyzed", analyzed)
+    monkeypatch.setattr("lineofaction.cli.computed_tables.computed_table", computed_table)
     return made
 
 
@@ -40,7 +42,7 @@ def tabled(**mesh: object) -> TabledScene:
     scene, folder = scene_of(EXAMPLE)
     meshes = tuple(each.model_copy(update=mesh) for each in scene.meshes)
     scene = scene.model_copy(update={"meshes": meshes})
-    return cached_tables.tabled_scene(scene, folder, None, lambda *_: None)
+    return scene_tables.tabled_scene(scene, folder, None, lambda *_: None)
 
 
 def files() -> list[Path]:
@@ -54,6 +56,29 @@ def test_a_table_is_computed_once_and_read_to_the_last_bit(computed: list[SteDat
     for name in before.stored:
         np.testing.assert_array_equal(getattr(before, name), getattr(after, name), err_msg=name)
     assert (before.geometry, before.metadata) == (after.geometry, after.metadata)
+
+
+def test_an_unchanged_case_is_analyzed_once(computed: list[SteDatabase], tmp_path: Path) -> None:
+    case, first, second = (tmp_path / name for name in ("case.toml", "first.nc", "second.nc"))
+    case.write_text(spur_case(torques=[1.0]))
+    summary = printed("analyze", case, "-o", first)
+    assert printed("analyze", case, "-o", second) == summary | {"file": str(second)}
+    assert len(computed) == 1 and first.read_bytes() == second.read_bytes()
+    done = loa("analyze", case, "-o", second)
+    assert done.exit_code == 0 and "was in the cache" in done.stderr
+    printed("analyze", case, "-o", second, "--set", "load.torque_n_m=[2]")
+    assert len(computed) == 2
+
+
+def test_a_case_with_a_cached_table_is_warned_of_all_the_same(
+    computed: list[SteDatabase], tmp_path: Path
+) -> None:
+    """Results replace some of these warnings in the table, so they are not taken from it."""
+    case = tmp_path / "case.toml"
+    case.write_text(spur_case(torques=[8e3]))
+    first, second = (loa("analyze", case, "-o", tmp_path / "ste.nc", "--json", "--strict") for _ in range(2))
+    assert len(computed) == 1 and first.exit_code == second.exit_code == EXIT_WARNINGS
+    assert "warnings under --strict" in first.stderr and first.stderr == second.stderr
 
 
 def test_another_program_computes_its_own(computed: list[SteDatabase], monkeypatch) -> None:
@@ -83,7 +108,7 @@ def test_a_table_with_failed_points_is_not_kept(monkeypatch: pytest.MonkeyPatch)
     failed[0] = True
     lost = {name: np.where(failed, np.nan, getattr(table, name)) for name in LOST}
     table = replace(table, status=np.where(failed, 1, 0), **lost)
-    monkeypatch.setattr("lineofaction.cli.analyze.analyzed", lambda *_: table)
+    monkeypatch.setattr("lineofaction.cli.computed_tables.computed_table", lambda *_: table)
     with pytest.raises(JobFailed):
         tabled()
     assert not files()
@@ -104,6 +129,6 @@ def test_what_one_verb_computes_another_finds(computed: list[SteDatabase], tmp_p
     for name in ("spur", "other"):
         printed("analyze", unit / f"{name}.toml", "-o", unit / f"{name}.nc")
     assert f"next: loa report {unit / 'spur.nc'}" in loa("ste", unit, "--torque", "1").stdout
-    assert len(computed) == 3 and len(files()) == 2
+    assert len(computed) == len(files()) == 2
     tabled(**mesh | {"case": read_model(Case, unit / "other.toml")})
-    assert len(computed) == 3
+    assert len(computed) == 2

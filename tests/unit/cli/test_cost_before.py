@@ -29,9 +29,9 @@ from fe_contact.options import Run
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from host.directories import cache_home
 from lineofaction.cli import run_study, simulate
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.costs import simulation_cost, study_cost, table_cost
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.cli.status import run_status
-from lineofaction.cli.subjects import simulation_cost, study_cost, table_cost
 from lineofaction.gearbox.convert import plan
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.plan import plan_of

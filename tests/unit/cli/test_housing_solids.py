@@ -31,7 +31,7 @@ from dynamics.housings import (
 )
 from dynamics.housings import cached_reduction as kept
 from dynamics.work_cost import WorkCost
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.convert import solid_housings
 from lineofaction.gearbox.convert.scene import TabledScene, check_scene
 from lineofaction.gearbox.problems import BadInput, JobFailed

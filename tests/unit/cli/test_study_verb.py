@@ -26,7 +26,7 @@ from dynamics.simulation import simulate
 from dynamics.study import QUANTITIES, Design, Levels, Response, Study, StudyTask, responses_of, study
 from dynamics.study.run_study import _run_batch
 from fe_contact.ste import PairGeometry
-from lineofaction.cli.analyze import analyzed
+from lineofaction.cli.computed_tables import computed_table
 from lineofaction.gearbox import workbench
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.checked_case import CheckedCase
@@ -270,7 +270,7 @@ def scenes(
 ) -> VariedScene:
     case = written.meshes[0].case
     assert case is not None
-    database = analyzed(CheckedCase(case), lambda _stage, _fraction: None)
+    database = computed_table(CheckedCase(case), lambda _stage, _fraction: None)
     places = {PATH: places_of(written, "path", PATH)}
     home = str(tmp_path_factory.mktemp("caches"))
     return VariedScene(written.model_dump_json(), {"mesh": database}, places, home)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from lineofaction import client as public
-from lineofaction.cli import cached_tables
+from lineofaction.cli import scene_tables
 from lineofaction.client import JobState, scene_calls
 
 
@@ -29,10 +29,10 @@ def test_the_loops_of_a_run_are_compiled_once_while_it_waits(
 
     monkeypatch.setattr(public, "LineOfActionClient", client)
     monkeypatch.setattr(scene_calls, "ServiceTables", lambda _: None)
-    monkeypatch.setattr(cached_tables, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
+    monkeypatch.setattr(scene_tables, "MeshTables", lambda *_: SimpleNamespace(of=lambda *_: None))
     monkeypatch.setattr(
-        cached_tables, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene)
+        scene_tables, "scene_by_tables", lambda scene, folder, table_of, *_: table_of(0, scene)
     )
     monkeypatch.setattr("dynamics.simulation.compile_ahead", lambda: compiled.append(1))
-    assert cached_tables.tabled_scene(None, Path(), "http://127.0.0.1:9", print) == "table"
+    assert scene_tables.tabled_scene(None, Path(), "http://127.0.0.1:9", print) == "table"
     assert len(compiled) == times

@@ -16,7 +16,7 @@ from spur_case import spur_case
 
 from bounds import Kind
 from fe_contact import AllowedError, FlankModification
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from lineofaction.gearbox.convert.case import (
     analysis_options,
     case_json,
@@ -177,7 +177,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
     }
     shapes = {figure.field for figure in figures(FlankModification, Kind.SHAPE)}
     corners = {figure.field for figure in figures(FlankModification) if figure.name.startswith("triangular")}
-    starts = {figure.field for figure in figures(StatedStarts)}  # test_stated_starts
+    starts = {figure.field for figure in figures(DrawingStarts)}  # test_stated_starts
     covered = set(changes) | set(MODIFIED) | shapes | corners | starts
     assert covered == set(type(case().pair.pinion).model_fields)
     for name, value in changes.items():

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 import lineofaction as loa
 from dynamics.mechanism.passing import MESH, SIDEBAND
 from lineofaction.cli.commands import app
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import (
     Complaint,
@@ -22,7 +23,6 @@ from lineofaction.gearbox.convert.complaint import (
     complaint_of_case,
     marks_of_case,
 )
-from lineofaction.gearbox.convert.plausibility import case_warnings
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import validated

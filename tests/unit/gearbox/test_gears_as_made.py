@@ -69,7 +69,7 @@ def test_what_a_drawn_gear_measures_is_what_was_drawn() -> None:
     drawn = drawn_case(helical(), 6)
     of = Inspected("wheel", "left", None)
     again, found = measured_case(helical(), sheet_text(inspected(of.chart(drawn))), "wheel.csv", of)
-    assert found.left_out == []
+    assert found.omitted == []
     assert again.pair.wheel.pitch_deviation_um == pytest.approx(drawn.pair.wheel.pitch_deviation_um, abs=1e-4)
     slopes, measured = (
         [1e6 * flank.profile_slope for flank in gear_pair(case).wheel.tooth_flanks] for case in (drawn, again)

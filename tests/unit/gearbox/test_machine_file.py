@@ -37,7 +37,7 @@ def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate:
         other = of_machine.splits[key]
         assert other.coordinate == pytest.approx(one.coordinate, abs=1e-8)
         assert (other.slope, other.form) == pytest.approx((one.slope, one.form), abs=1e-10)
-    assert of_machine.left_out == []
+    assert of_machine.omitted == []
 
 
 def test_what_else_a_machine_writes_is_accounted_for() -> None:
@@ -65,7 +65,7 @@ def test_what_else_a_machine_writes_is_accounted_for() -> None:
         "other table or heading": 4,
         "profile": -1,
     }
-    assert len(found.left_out) == 3
+    assert len(found.omitted) == 3
 
 
 @pytest.mark.parametrize(

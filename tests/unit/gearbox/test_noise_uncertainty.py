@@ -22,7 +22,7 @@ from dynamics.noise import (
     sound_sensitivities,
 )
 from dynamics.noise.sound_band import largest_level
-from lineofaction.cli.cached_tables import tabled_scene
+from lineofaction.cli.scene_tables import tabled_scene
 from lineofaction.gearbox.convert.housings import housings_in
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

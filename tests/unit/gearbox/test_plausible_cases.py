@@ -16,8 +16,9 @@ from dynamics.plausibility import CHECKS as SCENE_CHECKS
 from fe_contact.plausibility import CHECKS as PAIR_CHECKS
 from fe_contact.ste import PairGeometry
 from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.convert.case_plausibility import case_warnings
 from lineofaction.gearbox.convert.checked_case import CheckedCase, check_case
-from lineofaction.gearbox.convert.plausibility import case_warnings, scene_warnings
+from lineofaction.gearbox.convert.plausibility import scene_warnings
 from lineofaction.gearbox.convert.scene import check_scene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas import Case, read_model, validated

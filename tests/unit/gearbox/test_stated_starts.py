@@ -12,7 +12,7 @@ import pytest
 from bad_inputs import GOOD
 from changed_scenes import changed
 
-from fe_contact.flank.stated_start import StatedStarts
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.geometry import Gear, ParallelAxes
 from lineofaction.gearbox.convert.case import case_json, gear_pair
 from lineofaction.gearbox.problems import BadInput
@@ -91,7 +91,7 @@ def test_it_is_the_roll_angle_of_the_tabled_involute() -> None:
         "tip_relief_start_roll_angle": roll_angle,
     }
     for name, value in facts.items():
-        lengths = StatedStarts(**{name: value}).lengths({}, lambda: gear)
+        lengths = DrawingStarts(**{name: value}).lengths({}, lambda: gear)
         assert lengths == {"tip_relief_length": pytest.approx(0.5 * (88e-3 - 85.14142e-3), abs=3e-8)}
 
 

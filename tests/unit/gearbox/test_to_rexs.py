@@ -43,7 +43,7 @@ from lineofaction.gearbox.rexs.model import Attribute, Component, Document
 from lineofaction.gearbox.rexs.vocabulary import si_value
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection
 from lineofaction.gearbox.studies.deflect.run import RUN
-from lineofaction.gearbox.to_rexs.deflection import deflected, left_out
+from lineofaction.gearbox.to_rexs.deflection import deflected, omissions
 from lineofaction.gearbox.to_rexs.stage import exported
 
 
@@ -376,7 +376,7 @@ def test_without_a_spectrum_results_are_the_components_own() -> None:
 def test_planets_copies_are_named_as_left_out() -> None:
     unit = OpenedUnit.of(planetary())
     result = deflection_of_unit(unit)
-    names = left_out(unit, result)
+    names = omissions(unit, result)
     assert "shaft 6 2" in names
     assert not {"shaft 3", "concept_bearing 51", "cylindrical_stage 21"} & set(names)
     assert results(deflected(planetary(), unit, result))[51]["axial_deflection"] == pytest.approx(

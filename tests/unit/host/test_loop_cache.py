@@ -135,11 +135,11 @@ def test_an_entry_that_is_cut_off_or_of_other_versions_is_none(
 
 def test_few_versions_of_a_loop_are_kept(tmp_path: Path) -> None:
     folder = project(tmp_path)
-    for factor in range(loop_cache.VERSIONS_KEPT + 2):
+    for factor in range(loop_cache.MAX_VERSIONS + 2):
         (folder / "gears" / "constants.py").write_text(f"FACTOR = {factor}.0\n")
         assert answer(folder) == (2.0 * factor + 1.0, False)
     kept = [len(list(folder.glob(f"gears/__pycache__/loop.*.{kind}"))) for kind in ("nbi", "nbc")]
-    assert kept == [loop_cache.VERSIONS_KEPT] * 2
+    assert kept == [loop_cache.MAX_VERSIONS] * 2
 
 
 def test_keys_hold_all_files_that_the_statements_of_import_name() -> None:

@@ -23,11 +23,11 @@ from lineofaction.report.drawing.figure import Axis, Figure, Line, Panel, Table
 from lineofaction.report.drawing.page import Headline, Page, Part, Section, html, is_number
 from lineofaction.report.drawing.tables import records, settings_table, side_by_side
 from lineofaction.report.pair import data_sheet_section, pair_of, pair_remarks
+from lineofaction.report.ste.headlines import static_headlines
 from lineofaction.report.ste.page import (
     case_tables,
     contact_effects,
     static_alarms,
-    static_headlines,
     static_making,
 )
 

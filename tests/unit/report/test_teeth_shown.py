@@ -15,7 +15,8 @@ from declared_figures import check_declared
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.answers import curve_json, metadata_json, summary_json
 from lineofaction.report.drawing.figure import Figure, HeatMap, number
-from lineofaction.report.ste.page import static_headlines, static_results
+from lineofaction.report.ste.headlines import static_headlines
+from lineofaction.report.ste.page import static_results
 
 Tables = Callable[..., SteDatabase]
 WORST = 5

@@ -276,7 +276,7 @@ def test_what_is_kept_is_found_by_any_process_on_the_folder(tmp_path: Path) -> N
 
 
 def test_what_was_not_used_for_longest_goes_first(tmp_path: Path) -> None:
-    kept = KeptAnswers(tmp_path, most_bytes=250)
+    kept = KeptAnswers(tmp_path, max_bytes=250)
     for tag in ("first", "second"):
         kept.keep(tag, tag[:1].encode() * 100)
     for path in tmp_path.iterdir():  # long ago: what was used a moment ago stays

@@ -71,7 +71,7 @@ def test_with_few_files_as_many_connections_are_taken_as_they_suffice_for(tmp_pa
 
 @pytest.mark.parametrize("files", [228, 300, 996, 20_000])
 def test_limits_follow_the_number_of_files(files: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(of_process, "most_open_files", lambda: files)
+    monkeypatch.setattr(of_process, "max_open_files", lambda: files)
     own = capacity(workers=1)
     assert own.connections == min(files - 196, 800)
     assert 0 < own.share <= own.requests < own.comfortable_connections < own.connections

@@ -144,7 +144,7 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
     recipe = SectorRecipe(
         **{name: part * MODULE for name, part in sizes.items()}, layers=6, merge_rows=(), land_elements=1
     )
-    made = FaceDiscretization((recipe, recipe), (recipe, recipe), slices=11, most_slices=11)
+    made = FaceDiscretization((recipe, recipe), (recipe, recipe), slices=11, max_slices=11)
     contact = pair_contact(pair, replace(plan, discretization=made), cache=None)
     problem, solution = contact.solve(model, np.array([0.3, 0.45, 0.6]), load)
     force, face = solution.force[:, 0], problem.candidates.face_position

@@ -1,4 +1,8 @@
-"""Contact of given compliance under a given torque: complementarity by a primal-dual active set."""
+"""Contact of given compliance under a given torque: complementarity by a primal-dual active set.
+
+A hat is a piecewise linear shape of the pressure along the slave's profile (`weak_gap`). The weak gap of a
+hat is the integral of the gap times the hat. The lag is the turn of the driven gear along its base circle.
+"""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class CondensedBody:
 
     @property
     def points(self) -> FloatArray:
-        """Nodes of its strips, undeformed, (k, 2) m."""
+        """Undeformed nodes of the strips, (k, 2) m."""
         return self.body.points[self.nodes]
 
 

@@ -78,7 +78,7 @@ class FlankCurve:
         return np.where(hit, t, np.nan)
 
     def foot_of(self, others: FloatArray, reference: FlankCurve) -> FloatArray:
-        """Return the parameters at whose normals, those of `reference`, other points (q, 2) lie."""
+        """Return the curve parameters whose normals, or those of `reference`, pass through points (q, 2)."""
         corners = np.arange(self.pieces + 1.0)
         tangents = reference.points(corners).tangents
         ahead = np.einsum("qcx,cx->qc", others[:, None] - self.nodes[None, ::2], tangents)

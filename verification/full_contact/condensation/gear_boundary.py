@@ -156,7 +156,7 @@ def _tip_land(right: FloatArray, left: FloatArray, fraction: FloatArray) -> Floa
 
 
 def _plain_ring(gear: Toothing, pieces: Sequence[Piece], missing: int, resolution: Resolution) -> Piece:
-    """Return what stands for the missing teeth, from the last tooth counter-clockwise to the first."""
+    """Return the plain ring in place of missing teeth, from the last tooth counter-clockwise to the first."""
     x, y = pieces[-1].nodes[-1]
     start, length = float(np.arctan2(x, y)), missing * tooth_profile(gear).pitch_angle
     radius, module = gear.root_radius, gear.normal_module

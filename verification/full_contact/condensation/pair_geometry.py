@@ -163,7 +163,7 @@ def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:
 
 
 def at_end(pair: ParallelAxes, site: ContactSite, slave: PlacedBody) -> BoolArray:
-    """Say which hats along the profile of a site are at an end of its strip that is no tip edge."""
+    """Return whether each hat along the profile of a site is at an end of its strip that is no tip edge."""
     s = slave.strips[site.ahead].s
     gear = (pair.pinion, pair.wheel)[site.slave]
     ends = np.zeros(len(s), dtype=bool)

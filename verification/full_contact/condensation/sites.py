@@ -1,6 +1,8 @@
 """Sites where tooth pairs may touch at one position, and the element sizes on their flanks.
 
-Hertz' half-width decides element sizes and the length of the strips, and nothing else.
+The slave is the gear whose flank carries the pressure, the mate or master the other one. A strip is the
+stretch of a flank on which pressure may act. Hertz' half-width decides element sizes and the length of the
+strips, and nothing else.
 """
 
 from __future__ import annotations
@@ -105,7 +107,7 @@ def contact_sites(
     return tuple(sites)
 
 
-def least_gap_left_out(pair: ParallelAxes, position: float, sites: tuple[ContactSite, ...]) -> float:
+def least_omitted_gap(pair: ParallelAxes, position: float, sites: tuple[ContactSite, ...]) -> float:
     """Return the least gap of the rigid gears at a pair that is no site, m; infinite if there is none."""
     neighbors = np.array([sites[0].ahead - 1, sites[-1].ahead + 1])
     rolls = pair.roll_lengths(position, neighbors)[0]
@@ -129,7 +131,7 @@ def _corner(pair: ParallelAxes, roll: float) -> CornerContact:
 
 
 def _corner_gap(pair: ParallelAxes, roll: float) -> float:
-    """Return its gap, infinite where the edge meets no involute, less what a flank has too much of."""
+    """Return the gap of a tip edge, infinite where it meets no involute, less excess material."""
     gap = float(_corner(pair, roll).gap)
     if not math.isfinite(gap):
         return math.inf

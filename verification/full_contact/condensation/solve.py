@@ -14,7 +14,7 @@ from verification.full_contact.condensation.contact_model import ContactModel, P
 from verification.full_contact.condensation.placed_mesh import placed_bodies
 from verification.full_contact.condensation.resolution import Resolution
 from verification.full_contact.condensation.settled_contact import solve_loads
-from verification.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
+from verification.full_contact.condensation.sites import Range, contact_sites, least_omitted_gap
 from verification.full_contact.solved_position import SolvedPosition, tables_of
 from verification.full_contact.table import FullContactPoint, FullContactTable
 from verification.full_contact.validity import check_axes, refusal
@@ -52,7 +52,7 @@ def _solved(
     position: float,
     resolution: Resolution,
 ) -> SolvedPosition:
-    """Mesh and solve; again with more pairs or longer strips where those do not hold the contact."""
+    """Mesh and solve; repeat with more pairs or longer strips where these do not contain the contact."""
     phase = position - round(position)
     minimum, maximum = (float(pair.normal_force(torque)) for torque in (min(torques), max(torques)))
     loads = minimum / pair.face_width, model.largest_line_load(pair, maximum)
@@ -67,7 +67,7 @@ def _solved(
         lags = [point.transmission_error for point in points if point.status.usable]
         lag = max(lags, default=0.0) + closer
         cut_off = any(point.status is Status.OUT_OF_MODEL for point in points)
-        if lag < least_gap_left_out(pair, phase, sites) and not cut_off:
+        if lag < least_omitted_gap(pair, phase, sites) and not cut_off:
             break
         load_range = Range(
             loads, max(load_range.lag, 1.3 * lag), load_range.longer * (WIDER if cut_off else 1.0)

@@ -85,7 +85,7 @@ class FacingFlanks:
 
     @cached_property
     def ends(self) -> tuple[float, float]:
-        """Roll lengths of the slave from its form circle to its tip, or to what faces the mate's tip, m."""
+        """Roll lengths of the slave from its form circle to its tip, or to the mate's tip opposite, m."""
         gears = (self.pair.pinion, self.pair.wheel)
         slave_gear, mate = gears[self.slave], gears[1 - self.slave]
         touching = self.roll if self.slave == 0 else self.line_length - self.roll

@@ -10,7 +10,7 @@ from verification.full_contact.over_face.extruded_stiffness import X, Y, Z
 
 
 class Part(NamedTuple):
-    """One part: a component, what the plane does to its functions, whether z differentiates, a factor."""
+    """Term of a displacement gradient: component, plane operator, whether z differentiates, factor."""
 
     component: int
     plane: str
@@ -22,7 +22,7 @@ _Gradient = dict[tuple[int, int], list[Part]]
 
 
 def _gradient(along: dict[int, list[Part]]) -> _Gradient:
-    """Return all nine derivatives from those along z."""
+    """Return all nine derivatives of the displacement from those along z."""
     plane = {
         (i, j): [Part(i, name, along=False, factor=1.0)]
         for i in (X, Y, Z)

@@ -126,7 +126,7 @@ def _normals(section: Section, nodes: IntArray) -> FloatArray:
 
 
 def section_compliance(meshed: MeshedSection, material: Material) -> dict[int, FloatArray]:
-    """Return for each strip what its nodes give way normally by nodal loads (k, k), m per N/m."""
+    """Return for each strip the normal displacements of its nodes by nodal loads (k, k), m per N/m."""
     section = meshed.section
     matrix = section_stiffness(section, material)
     count = len(section.points)
@@ -201,7 +201,7 @@ def _rowwise(one: sp.csr_array, other: FloatArray) -> sp.csr_array:
 
 
 def face_body(meshed: MeshedSection, layers: Layers, material: Material, spread: float) -> FaceBody:
-    """Assemble over the face, eliminate, keep what the loaded flanks do along their normals."""
+    """Assemble a body over the face and eliminate all but the normal displacements of the loaded flanks."""
     section = meshed.section
     stiffness = twisted_stiffness(section, layers, material)
     count = len(section.points)
@@ -285,7 +285,7 @@ class HelicalGear:
 
 @dataclass(frozen=True)
 class BodyMesh:
-    """Sizes of a condensed gear, m; its layers, what lies behind flanks of body and section, its spread."""
+    """Sizes of a condensed gear, m; its layers, resolution of body and section, and its spread."""
 
     flank: float
     fine: float

@@ -96,7 +96,7 @@ class _Pair:
     sections: list[LoadedSection]
 
     def integrals(self, tilt: float) -> FloatArray:
-        """Return those of all its hats (5, i j); `tilt` is that of the axes in the plane of action, rad."""
+        """Return the integrals of all hats (5, i j); `tilt` of the axes in the plane of action, rad."""
         _, dz, over = self.stations.quadrature
         total = np.zeros((5, self.stations.across, len(self.stations.face)))
         for one in self.sections:
@@ -213,7 +213,7 @@ def _face_loads(gear: HelicalGear, teeth_pair: _Pair, number: int) -> sp.csr_arr
 
 
 def _lacking(gear: HelicalGear, teeth_pair: _Pair, number: int) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Give hats of a pair, and what these give way more in a section than in the body over the face."""
+    """Yield the hats of a pair, and the compliance that the body over the face lacks against a section."""
     _, dz, over = teeth_pair.stations.quadrature
     for one in teeth_pair.sections:
         between = one.number // 3

@@ -103,7 +103,7 @@ def _condensed(pair: ParallelAxes, torque: float, mesh: HelicalMesh) -> _Condens
 def _solved(
     condensed: _CondensedPair, position: float, torques: Sequence[float], misalignment: float
 ) -> tuple[FullContactPoint, ...]:
-    """Solve one position under all torques; again with wider strips where those cut the pressure off."""
+    """Solve one position under all torques; repeat with wider strips where strips cut the pressure off."""
     half = STRIP * condensed.half
     for _ in range(ATTEMPTS):
         mesh, phase = condensed.mesh, position - round(position)

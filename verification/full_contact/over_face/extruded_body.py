@@ -63,7 +63,7 @@ class ExtrudedBody:
 
     @property
     def points(self) -> FloatArray:
-        """Nodes of its strips, undeformed, (k, 2) m."""
+        """Undeformed nodes of the strips, (k, 2) m."""
         return self.body.points[self.nodes]
 
     def displacement(self, forces: sp.csr_array) -> FloatArray:

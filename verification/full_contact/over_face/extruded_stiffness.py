@@ -36,7 +36,7 @@ class ExtrudedStiffness:
     each unknown. Shape (m,) each.
     """
     layers: int
-    """Functions up to this number are hats, those beyond bubbles."""
+    """Number of functions that are hats; the later ones are bubbles."""
 
 
 def extruded_stiffness(

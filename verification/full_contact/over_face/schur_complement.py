@@ -92,7 +92,7 @@ def _eliminated(dense: FloatArray, pivots: int) -> FloatArray:
 
 
 def _fronts(graph: sp.csr_array, eliminated: int) -> list[_Front]:
-    """Return the fronts of the first nodes, each before those that it leaves something to."""
+    """Return the fronts of the first nodes, children before their parents."""
     beyond = _structures(graph, eliminated)
     parent = [int(b[0]) if len(b) else -1 for b in beyond]
     top = list(range(eliminated))

@@ -18,7 +18,7 @@ _REMEDY = "For example: time_s,speed_rpm,torque_n_m."
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
-    """Yield the columns beside the time; raises `UnusableFile`: a line holds something else than numbers."""
+    """Yield the columns except the time; raises `UnusableFile`: a line holds something else than numbers."""
     try:
         with file.open(encoding="utf-8-sig", newline="") as stream:
             heading = [name.strip() for name in next(csv.reader(stream), [])]

@@ -59,7 +59,7 @@ def _response(part: Dataset, scale: Dataset | None) -> RawChannel:
 
 
 def _motion(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float]:
-    """Return the quantity of the numerator, and what one of its unit is in SI."""
+    """Return the quantity of the numerator, and the SI value of its unit."""
     label = text_of(part, "ordinate_axis_units_lab")
     unit, kind = measured_unit(_numerator(label)), int(part["ordinate_spec_data_type"])
     quantity = _MOTIONS.get(kind) or (unit.quantity if unit is not None and kind == 0 else "")

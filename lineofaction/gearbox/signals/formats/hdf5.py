@@ -18,7 +18,7 @@ TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
 _UNIT_ATTRIBUTES = ("unit", "units")
 _DEPTH, _MAX_ENTRIES = 4, 4096
-_LONGEST = 256  # characters of an attribute
+_LONGEST = 256  # most characters of an attribute
 _REMEDY = "Store a dataset time_s beside the vectors, or an attribute sample_rate_hz."
 
 

@@ -14,7 +14,7 @@ from lineofaction.gearbox.signals.units import unit_of_name
 
 EXTRA = ""
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_AT = 512  # bytes of a user block that MATLAB puts in front of HDF5
+_AT = 512  # size in bytes of the user block that MATLAB puts in front of HDF5
 TIMES = ("time_s", "time", "t")
 RATES = ("sample_rate_hz", "sample_rate", "fs")
 _REMEDY = "Save vectors of numbers beside time_s, or beside the number sample_rate_hz."

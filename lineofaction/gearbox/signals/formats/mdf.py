@@ -15,7 +15,7 @@ EXTRA = "mdf"
 
 
 def channels(file: Path, names: Sequence[str]) -> Iterator[RawChannel]:
-    """Yield the channels of numbers of a file with their physical values; those of time itself are none.
+    """Yield the channels of numbers of a file in physical values, without channels of time.
 
     Raises `UnusableFile`: it is of another version.
     """

@@ -40,8 +40,8 @@ class RawChannel:
 class SampleBudget:
     """Count of the samples that a reader is about to take, up to a number of channels and samples."""
 
-    def __init__(self, most_channels: int = MAX_CHANNELS) -> None:
-        self.most_channels = most_channels
+    def __init__(self, max_channels: int = MAX_CHANNELS) -> None:
+        self.max_channels = max_channels
         self.channels = self.samples = 0
 
     def take(self, samples: int) -> None:
@@ -51,8 +51,8 @@ class SampleBudget:
         """
         self.channels += 1
         self.samples += samples
-        if self.channels > self.most_channels or self.samples > MAX_SAMPLES:
-            bound = f"a file of at most {self.most_channels} channels and {MAX_SAMPLES} samples"
+        if self.channels > self.max_channels or self.samples > MAX_SAMPLES:
+            bound = f"a file of at most {self.max_channels} channels and {MAX_SAMPLES} samples"
             raise UnusableFile(bound, "Export a shorter stretch, or name the channels that are needed.")
 
 

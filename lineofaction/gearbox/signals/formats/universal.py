@@ -59,7 +59,7 @@ def _channel(name: str, part: Dataset, scale: Dataset | None) -> RawChannel:
 
 
 def _unit(name: str, part: Dataset, scale: Dataset | None) -> tuple[str, float]:
-    """Return the unit of the ordinate and what its values are multiplied by to be in it.
+    """Return the unit of the ordinate, and the factor from its values to this unit.
 
     A file states it by the units of the file (dataset 164), by the label of the axis, or by both.
     """

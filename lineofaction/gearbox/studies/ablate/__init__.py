@@ -78,7 +78,7 @@ class AblateFigures(Figures):
     ]
     nominal: Toggled
     effects: list[EffectFigures]
-    left_out: dict[str, str]
+    left_out: Annotated[dict[str, str], Source("omitted")]
     torque_n_m: list[float] | None = None
     normal_force_n: list[float] | None = None
     misalignment_um: float | None = None

@@ -16,7 +16,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.ablation import Ablation, ablate, predicted_ablation
 from fe_contact.effects import EFFECTS
 from fe_contact.errors import chosen
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput

@@ -29,7 +29,7 @@ class HeardQuestion(Protocol):
 
 
 def check_receiver(scene: SceneInput, receiver: HeardInput) -> None:
-    """Refuse what a scene does not let hear."""
+    """Refuse a quantity or a place that a scene does not offer."""
     if receiver.quantity not in (None, BEARING_FORCE) or receiver.microphone_mm is not None:
         require_surface(scene)
     pressure = receiver.quantity == SOUND_PRESSURE or (
@@ -56,7 +56,7 @@ def check_driving(scene: SceneInput, load_cases: Sequence[LoadCaseInput]) -> Non
 
 
 def housing_of(scene: SceneInput, receiver: HeardInput) -> str:
-    """Return the housing whose surface is heard; raises `BadInput`."""
+    """Return the housing of the surface or microphone; raises `BadInput`."""
     known = [part.name for part in scene.housings if part.has_surface]
     if receiver.housing is None and len(known) == 1:
         return known[0]
@@ -67,7 +67,7 @@ def housing_of(scene: SceneInput, receiver: HeardInput) -> str:
 
 
 def flank_mesh(scene: SceneInput, mesh: str | None) -> MeshInput:
-    """Return the mesh whose flanks are heard; raises `BadInput`."""
+    """Return the mesh whose flanks change; raises `BadInput`."""
     by_name = {part.name: part for part in scene.meshes if part.case or part.case_file}
     if mesh is None and len(by_name) == 1:
         return next(iter(by_name.values()))

@@ -17,8 +17,9 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.tolerance_study import ToleranceRequest
 from fe_contact.types import FloatArray
 from host import cpu_seconds
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -59,7 +60,7 @@ class _ChangeStudy(SceneStudy[Inputs, ChangeFigures, FlankChange]):
     inputs, answer, file = Inputs, ChangeFigures, record_file(("change", FlankChange))
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse another pair than the scene's, tolerances that it cannot have, and what it does not hear."""
+        """Refuse another pair than the scene's, impossible tolerances, and a quantity that it lacks."""
         if inputs.tolerances.samples > MAX_PAIRS:
             raise BadInput.of("tolerances.samples", inputs.tolerances.samples, f"at most {MAX_PAIRS}")
         check_receiver(scene, inputs.heard)
@@ -158,7 +159,7 @@ def _quantiles(nominal: float, band: FloatArray) -> Json:
 
 
 def _designs(case: Case, inputs: Inputs) -> tuple[ToleranceRequest, ToleranceRequest]:
-    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy those of a case.
+    """Return both designs with their tolerances: flanks on the bodies, loads and accuracy of a case.
 
     Raises `BadInput`.
     """
@@ -211,7 +212,7 @@ def _level_model(
     inputs: Inputs,
     means: Means,
 ) -> tuple[HeardFlanks, list[tuple[FlankLevels, FloatArray]], float]:
-    """Return the scene in which flanks are heard, both designs with their errors, and CPU seconds of one."""
+    """Return the scene prepared for other flanks, both designs with their errors, and CPU seconds of one."""
     assert mesh.case is not None
     database, cache = subject.databases[mesh.name], means.home / "compliance"
     bodies = condensed_pair(

@@ -98,7 +98,7 @@ class HeardLoad:
         return self.form.weighted(self.transfer.inputs(flanks))
 
     def parting(self, flanks: FlankExcitation) -> float:
-        """Return by what share of the static mesh force flanks part at most; 0: they do not."""
+        """Return the largest share of the static mesh force by which flanks part; 0: they do not."""
         minimum = self.transfer.response(flanks).least_mesh_force.min(axis=1)
         return float(np.max(-minimum / np.abs(flanks.mean_force), initial=0.0))
 
@@ -130,8 +130,8 @@ class HeardLoad:
             for amplitude in (np.maximum(size - off, CANCELED * size), size, size + off)
         )
         varied = self.transfer.varied_inputs(scene.at, flanks)[0]
-        left_out = self.levels(self.form.weighted(varied), worst_speed) - level
-        return np.stack([level - low - np.minimum(left_out, 0.0), high - level + np.maximum(left_out, 0.0)])
+        omitted = self.levels(self.form.weighted(varied), worst_speed) - level
+        return np.stack([level - low - np.minimum(omitted, 0.0), high - level + np.maximum(omitted, 0.0)])
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class HeardFlanks:
         return np.array(force) * self.known.geometry.base_radius[0]
 
     def table(self, pair: ParallelAxes, misalignment: float = 0.0) -> SteDatabase:
-        """Return the table of flanks, at a misalignment beside that of the scene, m."""
+        """Return the table of flanks, at a misalignment in addition to that of the scene, m."""
         known = self.known
         force = np.union1d(known.force, known.support_force)
         torques = np.asarray(pair.torque(force[force <= self.bodies.largest_load * (1.0 + 1e-9)]))
@@ -248,7 +248,7 @@ def line_names(orders: int) -> tuple[str, ...]:
 
 
 def quantity_of(subject: TabledScene, receiver: HeardInput) -> str:
-    """Return the quantity that is heard: sound power where a housing has a surface, unless it is stated."""
+    """Return the stated quantity, else sound pressure at a microphone, sound power or bearing force."""
     if receiver.quantity is not None:
         return receiver.quantity
     if receiver.microphone_mm is not None:

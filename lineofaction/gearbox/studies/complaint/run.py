@@ -18,7 +18,7 @@ from dynamics.linearize import ForcedResponse, ModalAnalysis, forced_response, m
 from dynamics.mechanism.passing import Passing
 from dynamics.scene import Scene
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.complaint import (
     Complaint,
@@ -253,7 +253,7 @@ def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> F
 
 
 def _parting(response: ForcedResponse | None) -> float:
-    """Return by what share of the mean mesh force flanks would pull in a linear response; 0: none part."""
+    """Return the share of the mean mesh force by which flanks would pull in a linear response; 0: none."""
     if response is None:
         return 0.0
     pull = -response.least_mesh_force[:, 0] / np.maximum(np.abs(response.mean_force), 1e-300)

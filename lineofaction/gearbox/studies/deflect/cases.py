@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 from bounds import inside
 from dynamics.settings.load_case import CaseForce, LoadCase, check_forces
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.declared import in_si
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.deflect import LoadCaseInput
 
 
 def check_cases(scene: SceneInput, inputs: Sequence[LoadCaseInput]) -> tuple[LoadCase, ...]:
-    """Return load cases; raises `BadInput` where they cannot be, or need what the scene lacks."""
+    """Return load cases; raises `BadInput`: they are impossible, or need parts that the scene lacks."""
     with named(""):
         cases = load_cases(inputs)
         check_forces(cases, [force.name for force in scene.forces])

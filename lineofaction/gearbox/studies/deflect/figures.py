@@ -24,7 +24,7 @@ from lineofaction.gearbox.studies.deflect import DeflectFigures, RatingLife
 from lineofaction.gearbox.studies.deflect.result import GearboxDeflection, MeshFlanks
 from lineofaction.gearbox.units import RPM, UM
 
-HOUR = 3600.0  # s
+HOUR = 3600.0  # an hour in s
 ROUNDING, ROUNDING_OF_ALL = 1e-9, 1e-12
 """Shares of the largest force of a bearing, and of the largest force of all bearings, below which a force is
 zero. Moments are compared times 1/m. Displacements are compared as forces of all bearings."""
@@ -191,7 +191,7 @@ def _points(result: GearboxDeflection, mesh: str) -> list[tuple[float, float, fl
 
 
 def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None:
-    """Write case and optimization inputs of every mesh with a case beside `target`, which lists the calls."""
+    """Write case and optimization inputs of every mesh with a case; `target` lists the calls."""
     lines = ["# Flanks for the load spectrum of each mesh: loa optimize takes these files.", ""]
     for name in mesh_names(result):
         if name not in result.cases:
@@ -211,5 +211,5 @@ def write_spectrum(result: GearboxDeflection, _scene: Any, target: Path) -> None
 
 
 def _digits(value: float) -> float:
-    """Return a number of seven digits: what a file shows."""
+    """Return a number of seven digits, as files have it."""
     return float(f"{value:.7g}")

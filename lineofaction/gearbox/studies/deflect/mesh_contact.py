@@ -144,7 +144,7 @@ def _table_at(contacts: Mapping[str, MeshContact], mesh_knot: tuple[str, float])
 
 
 def _distinct(torques: Sequence[float]) -> list[float]:
-    """Return the torques in increasing order, one of those that differ by less than `ALIKE`."""
+    """Return the torques in increasing order, without torques within `ALIKE` of another."""
     distinct: list[float] = []
     for torque in sorted(torques):
         if not distinct or torque > distinct[-1] * (1.0 + ALIKE):

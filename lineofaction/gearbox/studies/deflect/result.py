@@ -83,7 +83,7 @@ class Outline:
 
     @staticmethod
     def of(scene: Scene) -> Outline:
-        """Return the outline of a scene; bearings are those to the ground and planet bearings."""
+        """Return the outline of a scene; bearings are bearings to the ground and planet bearings."""
         index = {shaft.name: k for k, shaft in enumerate(scene.shafts)}
         supports = (*scene.ground_bearings, *scene.planet_bearings)
         pieces = [(k, *piece) for k, shaft in enumerate(scene.shafts) for piece in _pieces(shaft)]
@@ -140,7 +140,7 @@ def _pieces(shaft: Shaft) -> list[tuple[float, float, float, float]]:
 
 
 def _pitch_diameters(scene: Scene) -> dict[str, float]:
-    """Return the operating pitch diameter of every gear in its first mesh, m; of others that of the base."""
+    """Return the operating pitch diameter of every gear in its first mesh, else its base diameter, m."""
     diameter = {gear.name: 2.0 * gear.base_radius for gear in scene.gears}
     seen: set[str] = set()
     for mesh, line in zip(scene.meshes, mechanism_of(scene).lines, strict=True):

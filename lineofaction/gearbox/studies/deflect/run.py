@@ -16,7 +16,8 @@ from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.types import FloatArray
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import across_face
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas import Case
@@ -45,7 +46,7 @@ class _DeflectStudy(SceneStudy[Inputs, DeflectFigures, GearboxDeflection]):
     writers = MappingProxyType({".toml": write_spectrum})
 
     def check(self, scene: SceneInput, inputs: Inputs) -> None:
-        """Refuse load cases that cannot be, or that need what the scene lacks, before tables are computed."""
+        """Refuse load cases that are impossible or need missing parts, before tables are computed."""
         check_cases(scene, inputs.load_cases)
 
     def predicted(self, scene: SceneInput, inputs: Inputs, cache: Path | None) -> StudyCost:
@@ -157,7 +158,7 @@ def _contacts(tabled: TabledScene, cases: tuple[CaseDeflection, ...], means: Mea
 
 
 def _usual_seconds(tabled: TabledScene) -> float:
-    """Return the CPU seconds of a table at one misalignment: about those of the contact of a mesh's own."""
+    """Return the CPU seconds of a table at one misalignment, about those of the contact of one mesh."""
     stages = [table.metadata.receipt.get("stages", {}) for table in tabled.databases.values()]
     return max((stage["contact"]["cpu_seconds"] for stage in stages if "contact" in stage), default=0.0)
 

@@ -11,9 +11,10 @@ from fe_contact.analysis.flanks.flank_results import flank_results
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.options import Run
-from lineofaction.gearbox.convert.case import boundary_errors, case_json
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_json
+from lineofaction.gearbox.convert.case_plausibility import phrased_for
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, ResultFile
 from lineofaction.gearbox.studies.cost import StudyCost, Work

@@ -62,7 +62,7 @@ class FrontierFigures(Figures):
         ] = None
 
     rungs: Annotated[list[FidelityFigures], Source("results")]
-    left_out: dict[str, str]
+    left_out: Annotated[dict[str, str], Source("omitted")]
     knee: str | None
     chosen: str | None
     solves: int | None = None

@@ -14,7 +14,8 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.studies.frontier import FIDELITIES, Frontier, frontier, predicted_frontier
 from fe_contact.analysis.studies.full_contact_cost import ORIGIN
 from fe_contact.errors import chosen
-from lineofaction.gearbox.convert.case import boundary_errors, study_options
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import study_options
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

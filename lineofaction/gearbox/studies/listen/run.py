@@ -18,7 +18,7 @@ from dynamics.orders import driving_speed
 from dynamics.results import RunResult
 from dynamics.results.other_housings import other_housings
 from dynamics.types import FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER, HousedScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput

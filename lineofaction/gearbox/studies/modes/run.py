@@ -13,7 +13,7 @@ from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.linearize.modal_analysis import resolved_to
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.bodies import HOUSING, UNIT, Hull
@@ -146,7 +146,7 @@ def _over_speed(modes: ModalAnalysis, mode: int) -> Json:
 
 
 def _crossing(modes: ModalAnalysis, index: int) -> Json:
-    """Return a critical speed; what the mode is, at the nearest of the speeds."""
+    """Return a critical speed, with the mode's description at the nearest of the speeds."""
     mode, speed = int(modes.critical_mode[index]), float(modes.critical_speed[index])
     known = np.isfinite(modes.frequency[:, mode])
     row = int(np.argmin(np.where(known, np.abs(modes.speed - speed), np.inf)))

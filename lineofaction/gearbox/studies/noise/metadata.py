@@ -25,7 +25,7 @@ RESPONSE = ("leading_shaft", "equilibrium", "effect_ledger", "forces", "lines_le
 
 
 def sound_metadata(sound: SceneSound, response: Json, scene: Json) -> Json:
-    """Return the facts of a sound: what it takes over from its response and its scene, regions, models."""
+    """Return the facts of a sound: copies from its response and its scene, regions, models."""
     return {
         **sound.power.metadata,
         "regions": [[_region(region) for region in regions] for regions in sound.regions],
@@ -48,7 +48,7 @@ def uncertainty_metadata(known: SoundUncertainty) -> Json:
     return {
         "band": band,
         "sensitivities": [figures_of(SensitivityFigures, row) for row in known.sensitivities],
-        "sensitivities_left_out": dict(known.left_out),
+        "sensitivities_left_out": dict(known.omitted),
     }
 
 
@@ -88,7 +88,7 @@ def _models(levels: ModelLevels | None) -> Json:
         "level": dict(levels.level),
         "efficiency": dict(levels.efficiency),
         "seconds": dict(levels.seconds),
-        "left_out": dict(levels.left_out),
+        "left_out": dict(levels.omitted),
         "error_band": _lists(levels.error_band),
         "predicted": {name: cost._asdict() for name, cost in levels.predicted.items()},
     }

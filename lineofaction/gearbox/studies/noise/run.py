@@ -27,7 +27,7 @@ from dynamics.noise.exact_lines import BUDGET, COARSE, LINES
 from dynamics.noise.sound_band import responses_of_band
 from dynamics.noise.sounding_housing import PLANE
 from dynamics.work_cost import on_this_host
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.housings import FOLDER
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput

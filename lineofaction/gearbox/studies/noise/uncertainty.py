@@ -21,7 +21,7 @@ from dynamics.noise import (
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.gear import has_extent
 from lineofaction.gearbox.schemas.housings import HousingInput
@@ -78,7 +78,7 @@ class SoundUncertainty:
     """Band of the levels; None: not requested."""
     sensitivities: tuple[Sensitivity, ...]
     """Sensitivities of the largest level; empty: not requested."""
-    left_out: Mapping[str, str]
+    omitted: Mapping[str, str]
     """Reasons why figures have no sensitivity, by name of the figure."""
     seconds: float | None
     """CPU time; None: nothing was requested."""
@@ -93,7 +93,7 @@ def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: 
         damping = KnownDamping("range stated", (low, high))
     housings = {name: subject.housings[name] for name in radiation}
     model = SoundModel(subject.scene, housings, radiation)
-    sensitivities, left_out = tuple[Sensitivity, ...](), dict[str, str]()
+    sensitivities, omitted = tuple[Sensitivity, ...](), dict[str, str]()
     began = cpu_seconds()
     with boundary_errors():
         if inputs.band:
@@ -101,13 +101,13 @@ def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: 
             power, error = sound.power.orders, sound.error
             band = band_about(model, speed, inputs.orders, spans, power, error, means.report)
         if inputs.sensitivities:
-            sensitivities, left_out = _sensitivities_of(subject, model, speed, inputs.orders, means)
+            sensitivities, omitted = _sensitivities_of(subject, model, speed, inputs.orders, means)
     seconds = cpu_seconds() - began if inputs.band or inputs.sensitivities else None
-    return SoundUncertainty(damping, band, sensitivities, left_out, seconds)
+    return SoundUncertainty(damping, band, sensitivities, omitted, seconds)
 
 
 def spans_of(ranges: NoiseRanges) -> dict[str, Range]:
-    """Return the ranges of factors, each about 1, by the name of what is guessed."""
+    """Return the ranges of factors, each about 1, by the name of the guessed figure."""
     factors = {name: span for name in RANGES if (span := getattr(ranges, name)) is not None}
     return {name: Range(low, 1.0, high) for name, (low, high) in factors.items()}
 

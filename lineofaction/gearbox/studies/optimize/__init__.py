@@ -193,7 +193,7 @@ class HeardObjectiveInput(OverOrders, HeardInput):
 
     @model_validator(mode="after")
     def _orders_in_range(self) -> Self:
-        """Refuse orders that are not heard, and misalignments of other load cases."""
+        """Refuse orders beyond the computed ones, and misalignments of other load cases."""
         for index, order in enumerate(self.counted_orders):
             if order > self.orders:
                 refuse(f"counted_orders[{index}]", order, f"at most orders, {self.orders}", "Raise orders.")

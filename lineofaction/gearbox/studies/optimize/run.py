@@ -28,8 +28,8 @@ from fe_contact.microgeometry.search_methods import (
     never,
 )
 from fe_contact.microgeometry.variables import DesignVariable
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import boundary_errors
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -64,7 +64,7 @@ OF_CASE = ("torque_n_m", "misalignment_um", "objective")
 def _write_case(
     result: Optimization | HeardOptimization, checked: CheckedCase | SceneInput, target: Path
 ) -> None:
-    """Write the case with the best design as a case file: what was given of the case, and the best flanks."""
+    """Write the case with the best design as a case file: the stated case, and the best flanks."""
     content: Json = (
         checked.case.model_dump(mode="json", exclude_unset=True)
         if isinstance(checked, CheckedCase)
@@ -91,7 +91,7 @@ class _OptimizeStudy(
     writers = MappingProxyType({".toml": _write_case})
 
     def check(self, subject: CheckedCase | SceneInput, study: Inputs) -> None:
-        """Refuse what the subject does not have, and a search that cannot be."""
+        """Refuse variables that the subject lacks, and an impossible search."""
         if isinstance(subject, CheckedCase):
             if study.heard is not None:
                 raise BadInput.of("heard", "given", "left out with a case", "A scene is heard: name one.")
@@ -153,7 +153,7 @@ class _OptimizeStudy(
         return _sound_figures(result) if isinstance(result, HeardOptimization) else self._of_case(result)
 
     def _of_case(self, result: Optimization) -> Json:
-        limits = dict(result.asked["limits"])
+        limits = dict(result.request["limits"])
         units = {
             "max_pressure_mpa": ("max_pressure_pa", MPA),
             "peak_to_peak_um": ("peak_to_peak_m", UM),
@@ -184,7 +184,7 @@ class _OptimizeStudy(
                 }
                 for step in result.sensitivity
             ],
-            "asked": in_um(result.asked) | requested,
+            "asked": in_um(result.request) | requested,
         }
 
     def warnings(self, result: Optimization | HeardOptimization) -> list[Json]:
@@ -346,7 +346,7 @@ def _search(search: SearchInput, *, of_sound: bool) -> Search:
 
 def _scattering(result: Optimization) -> Json:
     """Return the scattering variables by the fields of a case file."""
-    scatter = result.asked["scatter"]
+    scatter = result.request["scatter"]
     rule = {name: value for name, value in scatter.items() if not name.endswith("_m")}
     spread = {
         "misalignment_um": scatter["misalignment_m"] / UM,

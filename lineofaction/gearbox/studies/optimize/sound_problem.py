@@ -183,7 +183,7 @@ class HeardProblem(SearchProblem):
         return replace(problem, evaluator=replace(problem.evaluator, nodes=ONE_NODE))
 
     def linearize(self, point: FloatArray, workers: Workers) -> tuple[Assessed, HeardMerit]:
-        """Evaluate the design at a point (d,) with the derivatives of what excites."""
+        """Evaluate the design at a point (d,) with the derivatives of the excitation."""
         values = self.values(point)
         tasks = [(values, nodes) for nodes in self.evaluator.runs]
         by = workers if len(tasks) > 1 else InProcess()
@@ -232,14 +232,14 @@ class HeardProblem(SearchProblem):
         return level, loud / loud.sum()
 
     def relative(self, objective: float) -> float:
-        """Return the amplitude over that of the start."""
+        """Return the amplitude over the start's amplitude."""
         return float(10.0 ** ((objective - self.scale) / 20.0))
 
     def _violation(self, figures: Sequence[LoadFigures]) -> float:
         return self.evaluator.evaluation(figures).violation(self.limits)
 
     def tables_of(self, tabled: Sequence[TabledLoads]) -> list[TabledLoads]:
-        """Return the table of each load case, at its own load and beside it, of those of a node."""
+        """Return the table of each load case at its load and the neighbors, from the tables of a node."""
         count, groups, tables = LOAD_FACTORS.size, self.evaluator.groups, []
         for case in range(len(self.sound.at)):
             of_case = [np.flatnonzero(group // count == case) for group in groups]
@@ -294,5 +294,5 @@ def _no_merit(variables: int) -> HeardMerit:
 
 
 def with_neighbor_loads(load: FloatArray, misalignment: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return loads (3 L,) and misalignments of an evaluator: those of the cases, and beside each."""
+    """Return loads (3 L,) and misalignments of an evaluator: each load case's, and its two neighbors."""
     return np.outer(load, LOAD_FACTORS).ravel(), np.repeat(misalignment, LOAD_FACTORS.size)

@@ -107,7 +107,7 @@ def sound_optimum(
         announce(means.report, "search", expected)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
     best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
-    designs = start, problem.values(runs[best].place)
+    designs = start, problem.values(runs[best].coordinates)
     with clock.stage("confirmation"):
         before, after = (_confirmed(replace(setup, problem=problem), values, run.cache) for values in designs)
     with clock.stage("pairs"):
@@ -261,7 +261,7 @@ def sound_problem(
 
 
 def _sampled(problem: HeardProblem, case: Case, question: HeardObjectiveInput) -> HeardProblem | None:
-    """Return the problem with pairs within tolerances as nodes; what an effect that is off hides stays."""
+    """Return the problem with pairs within tolerances as nodes; deviations of effects that are off are 0."""
     evaluator, tolerance_input = problem.evaluator, question.tolerances
     try:
         across = evaluator.contact.face is not None
@@ -292,7 +292,7 @@ def _torques(subject: TabledScene, mesh: str, question: HeardObjectiveInput) -> 
 def _table(
     bodies: CondensedPair, request: OptimizationRequest, torque: float, misalignment: float
 ) -> SteDatabase:
-    """Return the table of the start under a load case, with loads beside it."""
+    """Return the table of the start under a load case, with neighboring loads."""
     return bodies.table(request.pair, torque * LOAD_FACTORS, misalignment)
 
 
@@ -316,7 +316,7 @@ def _evaluator(
 
 
 def _confirmed(setup: SoundSearch, values: dict[str, float], cache: Path | None) -> HeardDesign:
-    """Tell a design, its errors by what rougher contacts change of it: fewer slices, coarser meshes."""
+    """Return a design with errors from rougher contacts: fewer slices, coarser meshes."""
     problem, pair = setup.problem, modified(setup.bodies.checked.request.pair, values)
     points = list(zip(np.outer(setup.torque, LOAD_FACTORS), setup.misalignment, strict=True))
     tables = [setup.bodies.table(pair, *point) for point in points]

@@ -10,9 +10,9 @@ from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
 from fe_contact.plausibility.nominal_intensities import nominal_root_stresses
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case_plausibility import phrased_for
 from lineofaction.gearbox.convert.checked_case import CheckedCase
-from lineofaction.gearbox.convert.plausibility import phrased_for
 from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.studies.computation import Means, PointStudy, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work

@@ -17,8 +17,9 @@ from fe_contact.microgeometry.order_limit import OrderLimit
 from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, sampled
 from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.microgeometry.variables import GEARS
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors
+from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import figures
@@ -93,7 +94,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             return sampled(case.request(scatter_request, inputs), run)
 
     def _derived(self, study: ToleranceStudy) -> Json:
-        widths = study.asked["tolerances"]
+        widths = study.request["tolerances"]
         tolerances = {
             "misalignment_um": widths["misalignment_m"] / UM,
             **{boundary_name(name): width / UM for name, width in widths["modification_m"].items()},
@@ -101,7 +102,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         }
         return {
             "names": [boundary_name(name) for name in study.names],
-            "asked": in_um(study.asked) | {"tolerances": tolerances},
+            "asked": in_um(study.request) | {"tolerances": tolerances},
         }
 
 
@@ -136,7 +137,7 @@ def tolerance_request(checked: CheckedCase, inputs: ToleranceInputs) -> Toleranc
 
 
 def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: bool) -> Tolerances:
-    """Return the tolerances of a class, and those of a drawing in their place."""
+    """Return the tolerances of a class, overridden by those of a drawing."""
     of_class = iso1328_tolerances(
         pair,
         inputs.tolerance_class,

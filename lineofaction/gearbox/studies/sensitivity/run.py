@@ -17,7 +17,8 @@ from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.analysis.studies.sensitivity import Sensitivity, study_sensitivity
 from fe_contact.errors import InputError
 from fe_contact.options import TableAxes
-from lineofaction.gearbox.convert.case import PLANE, boundary_errors, study_options
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import PLANE, study_options
 from lineofaction.gearbox.convert.checked_case import CheckedCase, across_face
 from lineofaction.gearbox.stages import TableFraction
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, ResultFile
@@ -147,7 +148,7 @@ class _TableByTable:
 
 
 def _changes(checked: CheckedCase, inputs: Inputs) -> tuple[float, ...]:
-    """Return the changes of the center distance in per cent: those named, or usual ones that mesh."""
+    """Return the changes of the center distance in per cent: the named ones, or usual ones that mesh."""
 
     def meshes(changes: tuple[float, ...]) -> bool:
         with suppress(InputError):

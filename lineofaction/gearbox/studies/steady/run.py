@@ -15,7 +15,7 @@ from dynamics.errors import InputError, SolveError
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
 from dynamics.periodic.steady_cost import SteadyCost, steady_cost
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.computation import Means, SceneStudy, array_file
@@ -51,7 +51,7 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
             single = steady_cost(sized(scene), speeds[-1:], **how)
         except (InputError, SolveError):
             return None  # the study says it, on its own tables
-        return replace(cost, remedy=_advice(single, inputs.speed_rpm[-1]))
+        return replace(cost, remedy=_remedy(single, inputs.speed_rpm[-1]))
 
     def compute(self, subject: TabledScene, inputs: Inputs, means: Means) -> SteadyStates:
         with boundary_errors():
@@ -122,7 +122,7 @@ def _study_cost(cost: SteadyCost) -> StudyCost:
     return StudyCost((motions, Work("points of the branch", cost.point, cost.points)))
 
 
-def _advice(single: SteadyCost, rpm: float) -> str:
+def _remedy(single: SteadyCost, rpm: float) -> str:
     """Return advice on a motion that is too expensive at many speeds: its cost at one, alternatives."""
     pitches = " and ".join(map(str, single.pitches))
     repeats = f"repeats after {pitches} base pitches of the meshes and " if pitches else ""

@@ -12,8 +12,8 @@ from dynamics.mechanism.planet_copies import numbered, planet_parts
 from dynamics.study import (
     Response,
 )
+from lineofaction.gearbox.convert.boundary_errors import named
 from lineofaction.gearbox.convert.case import table_axes
-from lineofaction.gearbox.convert.errors import named
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
 from lineofaction.gearbox.studies.study import MAX_POINTS, FactorInput, Inputs
@@ -78,7 +78,7 @@ def factor_places(scene: SceneInput, inputs: Inputs) -> Mapping[str, tuple[Locat
 
 
 def _check_case(scene: SceneInput, field: str, factor: FactorInput, location: Location) -> None:
-    """Refuse what of a case cannot be varied: only flanks can, at one alignment; a class is of slopes."""
+    """Refuse fields of a case that cannot vary: only flanks can, at one alignment; a class is of slopes."""
     index = mesh_of_case(location)
     if index is None:
         if factor.iso1328_class is not None:
@@ -99,7 +99,7 @@ def _check_case(scene: SceneInput, field: str, factor: FactorInput, location: Lo
 
 
 def _check_values(scene: SceneInput, inputs: Inputs, places: Mapping[str, tuple[Location, ...]]) -> None:
-    """Try the ends of the values, one factor at a time; those of cases are tried with their tables."""
+    """Check the ends of the values, one factor at a time; values of cases are checked with their tables."""
     base = scene.model_dump(mode="json")
     for factor in inputs.factors:
         if any(mesh_of_case(location) is not None for location in places[factor.path]):

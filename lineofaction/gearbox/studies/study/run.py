@@ -17,7 +17,7 @@ from dynamics.study import (
     study,
 )
 from fe_contact.analysis.run_plan import predicted_designs
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.scene import SceneInput
@@ -143,7 +143,7 @@ def _flank_tables(
 
 
 def in_boundary_units(result: Study, response: int) -> tuple[str, float]:
-    """Return the unit of a response at the boundary, and what one of it is in SI."""
+    """Return the unit of a response at the boundary, and its SI value."""
     unit = result.unit[response]
     return ("um", UM) if unit == "m" else (unit, 1.0)
 

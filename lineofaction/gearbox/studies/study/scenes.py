@@ -19,8 +19,8 @@ from dynamics.scene import Scene
 from fe_contact.analysis.live.condensed_pair import CondensedPair
 from fe_contact.analysis.live.stored_bodies import condensed_pair
 from fe_contact.errors import FeContactError
+from fe_contact.flank.drawing_starts import DrawingStarts
 from fe_contact.flank.modification import FlankModification
-from fe_contact.flank.stated_start import StatedStarts
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.convert.case import gear_pair
 from lineofaction.gearbox.convert.housings import reduced_in
@@ -37,7 +37,7 @@ Location = tuple[str | int, ...]
 
 _EVERY = "*"
 _ENTRY = re.compile(r"^(\w+)(?:\[(\d+)\])?$")
-FLANKS = tuple(figure.field for kind in (FlankModification, StatedStarts) for figure in figures(kind))
+FLANKS = tuple(figure.field for kind in (FlankModification, DrawingStarts) for figure in figures(kind))
 """Fields of a case that leave the bodies of its gears as they are."""
 
 
@@ -49,7 +49,7 @@ def places_of(scene: SceneInput, field: str, path: str) -> tuple[Location, ...]:
     Parameters
     ----------
     field : str
-        What the path is called in an error.
+        Name of the path in an error.
     path : str
         ``KIND.NAME.FIELD`` of a part, where ``*`` names every part of its kind, or ``TABLE.FIELD``.
     """
@@ -204,7 +204,7 @@ class VariedScene:
 
     @cached_property
     def _last(self) -> dict[Location, tuple[Any, Any]]:
-        """The parts, the tables and the housings made last, with what decides them."""
+        """The parts, the tables and the housings made last, with the inputs that determine them."""
         return {}
 
     def _reused(self, name: Location, key: object, make: Callable[[], Any]) -> Any:

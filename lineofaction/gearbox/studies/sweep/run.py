@@ -19,7 +19,8 @@ from fe_contact.microgeometry.sweep import Sweep, SweptQuantity, sweep
 from fe_contact.microgeometry.sweep_request import CENTER_DISTANCE, TORQUE, SweepAxis, SweepRequest
 from fe_contact.microgeometry.variables import GEARS, figure
 from fe_contact.types import BoolArray, FloatArray
-from lineofaction.gearbox.convert.case import boundary_errors, case_at, operating_point
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
+from lineofaction.gearbox.convert.case import case_at, operating_point
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.number_list import number_list
 from lineofaction.gearbox.problems import BadInput
@@ -32,8 +33,8 @@ from lineofaction.gearbox.units import UM, factor, unit_name
 
 STEPS = 9
 """Values of an axis whose range is not given."""
-_MIN_TORQUES = 3  # fewer torques of a case are no range
-_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment; part of the center distance
+_MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
+_SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
 _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 
 
@@ -243,7 +244,7 @@ class _SweepStudy(CaseStudy[Inputs, SweepFigures, SweepResult]):
         return StudyCost((Work("gears", predicted.bodies), designs), predicted.bytes)
 
     def compute(self, case: CheckedCase, inputs: Inputs, means: Means) -> SweepResult:
-        """Sweep a case; what is not swept is at its highest load, its deviations nearest to zero."""
+        """Sweep a case; an unswept load is the highest, an unswept deviation the nearest to zero."""
         with boundary_errors():
             run = means.analysis
             result = sweep(case.request(_request, inputs), run)

@@ -18,7 +18,7 @@ from dynamics.vibration import (
 )
 from dynamics.vibration.vibration_analysis import Shares
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.measured_housings import housing_mobility
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.problems import BadInput
@@ -101,7 +101,7 @@ class MeasuredHousingVibration:
 
     @property
     def left_out(self) -> list[str]:
-        """Return sentences on what the responses replace, and on what they cannot say."""
+        """Sentences on the parts that the responses replace, and on results that they cannot give."""
         vibration = self.vibration
         band = f"{engineering(self.lowest_frequency, 5)} to {engineering(self.highest_frequency, 5)} Hz"
         sentences = [
@@ -184,7 +184,7 @@ def measured_result(
 
 
 def _require_band(covered: BoolArray, mobility: MeasuredMobility, field: str, value: object = None) -> None:
-    """Refuse what lies outside the measured band as a whole; raises `BadInput`."""
+    """Refuse speeds or orders that lie outside the measured band as a whole; raises `BadInput`."""
     if np.any(covered):
         return
     ends = (engineering(float(mobility.frequency[end]), 5) for end in (0, -1))
@@ -211,7 +211,7 @@ def _point_indices(
 
 
 def measured_figures(result: MeasuredHousingVibration) -> Json:
-    """Return the figures of a measured housing; None stands for what lies outside the measured band."""
+    """Return the figures of a measured housing; None stands for values outside the measured band."""
     vibration, at = result.vibration, (result.at_speed, result.at_order)
     return figures_of(
         VibrationFigures,
@@ -235,7 +235,7 @@ def measured_figures(result: MeasuredHousingVibration) -> Json:
 
 
 def _point(vibration: MeasuredVibration, point: int) -> PointVelocity:
-    """Return the velocity of a point; NaN where and along what nobody measured."""
+    """Return the velocity of a point; NaN outside the measurement, in band and direction."""
     rms = vibration.rms[point]
     unlisted = np.full(vibration.speed.size, np.nan if vibration.floor else 0.0)
     level = np.where(vibration.covered, vibration_level(np.nan_to_num(rms)), np.nan)

@@ -24,7 +24,7 @@ from dynamics.vibration import (
 )
 from dynamics.vibration.housing_vibration import HousingVibration
 from host import cpu_seconds
-from lineofaction.gearbox.convert.case import boundary_errors
+from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.scene import TabledScene
 from lineofaction.gearbox.level_quantity import velocity_of
 from lineofaction.gearbox.problems import BadInput
@@ -186,7 +186,7 @@ class _VibrationStudy(SceneStudy[Inputs, VibrationFigures, Result]):
 
 
 def _vibrates(housing: HousingInput) -> bool:
-    """Whether something of a housing may be looked at: matrices alone do not say what moves."""
+    """Whether a housing has points or a surface to look at; matrices alone have none."""
     return housing.has_surface or housing.is_measured
 
 

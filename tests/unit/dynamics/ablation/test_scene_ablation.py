@@ -62,8 +62,8 @@ def test_orders_are_those_of_the_mesh(made: Ablation) -> None:
 
 
 def test_what_has_no_part_in_the_scene_is_left_out_by_name(made: Ablation) -> None:
-    assert made.left_out["friction"] == "no coefficient of friction given"
-    assert {entry.name for entry in made.effects} | set(made.left_out) == {
+    assert made.omitted["friction"] == "no coefficient of friction given"
+    assert {entry.name for entry in made.effects} | set(made.omitted) == {
         "lateral", "axial", "tilt", "friction",
     }  # fmt: skip
     figures = json.loads(json.dumps(RUN.figures(made), allow_nan=False))

@@ -66,7 +66,7 @@ def test_models_with_less_in_them_are_worse_than_any_step(found):
         assert fidelity[name].error > worst
     assert fidelity["quasi_static"].bearing_force_orders == pytest.approx(1.0)  # its forces do not vibrate
     assert np.isnan(fidelity["torsion"].bearing_force_orders)  # nothing moves in the bearings
-    assert "in_plane" in found.left_out  # the scene has no more than that
+    assert "in_plane" in found.omitted  # the scene has no more than that
 
 
 def test_the_linear_response_is_the_run_where_nothing_is_nonlinear():

@@ -28,7 +28,7 @@ def test_the_errors_on_a_sphere_are_those_in_closed_form() -> None:
     pytest.importorskip("ngsolve", reason="boundary elements need the extra boundary-elements")
     hull = sphere(4)
     made = compare_models(hull, AIR.sound_speed / (2.0 * np.pi), np.ones(len(hull.areas)), AIR)
-    assert not made.left_out
+    assert not made.omitted
     for name, stated in errors_db(1.0).items():
         assert made.errors[name] == pytest.approx(stated[0], abs=0.1)
     assert made.errors["boundary_elements"] == 0.0
@@ -42,7 +42,7 @@ def test_every_rung_states_cost_and_error_computed_or_not(tmp_path) -> None:
     made = compare_models(hull, 100.0, velocity, AIR, asked, offered=MODELS, cache=tmp_path)
     names = [model.model_name for model in MODELS]
     assert list(made.predicted) == list(made.error_band) == names
-    assert list(made.results) == names[:2] and not made.left_out
+    assert list(made.results) == names[:2] and not made.omitted
     for name, result in made.results.items():
         assert result.cost.predicted_seconds == made.predicted[name].seconds
         assert result.cost.seconds >= 0.0
@@ -140,10 +140,10 @@ def test_models_without_their_library_or_mesh_are_left_out_with_the_reason(monke
     hull = box((0.4, 0.3, 0.2), (4, 4, 4))
     velocity = np.ones(len(hull.areas))
     made = compare_models(hull, 100.0, velocity, AIR)
-    assert list(made.left_out) == ["boundary_elements"]
-    assert "lineofaction[boundary-elements]" in made.left_out["boundary_elements"]
+    assert list(made.omitted) == ["boundary_elements"]
+    assert "lineofaction[boundary-elements]" in made.omitted["boundary_elements"]
     coarse = compare_models(Hull(hull.nodes, hull.triangles[1:]), 3000.0, velocity[1:], AIR)
     assert list(coarse.results) == ["equivalent_radiated_power"]
-    assert "6 edges in a wavelength" in coarse.left_out["monopoles"]
+    assert "6 edges in a wavelength" in coarse.omitted["monopoles"]
     with pytest.raises(InputError, match="Nothing moves"):
         compare_models(hull, 100.0, 0.0 * velocity, AIR)

@@ -9,7 +9,7 @@ from geared_scenes import gear_pair_scene, spring_table, with_bushings, with_gea
 from planetary_scenes import BEARING_STIFFNESS, PRESSURE_ANGLE, driven_scene, published_set
 
 from dynamics.assembly.assemble import assemble
-from dynamics.effects import EFFECTS, LEFT_OUT, RotorEffect
+from dynamics.effects import EFFECTS, NEGLECTED, RotorEffect
 from dynamics.effects.ledger import mechanism_of
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
@@ -172,7 +172,7 @@ def test_the_ledger_speaks_of_every_effect_shaft_and_mesh_and_of_what_is_left_ou
         for part in (("input", "output") if isinstance(f, RotorEffect) else ("mesh",))
     }
     assert all(e.reason for e in ledger.entries)
-    assert ledger.to_json()["left_out"] == LEFT_OUT
+    assert ledger.to_json()["left_out"] == NEGLECTED
 
 
 def test_default_damping_makes_the_bouncing_shaft_have_its_ratio():

@@ -129,7 +129,7 @@ def test_a_sphere_that_oscillates_has_the_power_of_theory_at_its_line(
     made = corrected_radiation(driven, body, None, estimated_radiation(body, monopoles, AIR))
     sound = radiated_sound(driven, body, None, made.radiation)
     points = [tuple(np.argwhere(driven.frequency == each.frequency)[0]) for each in made.lines]
-    assert made.lines and not made.left_out
+    assert made.lines and not made.omitted
     for each, point in zip(made.lines, points, strict=True):
         exact = plane[point] * sphere_efficiency(1, float(ka[point]))
         assert 10.0 * np.log10(sound.power[point] / exact) == pytest.approx(0.0, abs=0.3)
@@ -142,10 +142,10 @@ def test_lines_beyond_the_budget_and_without_the_library_are_named(
     estimate: EstimatedRadiation, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made = corrected_radiation(response(), housing(), None, estimate, budget=1.0)
-    assert not made.lines and "of 1 CPU s" in made.left_out[0]
+    assert not made.lines and "of 1 CPU s" in made.omitted[0]
     monkeypatch.setitem(sys.modules, "ngsolve", None)
     made = corrected_radiation(response(), housing(), None, estimate)
-    assert made.radiation is estimate and "lineofaction[boundary-elements]" in made.left_out[0]
+    assert made.radiation is estimate and "lineofaction[boundary-elements]" in made.omitted[0]
 
 
 def test_a_quieter_line_that_may_be_louder_widens_the_band_of_the_largest() -> None:

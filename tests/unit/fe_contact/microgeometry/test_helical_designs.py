@@ -60,7 +60,7 @@ def searched(
     problem = DesignProblem(assessed, variables, limits, 1e-6, objective=WeightedMean())
     search = Search(NelderMead(), evaluations=60, positions=POSITIONS)
     run = search_from(problem, search, problem.unit_point(begin), 0)
-    return problem.values(run.place), run
+    return problem.values(run.coordinates), run
 
 
 def test_every_node_is_a_whole_table_of_the_pair_made_so() -> None:
@@ -293,7 +293,7 @@ def test_the_best_slope_is_the_compromise_of_the_loads_by_their_weights(weights:
     slopes = np.linspace(-24e-6, 24e-6, 25)
     scan = [objective.of(assessed.evaluate(level | {SLOPE: x}).peak_to_peak[0]) for x in slopes]
     assert 0.98 * min(scan) < run.assessed.objective < min(scan) * (1.0 + 1e-6)
-    (slope,) = problem.values(run.place).values()
+    (slope,) = problem.values(run.coordinates).values()
     assert np.sign(weights[0] - weights[1]) * slope >= 0.0 and abs(slope) < 12.2e-6
     if not all(weights):
         assert slope == pytest.approx(slopes[int(np.argmin(scan))], abs=2e-6)

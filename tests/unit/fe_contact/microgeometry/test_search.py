@@ -89,7 +89,7 @@ def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
     bowl = Bowl()
     run = searched(bowl, Search(EVOLUTION, seed=1, evaluations=3000))
     assert run.ended is Ended.CONVERGED and run.converged
-    np.testing.assert_allclose(run.place, BOTTOM, atol=2e-3)  # not the bottom of the rough one
+    np.testing.assert_allclose(run.coordinates, BOTTOM, atol=2e-3)  # not the bottom of the rough one
     assert bowl.roughened is not None
     assert run.explored == len(bowl.roughened.seen) > 0.5 * run.evaluations
     assert run.evaluations == len(bowl.seen) + len(bowl.roughened.seen)
@@ -110,7 +110,7 @@ def test_stages_follow_every_start_roughly_and_settle_the_best_in_full() -> None
     bowl = Bowl()
     run = searched(bowl, Search(STAGED, seed=1))
     assert run.ended is Ended.CONVERGED and len(run.ends) == 1 + STAGED.trials
-    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)  # a bowl is flat to first order at its bottom
+    np.testing.assert_allclose(run.coordinates, BOTTOM, atol=0.02)  # a bowl is flat at its bottom
     assert bowl.roughened is not None
     assert run.explored == len(bowl.roughened.seen) > 3 * len(bowl.seen)
 
@@ -138,7 +138,7 @@ class Valleys(Bowl):
 
 def test_stages_leave_the_valley_of_the_start_for_a_deeper_one_and_say_that_starts_differ() -> None:
     run = searched(Valleys(), Search(STAGED, seed=1))
-    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)
+    np.testing.assert_allclose(run.coordinates, BOTTOM, atol=0.02)
     assert max(run.ends) == pytest.approx(1.1, abs=1e-3) and min(run.ends) < 1.01
 
 
@@ -152,7 +152,7 @@ def test_programmes_follow_the_best_of_a_sample() -> None:
     bowl = Bowl()
     run = searched(bowl, Search(SequentialLinearProgramming(sample=32, trials=2), seed=1))
     assert run.ended is Ended.CONVERGED and run.explored == 32
-    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)  # a bowl is flat to first order at its bottom
+    np.testing.assert_allclose(run.coordinates, BOTTOM, atol=0.02)  # a bowl is flat at its bottom
     assert run.assessed.objective < 1.0 + 1e-3
     ranked = bowl.roughened
     assert ranked is not None
@@ -181,7 +181,7 @@ def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
 
     run = searched(bowl, Search(EVOLUTION, seed=2, evaluations=2000), cancel)
     assert run.ended is Ended.CANCELLED and run.evaluations == after
-    told = Bowl().assess(run.place)  # in full, whatever it was ranked by
+    told = Bowl().assess(run.coordinates)  # in full, whatever it was ranked by
     assert run.assessed == told
     if after > 1:
         assert told.objective < Bowl().assess(START).objective
@@ -240,7 +240,7 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
     (run,) = search_all(
         cast(DesignProblem, Bowl()), Search(), tuple(START), Run(workers=workers), lambda: True
     )
-    np.testing.assert_array_equal(run.place, START)
+    np.testing.assert_array_equal(run.coordinates, START)
     assert run.ended is Ended.CANCELLED and run.evaluations == 1
 
 
@@ -263,8 +263,8 @@ def test_walks_by_others_end_for_the_same_reason(method: Any, monkeypatch: pytes
             )
             reasons.add(here.ended)
             for run in others:
-                np.testing.assert_array_equal(run.place, here.place)
-                assert replace(run, place=here.place, cpu_seconds=here.cpu_seconds) == here
+                np.testing.assert_array_equal(run.coordinates, here.coordinates)
+                assert replace(run, coordinates=here.coordinates, cpu_seconds=here.cpu_seconds) == here
     assert reasons == {Ended.SPENT, Ended.CONVERGED}
 
 
@@ -294,7 +294,7 @@ def test_a_start_whose_workers_are_interrupted_keeps_the_best_so_far(
     search = Search(SequentialLinearProgramming(sample=4, trials=2))
     run = search_from(bowl, search, START, 0, cancel=workers.stop.is_set, workers=workers)
     assert run.ended is Ended.CANCELLED and run.evaluations > 0
-    assert run.assessed == Bowl().assess(run.place)
+    assert run.assessed == Bowl().assess(run.coordinates)
     with pytest.raises(WorkersLost):  # nobody requested that
         search_from(bowl, search, START, 0, cancel=lambda: False, workers=Interrupted(after))
 

@@ -15,7 +15,7 @@ from fe_contact.types import FloatArray
 from verification.full_contact.condensation.condensed_body import freedoms
 from verification.full_contact.condensation.placed_mesh import PlacedBody, placed_bodies
 from verification.full_contact.condensation.resolution import Resolution
-from verification.full_contact.condensation.sites import Range, contact_sites, least_gap_left_out
+from verification.full_contact.condensation.sites import Range, contact_sites, least_omitted_gap
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 WHEEL = Gear(teeth=31, normal_module=4e-3, face_width=25e-3, bore_diameter=60e-3)
@@ -93,8 +93,8 @@ def test_modified_flanks_are_apart_by_what_was_removed_and_turn_no_element_over(
 
 def test_teeth_off_the_path_are_held_where_the_lag_brings_them_to_touch() -> None:
     near = contact_sites(PAIR, 0.2, HELD, COARSE)
-    gap = least_gap_left_out(PAIR, 0.2, near)
+    gap = least_omitted_gap(PAIR, 0.2, near)
     assert np.isfinite(gap)
     wide = contact_sites(PAIR, 0.2, replace(HELD, lag=1.01 * gap), COARSE)
     assert len(wide) == len(near) + 1
-    assert least_gap_left_out(PAIR, 0.2, wide) > gap
+    assert least_omitted_gap(PAIR, 0.2, wide) > gap

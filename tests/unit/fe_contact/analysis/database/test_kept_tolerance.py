@@ -13,7 +13,7 @@ from analysis_requests import table_request
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis.database import refined_table
 from fe_contact.analysis.database.compute_database import _Computed, compute_database, compute_pass
-from fe_contact.analysis.estimates import held_out_loads
+from fe_contact.analysis.estimates import validation_loads
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.errors import MeshError, SolveError
@@ -277,7 +277,7 @@ def figures_at(table, torque):
 
 def test_an_interval_that_misses_the_tolerance_is_not_met(tmp_path: Path, monkeypatch):
     """Without a limit on halvings it would be: met is said of the intervals, too."""
-    monkeypatch.setattr(held_out_loads, "MAX_HALVINGS", 0)
+    monkeypatch.setattr(validation_loads, "MAX_HALVINGS", 0)
     wide = analyze(SPUR, tolerance=0.01, **(PLANE | {"torques": [1.0, 80.0]}), cache=tmp_path)
     kept = receipt(wide)["tolerance"]
     (beyond,) = kept["between_nodes"]

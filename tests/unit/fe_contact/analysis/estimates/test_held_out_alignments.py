@@ -10,7 +10,7 @@ from fe_contact import FlankModification, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import tables
 from fe_contact.analysis.checks.table_laws import check_laws
 from fe_contact.analysis.database import compute_database
-from fe_contact.analysis.estimates import held_out_alignments, inserted_places
+from fe_contact.analysis.estimates import inserted_places, validation_alignments
 from fe_contact.analysis.request.request_check import check_request, checked_request
 from fe_contact.errors import DatabaseError
 from fe_contact.options import Run
@@ -56,7 +56,7 @@ def test_center_distances_are_inserted_until_every_interval_meets_the_tolerance(
 
 
 def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatch) -> None:
-    monkeypatch.setattr(held_out_alignments, "MAX_HALVINGS", 0)
+    monkeypatch.setattr(validation_alignments, "MAX_HALVINGS", 0)
     table = spur(center_distance_changes=CHANGES, cache=cache)
     kept = table.metadata.receipt["tolerance"]
     (beyond,) = kept["between_nodes"]
@@ -68,7 +68,7 @@ def test_without_halvings_the_interval_is_named_with_its_limit(cache, monkeypatc
 
 def test_inserted_nodes_change_nothing_at_those_requested(refined, cache, monkeypatch) -> None:
     """They agree with those of a table without to the last bit."""
-    monkeypatch.setattr(held_out_alignments, "MAX_HALVINGS", 0)
+    monkeypatch.setattr(validation_alignments, "MAX_HALVINGS", 0)
     plain = spur(center_distance_changes=CHANGES, cache=cache)
     for name in GRID:
         assert requested(refined, name).tobytes() == getattr(plain, name).tobytes(), name

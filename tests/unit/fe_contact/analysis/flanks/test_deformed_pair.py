@@ -175,8 +175,8 @@ def test_placed_flanks_touch_on_every_contact_line(pair: GearPair | InternalGear
 
 def test_a_base_pitch_later_the_next_teeth_stand_there() -> None:
     assert mesh_angles(spur_pair(), 3.25) == pytest.approx(mesh_angles(spur_pair(), 0.25), abs=1e-12)
-    with pytest.raises(InputError, match="beside = -1"):
-        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), beside=-1)
+    with pytest.raises(InputError, match="neighbors = -1"):
+        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), neighbors=-1)
     with pytest.raises(InputError, match=r"at = \[\]"):
         deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), at=[])
 
@@ -246,7 +246,7 @@ def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Pa
         *point_request(normal_force=500.0, misalignment=100e-6, level="draft"),
         Run(cache=cache),
         at=0.2,
-        beside=0,
+        neighbors=0,
     )
     for gear, other in ((found.pinion, found.wheel), (found.wheel, found.pinion)):
         maximum = gear.points[gear.von_mises.argmax()]

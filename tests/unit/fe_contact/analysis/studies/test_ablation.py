@@ -93,7 +93,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
 
 
 def test_what_is_left_out_is_named_and_an_unknown_effect_refused(made: Ablation) -> None:
-    assert made.left_out == {"misalignment": "the gears are aligned"}
+    assert made.omitted == {"misalignment": "the gears are aligned"}
     assert [entry.name for entry in made.effects] == [
         "tooth_coupling", "corner_contact", "profile_modification", "finite_width",
     ]  # fmt: skip
@@ -129,7 +129,7 @@ def test_what_no_plane_holds_stays_in() -> None:
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
     made = ablate(GearPair(GEAR, GEAR), *table_request(**asked), only=["face_load_distribution"])  # type: ignore[arg-type]
     assert made.effects == ()
-    assert "misalignments" in made.left_out["face_load_distribution"]
+    assert "misalignments" in made.omitted["face_load_distribution"]
 
 
 def test_a_tolerance_chooses_one_mesh_for_all_tables(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -150,7 +150,7 @@ def test_an_accuracy_study_goes_on_without_a_record_and_says_so(table: SteDataba
     assert RUN.figures(beside)["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
     without = frontier(PAIR, *request, fidelities=FIDELITIES, full_contact=2)
     assert without.full_contact is None
-    assert without.left_out == {"full_contact": NO_RECORD}
+    assert without.omitted == {"full_contact": NO_RECORD}
     assert [result.name for result in without.results] == FIDELITIES
     for wrong in (0, 65, True):
         with pytest.raises(InputError, match="full_contact"):

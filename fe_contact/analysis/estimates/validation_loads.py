@@ -61,7 +61,7 @@ class LoadErrors:
 
 
 @dataclass(frozen=True)
-class HeldOutLoads:
+class ValidationLoads:
     """The first pitch of a table at some positions, compared with solutions between its loads."""
 
     table: SteDatabase

@@ -75,7 +75,7 @@ def _start(relief: str, way: str, example: float) -> Any:
 
 @described
 @dataclass(frozen=True, kw_only=True)
-class StatedStarts:
+class DrawingStarts:
     """Starts of the reliefs of a gear, each stated in one way or none.
 
     Raises `InputError`: a value out of its bound.
@@ -144,7 +144,7 @@ def _along_radius(gear: Tooth, field: str, value: float) -> float:
     return min(max(length, SHORTEST), abs(gear.tip_radius - gear.form_radius))
 
 
-RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(StatedStarts)))
+RELIEFS = tuple(dict.fromkeys(field.partition("_start_")[0] for field in declarations(DrawingStarts)))
 """The amounts whose length may be stated by its start."""
 
 

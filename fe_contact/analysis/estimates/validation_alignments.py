@@ -12,7 +12,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.analysis.estimates.held_out_loads import AWAY, halvings_reached
 from fe_contact.analysis.estimates.inserted_places import (
     alignment_points,
     take_compliance,
@@ -20,6 +19,7 @@ from fe_contact.analysis.estimates.inserted_places import (
 )
 from fe_contact.analysis.estimates.interval_goal import GoalOf
 from fe_contact.analysis.estimates.tolerance_shares import allowed_errors
+from fe_contact.analysis.estimates.validation_loads import AWAY, halvings_reached
 from fe_contact.analysis.pairs.contact_lines import deflected_operating_points
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.contact import Start
@@ -59,7 +59,7 @@ class AlignmentErrors:
 
 
 @dataclass(frozen=True)
-class HeldOutAlignments:
+class ValidationAlignments:
     """An axis of a table compared with solutions between its nodes.
 
     On the other axis of alignments they are solved at the node nearest to zero. A longer period is assessed

@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from fe_contact.analysis.estimates.held_out_alignments import HeldOutAlignments, first_pitch
-from fe_contact.analysis.estimates.held_out_loads import HeldOutLoads
 from fe_contact.analysis.estimates.interval_goal import GoalOf
+from fe_contact.analysis.estimates.validation_alignments import ValidationAlignments, first_pitch
+from fe_contact.analysis.estimates.validation_loads import ValidationLoads
 from fe_contact.analysis.tables import SolvedTable
 from fe_contact.errors import DatabaseError
 from fe_contact.sampled import sampled_positions
@@ -52,7 +52,7 @@ class AxisError:
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class AxisValidation:
     """A table with its inserted nodes, and its errors between all nodes."""
 
     made: SolvedTable
@@ -63,7 +63,7 @@ class HeldOut:
     """Solutions at the inserted loads."""
 
 
-def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:
+def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisValidation:
     """Solve held-out points in every interval of every axis that has one.
 
     Positions are some of the table's, so that the axis alone is interpolated; what is missed between
@@ -86,30 +86,30 @@ def held_out_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> HeldOut:
     table = made.table
     several = [name for name in BETWEEN_NODES if getattr(table, name).size > 1]
     if table.n_failed or not several:
-        return HeldOut(made)
+        return AxisValidation(made)
     try:
         table.ste(table.position[0], table.force[0])
     except DatabaseError:
-        return HeldOut(made)
+        return AxisValidation(made)
     if any(point.derived is not None for point in made.places.places):
         goal_of = None
     axes: dict[str, AxisError] = {}
     for name in (MISALIGNMENT, CENTER_DISTANCE):
         if name in several:
-            errors = HeldOutAlignments(name, goal_of).errors(made)
+            errors = ValidationAlignments(name, goal_of).errors(made)
             made, inserted = errors.made, getattr(errors.made.table, f"inserted_{name}")
             middles = _middles(getattr(made.table, name))
             axes[name] = AxisError(middles, errors.error, errors.change, inserted, errors.limit)
     if "force" not in several:
-        return HeldOut(made, axes)
+        return AxisValidation(made, axes)
     pitch = first_pitch(made.table)
     goal = None if goal_of is None else goal_of(made.table)
     rows = sampled_positions(pitch.position.size)
-    loads = HeldOutLoads(pitch, rows, made.places, made.solved).errors(goal)
+    loads = ValidationLoads(pitch, rows, made.places, made.solved).errors(goal)
     middles = np.sqrt(table.force[1:] * table.force[:-1])
     inserted = np.empty(0) if loads.inserted is None else loads.inserted.force
     of_loads = AxisError(middles, loads.error[:, None], loads.change[..., None], inserted, loads.limit)
-    return HeldOut(made, {"force": of_loads} | axes, loads.inserted)
+    return AxisValidation(made, {"force": of_loads} | axes, loads.inserted)
 
 
 def _middles(nodes: FloatArray) -> FloatArray:

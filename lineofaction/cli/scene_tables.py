@@ -1,0 +1,60 @@
+"""The tables of a scene: from the cache of the user, computed here, or by a service."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import cache, partial
+from pathlib import Path
+
+from fe_contact.ste import SteDatabase
+from host.directories import cache_home
+from lineofaction.cli import computed_tables
+from lineofaction.cli.cached_tables import CachedTables
+from lineofaction.cli.output import Report
+from lineofaction.cli.verb_warnings import warn
+from lineofaction.gearbox.convert.checked_case import CheckedCases
+from lineofaction.gearbox.convert.scene import TabledScene
+from lineofaction.gearbox.mesh_tables import MeshTables, finished
+from lineofaction.gearbox.schemas.meshes import MeshInput
+from lineofaction.gearbox.schemas.scene import SceneInput
+from lineofaction.gearbox.tabled_scene import ComputedTables
+from lineofaction.gearbox.tabled_scene import tabled_scene as scene_by_tables
+from model_studies.workers import InProcess, Workers
+
+
+def tabled_scene(
+    scene: SceneInput,
+    folder: Path,
+    service: str | None,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> TabledScene:
+    """Return the scene with its tables and with its cases written out; its files are relative to `folder`."""
+    cases, source, run = CheckedCases(), None, finished
+
+    with ExitStack() as stack:
+        if service is not None:
+            from dynamics.simulation import compile_ahead  # noqa: PLC0415 (start-up time)
+            from lineofaction.client import JobState, LineOfActionClient  # noqa: PLC0415 (start-up time)
+            from lineofaction.client.scene_calls import ServiceTables  # noqa: PLC0415 (start-up time)
+
+            compiler = stack.enter_context(ThreadPoolExecutor(1))
+            ahead = cache(partial(compiler.submit, compile_ahead))
+
+            def watch(state: JobState) -> None:
+                if state.stage:
+                    report(state.stage, state.stage_progress / 100.0)
+                if not state.ended:
+                    ahead()
+
+            client = stack.enter_context(LineOfActionClient(service, progress=watch))
+            source, run = ServiceTables(client), client.driver.run
+        cached = CachedTables(lambda case: computed_tables.computed_table(cases.of(case), report, workers))
+        tables = MeshTables(folder, source or ComputedTables(cached.table))
+
+        def table_of(index: int, mesh: MeshInput) -> SteDatabase:
+            return run(tables.of(index, mesh))
+
+        find_cached = cached.find if source is None else lambda _: None
+        return scene_by_tables(scene, folder, table_of, cache_home(), report, warn, cases, find_cached)

@@ -1,0 +1,67 @@
+"""The main results of an STE database, in the lines above all others."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from bounds.error_digits import error_text, to_error
+from fe_contact.ste import Curve, SteDatabase
+from fe_contact.types import Estimate
+from lineofaction.gearbox.units import UM
+from lineofaction.report.drawing.figure import number
+from lineofaction.report.drawing.page import Headline
+from lineofaction.report.ste.curves import (
+    aligned_index,
+    headline_load,
+    load_curve,
+    load_labels,
+)
+from lineofaction.report.ste.teeth import UNBOUNDED, tooth_headlines
+
+
+def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
+    """Mean and peak-to-peak STE and the largest pressure at the stored load nearest to `force` (N)."""
+    load = headline_load(database, force)
+    at = (slice(None), load, *aligned_index(database))
+    pressure = float(np.nanmax(database.max_pressure[at]))
+    edge = float(np.nanmax(database.edge_pressure[at])) if database.edge_pressure.size else 0.0
+    remark = f"{UNBOUNDED}{edge_text(edge)}"
+    curve, label = load_curve(database, load), load_labels(database)[load]
+    figures = {"mean": curve.mean, "peak-to-peak": curve.peak_to_peak}
+    biases = _over_face(curve)
+    return (
+        *(
+            Headline(f"{name} STE at {label}", f"{_to_error(one)} µm", f"{_band(one)}{bias}")
+            for (name, one), bias in zip(figures.items(), biases, strict=True)
+        ),
+        Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
+        *tooth_headlines(database, load),
+    )
+
+
+def _over_face(curve: Curve) -> tuple[str, str]:
+    """Say mean and peak-to-peak of the gears of finite width; nothing where the table has them."""
+    if curve.over_face is None:
+        return "", ""
+    figures = curve.over_face.mean, curve.over_face.peak_to_peak
+    mean, ripple = (f"; gears of this width {_to_error(one)} µm {_band(one)}" for one in figures)
+    return mean, ripple
+
+
+def edge_text(pressure: float) -> str:
+    """Return text on the pressure (Pa) of contacts at an edge, separate from the flank's; empty for 0."""
+    if pressure <= 0.0:
+        return ""
+    return f"; {number(1e-6 * pressure, 3)} MPa at the edges, indicative: the true one is singular"
+
+
+def _band(estimate: Estimate) -> str:
+    if math.isnan(estimate.error):
+        return "not estimated"
+    return f"± {error_text(estimate.value / UM, estimate.error / UM)} µm"
+
+
+def _to_error(estimate: Estimate) -> str:
+    return to_error(estimate.value / UM, estimate.error / UM)
