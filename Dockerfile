@@ -30,10 +30,8 @@ COPY service service
 RUN pip install --no-compile --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
 
 # What no run reads: tests and C sources of the libraries, manuals, Python objects for plotly's figures (its JavaScript is what
-# we use), fonts for PDF and the codec of AVIF (we write PNG), symbols of the compiler. Then byte code of just the modules
-# that the service and its workers load.
+# we use), fonts for PDF and the codec of AVIF (we write PNG), symbols of the compiler.
 RUN apt-get update && apt-get install -y --no-install-recommends binutils
-COPY scripts/image_modules.py ./
 RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('purelib'))"); \
     find "$packages" -type d -name tests -prune -exec rm -rf {} +; \
     find "$packages" -type f -not -path '*/dynamics/*' -regextype egrep -regex '.*\.(pyi|pyx|pxd|c|cpp|h|hpp|a)' -delete; \
@@ -41,8 +39,7 @@ RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('p
         "$packages"/plotly/package_data/widgetbundle.js "$packages"/matplotlib/mpl-data/fonts/pdfcorefonts \
         "$packages"/PIL/_avif*.so "$packages"/pillow.libs/libavif* \
         /opt/lineofaction/lib/gmsh.jl /opt/lineofaction/share /opt/lineofaction/include; \
-    strip --strip-unneeded "$packages"/llvmlite/binding/libllvmlite.so; \
-    env -u PYTHONDONTWRITEBYTECODE python image_modules.py
+    strip --strip-unneeded "$packages"/llvmlite/binding/libllvmlite.so
 
 # ---- run: no compiler, no package manager of Python, no root -------------------------------------------------------
 # gmsh is linked against OpenGL but draws nothing here: Mesa's drivers (200 MB) go again.
@@ -71,10 +68,16 @@ ENV PATH=/opt/lineofaction/bin:$PATH \
     OMP_NUM_THREADS=1
 RUN --mount=type=bind,source=scripts/sbom.py,target=/tmp/sbom.py \
     PYTHONDONTWRITEBYTECODE=1 python /tmp/sbom.py /usr/share/sbom/lineofaction.cdx.json
-# Loops of first tables and of a run-up, for families of processors; a builder without AVX-512 leaves those of v4 out.
+# Byte code of the modules that the service, its workers and the verbs load, those of Python's own library included: the base
+# image has none of these, and the service's user can write none, so each process would compile 300 modules anew.
+RUN --mount=type=bind,source=scripts/image_modules.py,target=/tmp/image_modules.py \
+    MPLCONFIGDIR=/tmp/matplotlib XDG_CACHE_HOME=/tmp/cache \
+    python /tmp/image_modules.py && rm -rf /tmp/matplotlib /tmp/cache
+# Loops of first tables and of a run-up, for families of processors; a builder without AVX-512 leaves those of v4 out. Modules
+# that only a computation loads get their byte code here.
 RUN --mount=type=bind,source=scripts/build_loops.py,target=/tmp/build/scripts/build_loops.py \
     --mount=type=bind,source=examples,target=/tmp/build/examples \
-    PYTHONDONTWRITEBYTECODE=1 MPLCONFIGDIR=/tmp/matplotlib XDG_CACHE_HOME=/tmp/cache \
+    MPLCONFIGDIR=/tmp/matplotlib XDG_CACHE_HOME=/tmp/cache \
     python /tmp/build/scripts/build_loops.py x86-64-v3 x86-64-v4 && rm -rf /tmp/matplotlib /tmp/cache
 USER lineofaction
 WORKDIR /data

@@ -18,7 +18,7 @@ import numpy as np
 from benchmarks.figures import Figure
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from model_studies.workers import ByExecutor, InProcess, Workers
-from model_studies.workers.executor import RunCost
+from model_studies.workers.run_cost import RunCost
 
 SUBJECT = "a helical table of 10 alignments, gears in the cache"
 TARGET = 0.6

@@ -23,8 +23,8 @@ class Kind(StrEnum):
 
     AMOUNT = auto()
     """A small depth without a sign."""
-    SLOPE = auto()
-    """A small depth with a sign."""
+    DEVIATION = "slope"
+    """A small length with a sign: a slope, a position error, an interference. Forms know it as a slope."""
     LENGTH = auto()
     """An extent; ``x_length`` is the extent of the amount ``x``, which does not act without it."""
     START = auto()
@@ -62,7 +62,7 @@ class Kind(StrEnum):
     RATIO = auto()
 
 
-DEPTHS = (Kind.AMOUNT, Kind.SLOPE)
+DEPTHS = (Kind.AMOUNT, Kind.DEVIATION)
 
 
 class Direction(Flag):

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from bounds import engineering
 from host import memory_figure, peak_memory
 from model_studies.progress import ANNOUNCED, Progress
 from model_studies.workers import InProcess, Workers, spent
-
-Result = TypeVar("Result")
 
 
 class Cost(NamedTuple):
@@ -69,32 +66,55 @@ def on_this_host(kind: str, cost: Cost, cache: Path | None) -> Cost:
     return cost._replace(seconds=cost.seconds * factor)
 
 
-def measured(
-    kind: str,
-    cost: Cost,
-    cache: Path | None,
-    work: Callable[[], Result],
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> tuple[Result, WorkCost]:
-    """Do work; return its result and its measured cost with the predicted one, which the log holds too.
+@dataclass(frozen=True)
+class WorkMeter:
+    """Clock and memory of this process at the beginning of a piece of work."""
 
-    Parameters
-    ----------
-    kind, cost, cache
-        Arguments of `on_this_host`.
-    workers : Workers
-        Who does some of it: their time counts.
-    """
-    from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
-    from model_studies.run_log import record  # noqa: PLC0415
+    kind: str
+    reference: Cost
+    """Predicted, on the reference host."""
+    cache: Path | None
+    workers: Workers
+    predicted: Cost
+    """On this host."""
+    began: float
+    """CPU seconds that were spent before."""
+    memory: int | None
+    """Resident before, bytes; None: the system does not tell."""
+    peak: int
+    """Largest resident memory before, bytes."""
 
-    predicted = on_this_host(kind, cost, cache)
-    memory, peak, began = memory_figure("VmRSS"), peak_memory(), spent(workers)
-    result = work()
-    seconds, highest = spent(workers) - began, peak_memory()
-    record(cache, {kind: cost.seconds * host_slowness(cache)}, {kind: seconds})
-    grown = float(highest - memory) if memory is not None and highest > peak else None
-    return result, WorkCost(predicted.seconds, predicted.bytes, seconds, grown)
+    @classmethod
+    def at_start(
+        cls,
+        kind: str,
+        reference: Cost,
+        cache: Path | None,
+        workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    ) -> WorkMeter:
+        """Read clock and memory before the work.
+
+        Parameters
+        ----------
+        kind, reference, cache
+            Arguments kind, cost and cache of `on_this_host`.
+        workers : Workers
+            Who does some of it: their time counts.
+        """
+        predicted = on_this_host(kind, reference, cache)
+        memory, peak = memory_figure("VmRSS"), peak_memory()
+        return cls(kind, reference, cache, workers, predicted, spent(workers), memory, peak)
+
+    def finish(self) -> WorkCost:
+        """Return what the work cost beside what was predicted, which the log keeps too."""
+        from model_studies.host_speed import host_slowness  # noqa: PLC0415 (start-up time)
+        from model_studies.run_log import record  # noqa: PLC0415
+
+        seconds, highest = spent(self.workers) - self.began, peak_memory()
+        expected = self.reference.seconds * host_slowness(self.cache)
+        record(self.cache, {self.kind: expected}, {self.kind: seconds})
+        grown = float(highest - self.memory) if self.memory is not None and highest > self.peak else None
+        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, grown)
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:

@@ -21,8 +21,12 @@ Levels = Sequence[float] | FloatArray
 OnPlan = Callable[[Mapping[str, float]], None]
 """Callback for the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
 LEVELS = ("draft", "standard", "fine")
+BETWEEN = "medium"
+"""The mesh between draft and standard that a tolerance may ask for of relieved helical pairs."""
+MESHES = ("draft", BETWEEN, "standard", "fine")
+"""All of them, the coarsest first."""
 CHOICES = {
-    "level": (None, *LEVELS),
+    "level": (None, *MESHES),
     "model": ("auto", "plane_strain", "plane_stress", "3d"),
     "receipt": ("full", "minimal"),
     "on_violation": ("repeat", "fail", "report"),
@@ -154,7 +158,7 @@ class AnalysisOptions:
     time_budget: float | None = None
     """CPU seconds that the run may take. With a tolerance, refinement ends before it would exceed them."""
     level: str | None = None
-    """Level of the mesh: "draft", "standard" or "fine"."""
+    """Level of the mesh: "draft", "medium", "standard" or "fine"."""
     model: str = "auto"
     """Contact model: "auto" (three dimensions where the scene acts across the face, else plane strain
     corrected for the finite face width), "plane_strain", "plane_stress" or "3d".

@@ -75,7 +75,7 @@ def run_fidelities(
 
     Returns
     -------
-    outcomes, left_out
+    outcomes, omitted
         As of `run_variants`.
     """
     refusals = {fidelity.name: fidelity.refusal(request) for fidelity in fidelities}

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from bounds.types import Json
 from host import children_peak_memory, cpu_seconds, peak_memory
 from model_studies.progress import Progress, silent
-from model_studies.workers.executor import RunCost
+from model_studies.workers.run_cost import RunCost
 
 
 @dataclass(frozen=True)

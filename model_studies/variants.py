@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from model_studies.progress import Progress
@@ -38,7 +39,7 @@ def run_variants(
     -------
     results : dict
         By name, in the order of the variants.
-    left_out : dict of str to str
+    omitted : dict of str to str
         Name of a variant to the reason why it has no result: `LeftOut`, one of `failures`, no memory.
     """
     results, omitted = {}, {}
@@ -54,13 +55,24 @@ def run_variants(
     return results, omitted
 
 
+@contextmanager
+def reason_of_failure(
+    omitted: dict[str, str], name: str, failures: tuple[type[Exception], ...]
+) -> Iterator[None]:
+    """Note in `omitted` why the variant of a name has no result: `LeftOut`, one of `failures`, no memory."""
+    known: tuple[type[Exception], ...] = (LeftOut, *failures)
+    try:
+        yield
+    except known as error:
+        omitted[name] = str(error)
+    except MemoryError:
+        omitted[name] = "out of memory"
+
+
 def _attempted(shared: tuple[Callable[[V], R], tuple[type[Exception], ...]], variant: V) -> Any:
     """Return the result of a variant and None, or None and the reason why it has none: one task."""
     compute, failures = shared
-    known: tuple[type[Exception], ...] = (LeftOut, *failures)
-    try:
+    omitted: dict[str, str] = {}
+    with reason_of_failure(omitted, "variant", failures):
         return compute(variant), None
-    except known as error:
-        return None, str(error)
-    except MemoryError:
-        return None, "out of memory"
+    return None, omitted["variant"]

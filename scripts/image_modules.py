@@ -10,7 +10,11 @@ from pathlib import Path
 import service.worker
 
 LOADED_AT_THE_START = (
+    "h5netcdf.legacyapi",
     "lineofaction.cli",
+    "lineofaction.cli.analyze",
+    "lineofaction.cli.ste",
+    "rich.live",
     "service.app",
     "uvicorn.protocols.http.auto",
     "uvicorn.lifespan.on",

@@ -8,7 +8,7 @@ References
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -148,33 +148,37 @@ class LevelBand:
         return LevelBand(self.nominal, {**self.below, name: below}, {**self.above, name: above})
 
 
-def level_bands(
-    levels: Callable[[Mapping[str, float]], FloatArray], ranges: Mapping[str, Range], cases: int = CASES
-) -> tuple[LevelBand, ...]:
+def band_cases(ranges: Mapping[str, Range], count: int = CASES) -> list[dict[str, float]]:
+    """Return the values of all parameters for which `level_bands` takes levels, by name.
+
+    First the nominal ones, then so many joint cases, spread evenly (best a power of two), then each parameter
+    alone at the two `ENDS` of its range. Raises `InputError`: no case, or more than 4096.
+    """
+    integer("cases", count, 1, 4096)
+    nominal = {name: span.nominal for name, span in ranges.items()}
+    joint = list(_cases(ranges, count)) if ranges else []
+    alone = [{**nominal, name: span.at(end)} for name, span in ranges.items() for end in ENDS]
+    return [nominal, *joint, *alone]
+
+
+def level_bands(ranges: Mapping[str, Range], levels: FloatArray) -> tuple[LevelBand, ...]:
     """Return the bands of several levels over the ranges of what they depend on.
 
     The ends are quantiles (`ENDS`) of joint cases, in which all parameters are even over their ranges and
     independent; the nominal level always lies inside. The contribution of a parameter is what it changes
     alone between the same quantiles of its range. Where squares of contributions add up to less than the
     band, as where one resonance meets another, the rest is `JOINTLY`; where to more, each is reduced alike.
-    Raises `InputError`: no case, or more than 4096.
 
     Parameters
     ----------
-    levels : callable
-        Function of the values of all parameters by name that returns levels in dB, (L,).
-    cases : int
-        Joint cases, spread evenly; best a power of two.
+    levels : (C, L) array
+        In dB, of each of the `band_cases` of the ranges.
     """
-    integer("cases", cases, 1, 4096)
-    nominal = {name: span.nominal for name, span in ranges.items()}
-    middle = levels(nominal)
-    together = [levels(values) - middle for values in _cases(ranges, cases)] if ranges else [0.0 * middle]
-    alone = {
-        name: [levels({**nominal, name: span.at(end)}) - middle for end in ENDS]
-        for name, span in ranges.items()
-    }
-    low, high = quantiles(np.array(together), ENDS)
+    middle, deviation = levels[0], levels - levels[0]
+    first = len(levels) - len(ENDS) * len(ranges)  # of the parameters alone
+    low, high = quantiles(deviation[1:first] if ranges else deviation, ENDS)
+    ends = deviation[first:].reshape(len(ranges), len(ENDS), middle.size)
+    alone = dict(zip(ranges, ends, strict=True))
     below = _parts(-low, {name: -np.min(rows, axis=0) for name, rows in alone.items()})
     above = _parts(high, {name: np.max(rows, axis=0) for name, rows in alone.items()})
     return tuple(

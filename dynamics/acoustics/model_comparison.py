@@ -26,10 +26,10 @@ from dynamics.acoustics.radiation import (
 from dynamics.checks import positive
 from dynamics.errors import DynamicsError
 from dynamics.types import ComplexArray, FloatArray
-from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
+from dynamics.work_cost import Cost, WorkCost, WorkMeter, announce, on_this_host
 from host import MissingExtra
 from model_studies.progress import Progress, silent
-from model_studies.variants import run_variants
+from model_studies.variants import reason_of_failure
 from model_studies.workers import InProcess
 
 BLOCK = 512  # panels whose mutual resistances are held at a time
@@ -212,20 +212,17 @@ def compare_models(
     panels, outer = len(hull.triangles), wavenumber * hull.outer_radius
     reference = {name: model.cost(panels, outer, 1) for name, model in listed.items()}
     predicted = {name: on_this_host(WORK.format(name), cost, cache) for name, cost in reference.items()}
-
-    def compute(model: RadiationModel) -> _ModelResult:
-        name = model.model_name
-        announce(progress, name.replace("_", " "), f"{panels} panels", predicted[name])
-        power, cost = measured(
-            WORK.format(name),
-            reference[name],
-            cache,
-            lambda: sound_power(model, hull, frequency, normal_velocity, air),
-            getattr(model, "workers", InProcess()),
-        )
-        return _ModelResult(power, power / plane, cost)
-
-    results, omitted = run_variants("models", by_name, compute, (DynamicsError, MissingExtra), progress)
+    results: dict[str, _ModelResult] = {}
+    omitted: dict[str, str] = {}
+    for count, (name, model) in enumerate(by_name.items()):
+        progress("models", count / len(by_name))
+        with reason_of_failure(omitted, name, (DynamicsError, MissingExtra)):
+            announce(progress, name.replace("_", " "), f"{panels} panels", predicted[name])
+            workers = getattr(model, "workers", InProcess())
+            meter = WorkMeter.at_start(WORK.format(name), reference[name], cache, workers)
+            power = sound_power(model, hull, frequency, normal_velocity, air)
+            results[name] = _ModelResult(power, power / plane, meter.finish())
+    progress("models", 1.0)
     ka = wavenumber * hull.equivalent_radius
     bands = {name: model.error_band(ka) for name, model in listed.items()}
     return ModelComparison(results, omitted, predicted, bands)

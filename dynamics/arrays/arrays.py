@@ -120,10 +120,10 @@ class SystemArrays(NamedTuple):
     """G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
     whose first coordinate is the transmission error. Shape (R, n).
     """
-    turn: FloatArray
+    position_gradient: FloatArray
     """Derivative of the meshes' positions in q, base pitches; 0 for frames. Shape (m + f, n)."""
     sparse: SparseMatrices
-    """M, C, K, G and `turn` by their entries: who changes them takes `with_matrices`."""
+    """M, C, K, G and `position_gradient` by their entries: who changes them takes `with_matrices`."""
     constant: FloatArray
     """External force that never changes: of pins off their nominal position, of preloaded bearings, of
     gravity. Shape (n,).
@@ -155,5 +155,5 @@ class SystemArrays(NamedTuple):
         springs = (changed.drive.stiffness, changed.drive.damping)
         others = (changed.inertial, changed.reference.vector, changed.load.direction, *springs)
         matrices_of_motion = (changed.mass, changed.damping, changed.stiffness)
-        sparse = sparse_matrices(*matrices_of_motion, changed.direction, changed.turn, others)
+        sparse = sparse_matrices(*matrices_of_motion, changed.direction, changed.position_gradient, others)
         return changed._replace(sparse=sparse)

@@ -64,9 +64,9 @@ class SparseMatrices(NamedTuple):
     damping: _SparseRows
     stiffness: _SparseRows
     direction: _SparseRows
-    turn: _SparseRows
-    """`damping`, `stiffness`, `direction`, `turn`: Matrices of `SystemArrays`. The first two have the same
-    entries: all at which either matrix is not 0.
+    position_gradient: _SparseRows
+    """`damping`, `stiffness`, `direction`, `position_gradient`: Matrices of `SystemArrays`. The first two
+    have the same entries: all at which either matrix is not 0.
     """
     bodies: _SparseRows
     """The entries of `direction` before the modal freedoms."""
@@ -96,23 +96,24 @@ def sparse_matrices(
     damping: FloatArray,
     stiffness: FloatArray,
     direction: FloatArray,
-    turn: FloatArray,
+    position_gradient: FloatArray,
     others: Sequence[FloatArray] = (),
 ) -> SparseMatrices:
-    """Lay out the matrices of a system: (n, n), `direction` (R, n) and `turn` (m, n).
+    """Lay out the matrices of a system: (n, n), `direction` (R, n) and `position_gradient` (m, n).
 
     `others` (..., n) are all further rows that act on its freedoms, or that these act on.
     """
     coupling = joined_by_chains((mass != 0.0) | (damping != 0.0) | (stiffness != 0.0))
     mobility = np.where(joined_by_chains(mass != 0.0), np.linalg.inv(mass), 0.0)
     either = (damping != 0.0) | (stiffness != 0.0)
-    modal = modal_freedoms_of(mass, damping, stiffness, direction, np.concatenate([turn, *others]))
+    gradients = np.concatenate([position_gradient, *others])
+    modal = modal_freedoms_of(mass, damping, stiffness, direction, gradients)
     joined, resisting = _sparse_rows(coupling.astype(float)), _sparse_rows(damping, either)
     return SparseMatrices(
         damping=resisting,
         stiffness=_sparse_rows(stiffness, either),
         direction=_sparse_rows(direction),
-        turn=_sparse_rows(turn),
+        position_gradient=_sparse_rows(position_gradient),
         bodies=_sparse_rows(direction[:, : modal.first]),
         mobility=_sparse_rows(mobility),
         coupling=joined,

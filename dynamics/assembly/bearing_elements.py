@@ -29,12 +29,12 @@ def bearing_elements(model: Model) -> tuple[tuple[Element, ...], dict[str, Any]]
     entries: dict[Any, list[Any]] = {arrays: [] for arrays in LAW_BY_ARRAYS}
     for part, at in zip(scene.laws_with(mechanism.passing), mechanism.bearings, strict=True):
         rotor, support = supports[at.name]
-        gradient = at.way @ seat_motion(mechanism.rotors, rotor, support)
-        offset = -at.way @ seat_error(mechanism.rotors, rotor, support)
-        law, laid_out = LAW_BY_ARRAYS[part.arrays], entries[part.arrays]
+        gradient = at.directions @ seat_motion(mechanism.rotors, rotor, support)
+        offset = -at.directions @ seat_error(mechanism.rotors, rotor, support)
+        law, of_law = LAW_BY_ARRAYS[part.arrays], entries[part.arrays]
         position = cage.get(at.name, -1)
-        elements.append(Element(law, len(laid_out), position, gradient, offset, stiffness=at.typical))
-        laid_out.append(part.laid_out(mechanism.bearing_duty[at.name]))
+        elements.append(Element(law, len(of_law), position, gradient, offset, stiffness=at.row_stiffness))
+        of_law.append(part.array_entry(mechanism.bearing_duty[at.name]))
     packed = {
         law.name.lower(): arrays.packed(entries[arrays]) if entries[arrays] else _empty_arrays(arrays)
         for arrays, law in LAW_BY_ARRAYS.items()

@@ -79,9 +79,9 @@ def bearing_force_map(
         constant[seats.support, :SEAT] -= seats.preload.reshape(-1, SEAT)
     first = elements.first[len(elements.law) - len(bearings) :]
     for start, at in zip(first, bearings, strict=False):
-        components = np.flatnonzero(np.any(at.way != 0.0, axis=0))
-        for local, way in enumerate(at.way, start=start):
-            weight[at.support, components, local] += way[components]
+        components = np.flatnonzero(np.any(at.directions != 0.0, axis=0))
+        for local, direction in enumerate(at.directions, start=start):
+            weight[at.support, components, local] += direction[components]
     flat = weight.reshape(count * rows, total + 2 * n)
     signal, column = np.nonzero(flat)
     starts = np.searchsorted(signal, np.arange(count * rows + 1))

@@ -90,8 +90,8 @@ class _Answer(NamedTuple):
 def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
     """Return the motions (n, m) that springs or bearings resist, orthonormal in meters."""
     gradient = arrays.direction[bearing_rows(arrays)]
-    typical = arrays.elements.stiffness[bearing_rows(arrays)]
-    stiffness = matrix + gradient.T @ (typical[:, None] * gradient)
+    row_stiffness = arrays.elements.stiffness[bearing_rows(arrays)]
+    stiffness = matrix + gradient.T @ (row_stiffness[:, None] * gradient)
     value, vector = np.linalg.eigh(stiffness / np.outer(arrays.scale, arrays.scale))
     return np.asarray(vector[:, value > UNRESISTED * value[-1]] / arrays.scale[:, None])
 
@@ -145,7 +145,7 @@ def linear_scene(
     local, linear = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):
-        linear[name] = _with_tangent(linear[name], at, local, slice(start, start + at.way.shape[0]))
+        linear[name] = _with_tangent(linear[name], at, local, slice(start, start + at.directions.shape[0]))
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
     none: dict[str, Any] = dict.fromkeys(BEARING_PARTS, ())
     return replace(
@@ -161,7 +161,7 @@ def _with_tangent(
     bearing: Bushing | PlanetBearing, at: BearingElement, local: LocalState, rows: slice
 ) -> Bushing | PlanetBearing:
     """Return `bearing` with tangents and force that an element has in its `rows`."""
-    spread, size = at.local_rows, at.way.shape[0]
+    spread, size = at.local_rows, at.directions.shape[0]
     added = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
     stiffness = local.tangent[rows, :size]
     symmetric = 0.5 * (stiffness + stiffness.T)

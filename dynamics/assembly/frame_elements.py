@@ -97,9 +97,9 @@ def frame_coupling_elements(model: Model) -> tuple[tuple[Element, ...], FrameCou
             packed[entry] = full_matrix(matrix, 0.0)[np.ix_(ACROSS, ACROSS)] / np.outer(size, size)
         ends = (section_rows(rotors, rotor, part.height) for rotor in (part.first, part.second))
         gradient = np.concatenate([(moves[list(ACROSS)] * size[:, None])[:n] for moves in ends])
-        typical = np.tile(np.diag(stiffness[entry])[:n], 2)
+        row_stiffness = np.tile(np.diag(stiffness[entry])[:n], 2)
         phase = len(scene.meshes) + entry
         offset = np.zeros(2 * n)
-        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=typical))
+        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=row_stiffness))
     directions = np.array([part.directions for part in parts], dtype=np.int64)
     return tuple(elements), FrameCouplingLaws(directions, stiffness, damping)

@@ -55,7 +55,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         [np.empty((0, column_count(rotors))), *(element.gradient for element in elements)]
     )
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
-    turn = freedoms.keep(_turns(mechanism))
+    position_gradient = freedoms.keep(_position_gradient(mechanism))
     packed = Elements.packed(elements, laws, len(scene.references))
     # The first elements are the driving flanks of the meshes; their first row is the transmission error.
     transmission_error = direction[packed.first[: len(scene.meshes)]]
@@ -67,7 +67,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         damping=damping,
         stiffness=stiffness,
         direction=direction,
-        turn=turn,
+        position_gradient=position_gradient,
         sparse=NO_ENTRIES,  # `with_matrices` fills them in
         constant=constant,
         inertial=freedoms.keep(-times_mass(rotors, vectors)),
@@ -94,7 +94,7 @@ def _gravity_force(scene: Scene, rotors: Bodies) -> FloatArray:
     return np.asarray(times_mass(rotors, acceleration[None])[0])
 
 
-def _turns(mechanism: Mechanism) -> FloatArray:
+def _position_gradient(mechanism: Mechanism) -> FloatArray:
     """Return the derivatives of mesh positions and load phases by the freedoms, (m + f, N).
 
     The position of a mesh, in base pitches, follows the rotation of its driver against the carrier. The phase
@@ -103,18 +103,18 @@ def _turns(mechanism: Mechanism) -> FloatArray:
     """
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     load_phases = phases(mechanism)
-    turn = np.zeros((len(scene.meshes) + len(load_phases), column_count(rotors)))
+    position_gradient = np.zeros((len(scene.meshes) + len(load_phases), column_count(rotors)))
     for row, phase in enumerate(load_phases, start=len(scene.meshes)):  # below the rows of the meshes
         if phase.shaft is not None:
-            turn[row] += turn_row(rotors, phase.shaft, phase.position) / (2.0 * math.pi)
+            position_gradient[row] += turn_row(rotors, phase.shaft, phase.position) / (2.0 * math.pi)
     for row, mesh in enumerate(scene.meshes):
         driver, _driven, carrier = mesh_shafts(scene, row)
         gear = scene.gear(mesh.driver)
         rate = kinematics.mesh_sense[row] * gear.teeth / (2.0 * math.pi)
-        turn[row] += rate * turn_row(rotors, driver, gear.position)
+        position_gradient[row] += rate * turn_row(rotors, driver, gear.position)
         if carrier is not None:
-            turn[row, 6 * carrier + ROTATION] -= rate
-    return turn
+            position_gradient[row, 6 * carrier + ROTATION] -= rate
+    return position_gradient
 
 
 def _rate_duration(mass: FloatArray, stiffness: FloatArray) -> FloatArray:

@@ -42,10 +42,10 @@ class BearingLaw(Protocol):
     def rows(self, duty: BearingDuty) -> FloatArray:
         """Return the coordinates, m, per displacement x, y, z, tilt_x, tilt_y of the bearing, (p, 5)."""
 
-    def laid_out(self, duty: BearingDuty) -> Any:
+    def array_entry(self, duty: BearingDuty) -> Any:
         """Return the law as `packed` of its arrays takes it."""
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (p,), N/m."""
 
     def tangent_error(self, duty: BearingDuty) -> float:

@@ -17,7 +17,7 @@ from dynamics.errors import InputError
 
 BORE = Declared(Kind.LENGTH, "m", between(1e-4, 10.0), "Bore of the inner ring", 0.025)
 OUTSIDE = Declared(Kind.LENGTH, "m", between(1e-4, 20.0), "Outside diameter of the outer ring", 0.062)
-_INTERFERENCE = Declared(Kind.SLOPE, "m", between(-1e-3, 1e-3), "", 1e-5)
+_INTERFERENCE = Declared(Kind.DEVIATION, "m", between(-1e-3, 1e-3), "", 1e-5)
 _ON_SHAFT = replace(_INTERFERENCE, description="Interference of the inner ring on the shaft; negative: loose")
 _IN_HOUSING = replace(
     _INTERFERENCE, description="Interference of the outer ring in its bore; negative: loose", example=-1e-5

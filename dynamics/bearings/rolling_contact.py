@@ -125,11 +125,11 @@ class RollingContact(SceneBearingLaw):
         """Return the coordinates x and y per displacement x, y, z, tilt_x, tilt_y of the bearing, (2, 5)."""
         return np.eye(2, 5)
 
-    def laid_out(self, duty: BearingDuty) -> tuple[RollingContact, BearingDuty]:
+    def array_entry(self, duty: BearingDuty) -> tuple[RollingContact, BearingDuty]:
         """Return the arguments of `RollingContactLaws.packed`: the contact and the duty of its bearing."""
         return self, duty
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
         """Return the tangent stiffness along x and y at the typical load, (2,), N/m."""
         return np.full(2, self.tangent(self.typical_load(duty.load)))
 

@@ -81,13 +81,13 @@ class _RowLaw:
         """Return the coordinates, m, per displacement x, y, z, tilt_x, tilt_y, (5, 5)."""
         return np.diag([1.0, 1.0, 1.0, self.lever, self.lever])
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
         """Return the stiffness of the rows at the typical load, (5,), N/m."""
         _, reaction = self._at_typical_load(duty)
         # tilt stiffness, N m/rad, over the lever squared is a stiffness of lengths, N/m
         return np.diag(reaction.tangent) / np.diag(self.rows(duty)) ** 2
 
-    def way(self, duty: BearingDuty) -> float:
+    def deflection(self, duty: BearingDuty) -> float:
         """Return the displacement under the typical load across the axis, m."""
         displacement, _ = self._at_typical_load(duty)
         return displacement
@@ -97,7 +97,7 @@ class _RowLaw:
         displacement, reaction = self._at_typical_load(duty)
         return displacement - float(reaction.force[0] / reaction.tangent[0, 0])
 
-    def laid_out(self, duty: BearingDuty) -> tuple[BallBearing | RollerBearing, RowPlacement]:
+    def array_entry(self, duty: BearingDuty) -> tuple[BallBearing | RollerBearing, RowPlacement]:
         """Return the row and its placement, from which `arrays` are packed."""
         _, reaction = self._at_typical_load(duty)
         critical = 2.0 * math.sqrt(float(reaction.tangent[0, 0]) * duty.mass)

@@ -46,11 +46,12 @@ DAMPING_RATIO = Declared(
 SEAT_TEMPERATURE = replace(
     TEMPERATURE, description="Steady temperature of the housing at this seat; left out: that of the housing"
 )
-# of the kind of a slope: a position error has a sign
 _RADIAL = Declared(
-    Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
+    Kind.DEVIATION, "m", between(-1e-2, 1e-2), "Position error of the pin, away from the carrier's axis", 0.0
 )
-_TANGENTIAL = Declared(Kind.SLOPE, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6)
+_TANGENTIAL = Declared(
+    Kind.DEVIATION, "m", between(-1e-2, 1e-2), "Position error of the pin, about +z", 20e-6
+)
 
 
 class _Seat:

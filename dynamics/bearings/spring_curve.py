@@ -93,11 +93,11 @@ class SpringCurve(SceneBearingLaw):
         """Return the displacement of its direction, (1, 5)."""
         return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
 
-    def laid_out(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
+    def array_entry(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
         """Return the curve as `SpringCurveLaws.packed` takes it."""
         return self, duty
 
-    def typical(self, duty: BearingDuty) -> FloatArray:
+    def row_stiffness(self, duty: BearingDuty) -> FloatArray:
         """Return the mean stiffness of the curve, (1,), N/m."""
         return np.array([self.slope / self.lever(duty) ** 2])
 

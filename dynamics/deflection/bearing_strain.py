@@ -25,7 +25,7 @@ FREE = 1e-12
 
 def _free_fraction(arrays: SystemArrays, element: int, coordinate: FloatArray) -> float:
     """Return the largest fraction of `coordinate` (p,) at which an element exerts no force; bisection."""
-    local = make_local(arrays.elements, arrays.turn.shape[0])
+    local = make_local(arrays.elements, arrays.position_gradient.shape[0])
     rows = slice(arrays.elements.first[element], arrays.elements.first[element + 1])
     system, at = by_address(arrays), by_address(local)
 
@@ -91,7 +91,7 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     seat = carried + _condensed_seats(system, total)
     yielded, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
     for e, at in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
-        along = np.linalg.pinv(at.way) @ at.way
+        along = np.linalg.pinv(at.directions) @ at.directions
         if np.any(np.abs(places[names[at.support]][1].seat_stiffness @ along) > 0.0):
             continue
         rows = slice(elements.first[e], elements.first[e + 1])

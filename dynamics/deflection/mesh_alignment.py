@@ -84,7 +84,7 @@ def _line_tilt(z: FloatArray, displacement: FloatArray) -> FloatArray:
 
 def _radial(system: System, index: int) -> list[str]:
     """Return the bearings of a rotor that hold it across its axis."""
-    lawful = {system.supports.name[at.support] for at in system.bearings if at.way[:, :2].any()}
+    lawful = {system.supports.name[at.support] for at in system.bearings if at.directions[:, :2].any()}
     return [
         part.name
         for part in system.rotors[index].supports

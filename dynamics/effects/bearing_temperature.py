@@ -118,7 +118,7 @@ def _mesh_displacement(rotor: LoadedRotor, rows: Sequence[WarmBearing]) -> float
     duties, more, at = mechanism.bearing_duty, [], []
     for row in rows:
         duty = duties[row.drawn.name]
-        more.append(row_law(row.warm).way(duty) - row_law(row.drawn).way(duty))
+        more.append(row_law(row.warm).deflection(duty) - row_law(row.drawn).deflection(duty))
         at.append(bearings_rotor.shaft.origin[2] + row.drawn.position - float(bearings_rotor.center[2]))
     levers = [mesh.lever for mesh in rotor.meshes] or [0.0]
     line = np.polyfit(at, more, 1 if np.ptp(at) > 0.0 else 0)

@@ -19,8 +19,8 @@ from dynamics.housings.reduction_cost import CostLimit, reduction_cost
 from dynamics.housings.step_files import WALL_ELEMENTS, mesh_step
 from dynamics.housings.tetrahedral_mesh import TetrahedralMesh
 from dynamics.types import FloatArray, IntArray
-from dynamics.work_cost import Cost, measured, on_this_host
-from model_studies.cached_file import cached_in
+from dynamics.work_cost import Cost, WorkMeter, on_this_host
+from model_studies.cached_file import keep_cached, read_cached
 from model_studies.netcdf import UnreadableFile
 from model_studies.record_file import read_record, write_record
 
@@ -58,7 +58,12 @@ def meshed_step(
         settings = repr([MESH_VERSION, WALL_ELEMENTS, version("gmsh"), version("meshlane"), element_size])
         content = hashlib.sha256(Path(path).read_bytes() + settings.encode()).hexdigest()
         file = cache / f"mesh-{content}.nc"
-    return cached_in(file, _read_mesh, lambda: mesh_step(path, element_size), _write_mesh, UnreadableFile)
+    cached = read_cached(file, _read_mesh, UnreadableFile)
+    if cached is not None:
+        return cached
+    mesh = mesh_step(path, element_size)
+    keep_cached(mesh, file, _write_mesh)
+    return mesh
 
 
 def _read_mesh(file: Path) -> TetrahedralMesh:
@@ -92,22 +97,24 @@ def reduced_housing(
         Called with the predicted cost before it is computed; not where it is in the cache.
     """
     file = None if cache is None else cache / f"housing-{content_key(housing)}.nc"
-
-    def reduced() -> ReducedHousing:
-        motions = sum(seat.motions for seat in housing.seats)
-        reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
-        predicted = on_this_host(WORK, reference, cache)
-        maximum, size = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
-        remedy = f"{size}: use a coarser mesh or fewer modes."
-        if predicted.seconds > maximum.seconds:
-            raise InputError("predicted_seconds", predicted.seconds, at_most(maximum.seconds, "s"), remedy)
-        if predicted.bytes > maximum.bytes:
-            raise InputError("predicted_bytes", predicted.bytes, at_most(maximum.bytes), remedy)
-        expected(predicted)
-        body, cost = measured(WORK, reference, cache, lambda: reduce_housing(housing))
-        return replace(body, cost=cost)
-
-    return cached_in(file, ReducedHousing.from_netcdf, reduced, ReducedHousing.to_netcdf, ResultError)
+    cached = read_cached(file, ReducedHousing.from_netcdf, ResultError)
+    if cached is not None:
+        return cached
+    motions = sum(seat.motions for seat in housing.seats)
+    reference = reduction_cost(housing.mesh.freedoms, housing.modes, motions)
+    predicted = on_this_host(WORK, reference, cache)
+    maximum, size = limit or CostLimit(), f"{housing.mesh.freedoms} freedoms, {housing.modes} modes"
+    remedy = f"{size}: use a coarser mesh or fewer modes."
+    if predicted.seconds > maximum.seconds:
+        raise InputError("predicted_seconds", predicted.seconds, at_most(maximum.seconds, "s"), remedy)
+    if predicted.bytes > maximum.bytes:
+        raise InputError("predicted_bytes", predicted.bytes, at_most(maximum.bytes), remedy)
+    expected(predicted)
+    meter = WorkMeter.at_start(WORK, reference, cache)
+    body = reduce_housing(housing)
+    body = replace(body, cost=meter.finish())
+    keep_cached(body, file, ReducedHousing.to_netcdf)
+    return body
 
 
 def content_key(housing: MeshedHousing) -> str:

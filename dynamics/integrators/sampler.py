@@ -163,7 +163,7 @@ class SampleRing(NamedTuple):
             np.zeros(n),
             np.zeros(n),
             np.zeros(n),
-            make_local(arrays.elements, arrays.turn.shape[0]),
+            make_local(arrays.elements, arrays.position_gradient.shape[0]),
             np.zeros((laws, MOTION_COLUMNS)),
             np.zeros(laws, dtype=np.int64),
             _Peaks(np.full((3, signals), np.nan), *(np.zeros(signals) for _ in range(3))),

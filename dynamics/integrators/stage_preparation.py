@@ -23,7 +23,7 @@ def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: f
         for entry in range(coupling.first[i], coupling.first[i + 1]):
             work.inverse[level, entry] = matrix[i, coupling.column[entry]]
     _invert_modal(system, work, level, span)
-    pushed, turn = work.external, system.sparse.turn
+    pushed, gradient = work.external, system.sparse.position_gradient
     for r in range(rows):
         for i in range(pushed.size):
             pushed[i] = 0.0
@@ -37,7 +37,7 @@ def prepare_level(system: SystemArrays, work: Workspace, level: int, diagonal: f
         for k in range(rows):
             work.approach[level, r, k] = row_product(along, along.weight, k, pushed)
         for m in range(work.free_position.size):
-            work.approach[level, r, rows + m] = row_product(turn, turn.weight, m, pushed)
+            work.approach[level, r, rows + m] = row_product(gradient, gradient.weight, m, pushed)
     eliminate_linear(system, work, level, span)
     work.ready[level] = True
 

@@ -157,7 +157,8 @@ class Workspace(NamedTuple):
     @classmethod
     def of(cls, system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float) -> Workspace:
         """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-        rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+        rows, laws = system.direction.shape[0], system.inertial.shape[0]
+        meshes = system.position_gradient.shape[0]
         linear, bodies = _linear_rows(system.elements), system.sparse.modal.first
         return cls(
             time=np.zeros(1),

@@ -116,7 +116,7 @@ def _matrices(system: System, time: float, tangent: FloatArray) -> list[tuple[st
         springs.append((system.couplings.name[part.coupling], keep(motion), matrix))
     first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
     for start, at in zip(first, system.bearings, strict=False):
-        rows, size = slice(start, start + at.way.shape[0]), at.way.shape[0]
+        rows, size = slice(start, start + at.directions.shape[0]), at.directions.shape[0]
         matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
         springs.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
     return springs

@@ -46,7 +46,7 @@ from dynamics.linearize.varying_stiffness import VaryingStiffness, still_motion
 from dynamics.motion.force_balance import block_diagonal
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
-from model_studies.cached_file import cached_in
+from model_studies.cached_file import keep_cached, read_cached
 
 BLOCK = 4_000_000  # complex displacements held at once
 SAME = 1e-9  # difference of gradients over the largest, below which rows are the same
@@ -312,13 +312,12 @@ def flank_transfer(
     harmonics = possible_lines(at, orders, speed)
     _require_memory(at, speed.size, harmonics.size)
     file = None if cache is None else cache / f"transfer-{_content_key(at, speed, harmonics, orders)}.nc"
-    return cached_in(
-        file,
-        FlankTransfer.from_netcdf,
-        lambda: _computed(at, speed, harmonics, orders, progress),
-        FlankTransfer.to_netcdf,
-        ResultError,
-    )
+    cached = read_cached(file, FlankTransfer.from_netcdf, ResultError)
+    if cached is not None:
+        return cached
+    transfer = _computed(at, speed, harmonics, orders, progress)
+    keep_cached(transfer, file, FlankTransfer.to_netcdf)
+    return transfer
 
 
 def transfer_seconds(system: System, speed: FloatArray, orders: int) -> float:

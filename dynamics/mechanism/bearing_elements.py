@@ -28,13 +28,13 @@ class BearingElement:
     """Name of the bearing."""
     support: int
     """Index of the bearing among the supports of all rotors."""
-    way: FloatArray
+    directions: FloatArray
     """The rows of the element over the strains x, y, z, tilt_x, tilt_y along the axes of the scene: 1 for a
     displacement, a radius in m for a tilt. Shape (p, 5).
     """
     local_rows: FloatArray
     """The rows of the element over the strains along the bearing's own axes. Shape (p, 5)."""
-    typical: FloatArray
+    row_stiffness: FloatArray
     """Stiffness of the rows at the typical load, N/m; cross terms of a linear bearing are left out. Shape
     (p,).
     """
@@ -42,12 +42,12 @@ class BearingElement:
     @property
     def seat(self) -> FloatArray:
         """Stiffness at the typical load over the five strains, (5, 5), in N/m, N and N m."""
-        return np.asarray(self.way.T @ (self.typical[:, None] * self.way))
+        return np.asarray(self.directions.T @ (self.row_stiffness[:, None] * self.directions))
 
     @property
     def tilts(self) -> bool:
         """Whether the element exerts a moment."""
-        return bool(np.any(self.way[:, 3:] != 0.0))
+        return bool(np.any(self.directions[:, 3:] != 0.0))
 
     @property
     def holds_axis(self) -> bool:
@@ -95,9 +95,9 @@ def bearing_locations(
         element = BearingElement(
             name=law.bushing,
             support=support_index[law.bushing],
-            way=local_rows @ seat_axes(rotors, rotor, bearing),
+            directions=local_rows @ seat_axes(rotors, rotor, bearing),
             local_rows=local_rows,
-            typical=law.typical(duty),
+            row_stiffness=law.row_stiffness(duty),
         )
         elements.append(element)
     return tuple(elements)

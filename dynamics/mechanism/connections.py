@@ -83,11 +83,11 @@ def _gather_seats(scene: Scene, rotors: Bodies, names: Sequence[str]) -> Seats:
     for seat, name in enumerate(order):
         index, part = supports[name]
         rows = slice(SEAT * seat, SEAT * seat + SEAT)
-        motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
-        stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
-        damping[rows, rows] = turn.T @ part.seat_damping @ turn
+        motion[rows], axes = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
+        stiffness[rows, rows] = axes.T @ part.seat_stiffness @ axes
+        damping[rows, rows] = axes.T @ part.seat_damping @ axes
         seat_preload = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
-        preload[rows] = turn.T @ seat_preload + stiffness[rows, rows] @ seat_error(rotors, index, part)
+        preload[rows] = axes.T @ seat_preload + stiffness[rows, rows] @ seat_error(rotors, index, part)
     first, groups = 0, []
     for housing in condensed:
         rows = slice(first, first + SEAT * len(housing.bushings))

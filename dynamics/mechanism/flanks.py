@@ -54,8 +54,8 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
         except InputError as error:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
-    typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
-    stiffness = np.array([mean_stiffness(packed, index, force) for index, force in enumerate(typical)])
+    row_stiffness = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
+    stiffness = np.array([mean_stiffness(packed, index, force) for index, force in enumerate(row_stiffness)])
     damping = [  # as given, or from the ratio, of the gears rotating against each other on the mesh
         2.0 * mesh.damping_ratio * float(np.sqrt(stiffness[f] / mesh_mobility(mechanism, f)))
         if mesh.damping is None
@@ -63,7 +63,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
         for f, mesh in enumerate(scene.meshes)
     ]
     alike = all(table_used is table for table_used, table in zip(used, static, strict=True))
-    law = FlankLaws(packed if alike else pack_tables(used), np.array(damping), DAMPING_REACH * typical)
+    law = FlankLaws(packed if alike else pack_tables(used), np.array(damping), DAMPING_REACH * row_stiffness)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 

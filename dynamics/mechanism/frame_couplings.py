@@ -49,9 +49,9 @@ def frame_joint(
 ) -> tuple[FloatArray, FloatArray]:
     """Return strain (5, N) and stiffness (5, 5) with the second frame turned by `angle` in rad."""
     c, s = np.cos(angle), np.sin(angle)
-    turn = np.eye(SEAT)
-    turn[:2, :2] = turn[3:, 3:] = [[c, -s], [s, c]]
+    rotation_matrix = np.eye(SEAT)
+    rotation_matrix[:2, :2] = rotation_matrix[3:, 3:] = [[c, -s], [s, c]]
     first, second = (section_rows(rotors, end, part.height)[:SEAT] for end in (part.first, part.second))
     matrix = full_matrix(scene.couplings[part.coupling].stiffness, 0.0)[:SEAT, :SEAT].copy()
     matrix[2], matrix[:, 2] = 0.0, 0.0
-    return first - turn @ second, matrix
+    return first - rotation_matrix @ second, matrix

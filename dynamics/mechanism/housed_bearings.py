@@ -28,8 +28,8 @@ def housed_bearings(scene: Scene, rotors: Bodies) -> tuple[BearingElement, ...]:
         acting = np.any((part.seat_stiffness != 0.0) | (part.seat_damping != 0.0), axis=0)
         way = unit[acting]
         if len(way):
-            typical = np.diag(_per_meter(way, part.seat_stiffness)).copy()
-            bearings.append(BearingElement(name, names.index(name), way, way, typical))
+            row_stiffness = np.diag(_per_meter(way, part.seat_stiffness)).copy()
+            bearings.append(BearingElement(name, names.index(name), way, way, row_stiffness))
     return tuple(bearings)
 
 
@@ -40,9 +40,10 @@ def housed_bearing_elements(
     supports, elements, laws = supports_by_name(rotors), [], []
     for entry, at in enumerate(bearings):
         index, part = supports[at.name]
-        gradient, none = at.way @ seat_motion(rotors, index, part), np.zeros(len(at.way))
-        elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.typical))
-        laws.append((_per_meter(at.way, part.seat_stiffness), _per_meter(at.way, part.seat_damping)))
+        gradient, none = at.directions @ seat_motion(rotors, index, part), np.zeros(len(at.directions))
+        elements.append(Element(Law.LINEAR_BEARING, entry, -1, gradient, none, stiffness=at.row_stiffness))
+        stiffness = _per_meter(at.directions, part.seat_stiffness)
+        laws.append((stiffness, _per_meter(at.directions, part.seat_damping)))
     return tuple(elements), LinearBearingLaws.packed(laws)
 
 

@@ -43,7 +43,7 @@ class GridTables(NamedTuple):
         return _packed(tuple(tables))
 
     @classmethod
-    def _laid_out(cls, tables: Sequence[MeshTable]) -> GridTables:
+    def _layout(cls, tables: Sequence[MeshTable]) -> GridTables:
         by_id = {id(table): table for table in tables}  # flanks of one table share its numbers
         numbers = {key: _numbers(table) for key, table in by_id.items()}
         begins = dict(zip(by_id, np.cumsum([0, *(number.size for number in numbers.values())]), strict=False))
@@ -66,21 +66,21 @@ class GridTables(NamedTuple):
 
     def with_table(self, flank: int, table: MeshTable) -> GridTables:
         """Return the tables with another one of a flank, behind all others."""
-        laid_out = GridTables._laid_out([table])
+        layout = GridTables._layout([table])
         shape, channels, axis_first, first = (
             array.copy() for array in (self.shape, self.channels, self.axis_first, self.first)
         )
-        shape[flank], channels[flank] = laid_out.shape[0], laid_out.channels[0]
-        axis_first[flank] = laid_out.axis_first[0] + self.axis.size
+        shape[flank], channels[flank] = layout.shape[0], layout.channels[0]
+        axis_first[flank] = layout.axis_first[0] + self.axis.size
         first[flank] = self.number.size
         return GridTables(
             self.base.with_table(flank, table),
             shape,
             channels,
             axis_first,
-            np.concatenate([self.axis, laid_out.axis]),
+            np.concatenate([self.axis, layout.axis]),
             first,
-            np.concatenate([self.number, laid_out.number]),
+            np.concatenate([self.number, layout.number]),
         )
 
     def overwrite(self, flank: int, table: MeshTable) -> None:
@@ -114,7 +114,7 @@ class GridTables(NamedTuple):
 
 @identity_cached
 def _packed(tables: tuple[MeshTable, ...]) -> GridTables:
-    return GridTables._laid_out(tables)
+    return GridTables._layout(tables)
 
 
 def _numbers(table: MeshTable) -> FloatArray:

@@ -71,8 +71,8 @@ def swept_by_frames(elements: Elements, local: LocalState, pace: FloatArray) -> 
         rows = slice(elements.first[e], elements.first[e + 1])
         n = (rows.stop - rows.start) // 2
         quarter = np.kron(np.eye(n // 2), [[0.0, -1.0], [1.0, 0.0]])
-        turn = 2.0 * np.pi * pace[elements.mesh[e]]
-        swept[rows, n : 2 * n] = turn * local.viscous[rows, n : 2 * n] @ quarter
+        angular_speed = 2.0 * np.pi * pace[elements.mesh[e]]
+        swept[rows, n : 2 * n] = angular_speed * local.viscous[rows, n : 2 * n] @ quarter
     return swept
 
 

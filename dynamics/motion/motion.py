@@ -124,12 +124,12 @@ def add_body_motion(
     rate: FloatArray,
 ) -> None:
     """Add motion as `add_motion` does, without the modal freedoms, which `q` and `v` may lack."""
-    bodies, turn = system.sparse.bodies, system.sparse.turn
+    bodies, position_gradient = system.sparse.bodies, system.sparse.position_gradient
     for r in range(coordinate.size):
         displacement, moving = row_products(bodies, r, bodies.weight, q, bodies.weight, v)
         coordinate[r], rate[r] = system.elements.offset[r] + displacement, moving
     for m in range(position.size):
-        position[m] += row_product(turn, turn.weight, m, q)
+        position[m] += row_product(position_gradient, position_gradient.weight, m, q)
 
 
 @inner

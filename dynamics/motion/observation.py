@@ -59,7 +59,7 @@ def observe(
     `time` (T,), `q` and `v` (T, n); `quanta` (T, k) counts those of free trains moved into the reference.
     Amplitudes of housings may be missing in `q` and `v` if there is what is `carried` (see `States`).
     """
-    local = make_local(system.elements, system.turn.shape[0])
+    local = make_local(system.elements, system.position_gradient.shape[0])
     return _look(system, local, time, quanta, q, v, carried)
 
 
@@ -67,7 +67,7 @@ def local_state(
     system: SystemArrays, time: float, q: FloatArray, v: FloatArray, quanta: IntArray | None = None
 ) -> LocalState:
     """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
-    local = make_local(system.elements, system.turn.shape[0])
+    local = make_local(system.elements, system.position_gradient.shape[0])
     counted = None if quanta is None else quanta[np.newaxis]
     _look(system, local, np.array([time]), counted, q[np.newaxis], v[np.newaxis])
     return local
@@ -83,7 +83,8 @@ def _look(
     carried: FloatArray | None = None,
 ) -> Observed:
     """Observe T states, and leave the last one in `local`."""
-    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+    rows, laws = system.direction.shape[0], system.inertial.shape[0]
+    meshes = system.position_gradient.shape[0]
     seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows, rows)))
     counted = np.zeros((time.size, laws), dtype=np.int64) if quanta is None else quanta
     seats = np.empty((time.size, 0)) if carried is None else carried

@@ -26,9 +26,9 @@ from dynamics.noise.housing_radiation import HousingRadiation, RadiationMetadata
 from dynamics.noise.radiated_sound import LoudPoint, RadiatedSound, loudest, radiated_sound
 from dynamics.types import BoolArray, ComplexArray, FloatArray
 from dynamics.vibration import BearingHarmonics
-from dynamics.work_cost import Cost, measured
+from dynamics.work_cost import Cost, WorkMeter
 from host import MissingExtra
-from model_studies.cached_file import cached_in
+from model_studies.cached_file import keep_cached, read_cached
 
 LINES, BUDGET = 4, 60.0
 """Most lines of a housing, and CPU seconds on the reference host that they may take together."""
@@ -166,22 +166,21 @@ def _exact_line(
     housing: ReducedHousing, hertz: float, model: BoundaryElements, cache: Path | None
 ) -> HousingRadiation:
     """Return the resistance at one frequency, from the cache if the cache has it."""
+    file = None if cache is None else cache / f"line-{content_key(housing, model, hertz, COARSE, AIR)}.nc"
+    cached = read_cached(file, HousingRadiation.from_netcdf, ResultError)
+    if cached is not None:
+        return cached
     outer, hull = outer_hull(housing), _line_hull(housing, hertz)
     panels, shapes = len(hull.shapes), hull.shapes.astype(complex)
-    kind, reference = WORK.format(NAME), line_cost(housing, hertz)
-
-    def computed() -> HousingRadiation:
-        matrix, cost = measured(
-            kind, reference, cache, lambda: resistance(model, hull.hull, hertz, shapes, AIR), model.workers
-        )
-        metadata = RadiationMetadata(panels, cost, hertz, 0.0, outer.inner_area, outer.cap_area)
-        hermitian = 0.5 * (matrix + matrix.conj().T)
-        return HousingRadiation(
-            np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata
-        )
-
-    file = None if cache is None else cache / f"line-{content_key(housing, model, hertz, COARSE, AIR)}.nc"
-    return cached_in(file, HousingRadiation.from_netcdf, computed, HousingRadiation.to_netcdf, ResultError)
+    meter = WorkMeter.at_start(WORK.format(NAME), line_cost(housing, hertz), cache, model.workers)
+    matrix = resistance(model, hull.hull, hertz, shapes, AIR)
+    metadata = RadiationMetadata(panels, meter.finish(), hertz, 0.0, outer.inner_area, outer.cap_area)
+    hermitian = 0.5 * (matrix + matrix.conj().T)
+    line = HousingRadiation(
+        np.array([hertz]), hermitian[None], outer.surface, outer.hull.area, AIR.impedance, NAME, metadata
+    )
+    keep_cached(line, file, HousingRadiation.to_netcdf)
+    return line
 
 
 class _Knot(NamedTuple):

@@ -27,8 +27,8 @@ from dynamics.housings.reduced_housing import ReducedHousing
 from dynamics.noise.coarse_hull import RadiatingHull, radiating_hull
 from dynamics.results.array_file import ArrayFile, stored
 from dynamics.types import ComplexArray, FloatArray
-from dynamics.work_cost import Cost, WorkCost, announce, measured, on_this_host
-from model_studies.cached_file import cached_in
+from dynamics.work_cost import Cost, WorkCost, WorkMeter, announce, on_this_host
+from model_studies.cached_file import keep_cached, read_cached
 from model_studies.progress import Progress, silent, unreported
 from model_studies.record import under_key
 from model_studies.workers import InProcess, Workers, divided
@@ -339,7 +339,9 @@ def _resolved_parts(
             computed.append(knot_seconds[index])
             done(min(sum(computed) / reference.seconds, 1.0))
 
-    return measured(kind, reference, cache, lambda: _knots_of(ranges, resistances, modes), workers)
+    meter = WorkMeter.at_start(kind, reference, cache, workers)
+    knots = _knots_of(ranges, resistances, modes)
+    return knots, meter.finish()
 
 
 def resolved_frequency(outer: OuterHull, air: Air) -> float:
@@ -374,24 +376,22 @@ def cached_radiation(
     file = (
         None if cache is None else cache / f"radiation-{content_key(housing, model, ends, air or Air())}.nc"
     )
-
-    def computed() -> HousingRadiation:
-        return housing_radiation(
-            housing,
-            model,
-            ends,
-            air,
-            lambda fraction: progress(STAGE, fraction),
-            lambda cost: announce(progress, STAGE, model.model_name.replace("_", " "), cost),
-            cache,
-            workers,
-        )
-
-    def costly(made: HousingRadiation) -> bool:
-        return made.metadata.cost.seconds > MIN_COST
-
-    read, write = HousingRadiation.from_netcdf, HousingRadiation.to_netcdf
-    return cached_in(file, read, computed, write, ResultError, costly)
+    cached = read_cached(file, HousingRadiation.from_netcdf, ResultError)
+    if cached is not None:
+        return cached
+    radiation = housing_radiation(
+        housing,
+        model,
+        ends,
+        air,
+        lambda fraction: progress(STAGE, fraction),
+        lambda cost: announce(progress, STAGE, model.model_name.replace("_", " "), cost),
+        cache,
+        workers,
+    )
+    if radiation.metadata.cost.seconds > MIN_COST:
+        keep_cached(radiation, file, HousingRadiation.to_netcdf)
+    return radiation
 
 
 def content_key(housing: ReducedHousing, *settings: object) -> str:

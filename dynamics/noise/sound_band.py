@@ -19,6 +19,7 @@ from dynamics.acoustics import (
     ModalResistance,
     OrderPower,
     Range,
+    band_cases,
     level_bands,
     order_power,
     sound_power_level,
@@ -41,7 +42,6 @@ from model_studies.progress import Progress, silent
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
 """Largest error by peaks between the speeds, dB: speeds with a larger one do not resolve a resonance."""
-Levels = Callable[[Mapping[str, float]], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -308,7 +308,7 @@ def sound_band(
         Ranges of factors, by name in `GUESSES`; default: their usual ranges. Figures that a scene does not
         have, e.g. mounts, contribute nothing.
     cases : int
-        Number of joint cases, see `level_bands`.
+        Number of joint cases, see `band_cases`.
     alternatives : mapping of str to SoundModel, optional
         Further models that may be right, e.g. with the resistance of another radiation model, by the name of
         their contribution: their difference, both ways.
@@ -338,8 +338,7 @@ def sound_band(
         progress("band", min(done[0] / count, 1.0))
         return result
 
-    varied = partial(level_bands, ranges=ranges, cases=cases)
-    return _band(model, np.asarray(speed, dtype=float), varied, others, powers)
+    return _band(model, np.asarray(speed, dtype=float), ranges, cases, others, powers)
 
 
 def band_about(
@@ -370,7 +369,8 @@ def band_about(
 def _band(
     model: SoundModel,
     speed: FloatArray,
-    varied: Callable[[Levels], tuple[LevelBand, ...]],
+    ranges: Mapping[str, Range],
+    cases: int,
     others: Mapping[str, SoundModel],
     powers: Powers,
 ) -> SoundBand:
@@ -383,7 +383,8 @@ def _band(
             varied_model = varied_model if value == 1.0 else GUESSES[name].varied(varied_model, value)
         return _levels(order, loudest, *((order, nominal) if varied_model is model else powers(varied_model)))
 
-    bands = list(varied(levels))
+    level_cases = np.array([levels(values) for values in band_cases(ranges, cases)])
+    bands = list(level_bands(ranges, level_cases))
     for name, other in others.items():
         difference = _levels(order, loudest, *powers(other)) - levels({})
         for index, error in enumerate(np.abs(difference).tolist()):

@@ -100,10 +100,10 @@ def _check_isotropic(field: str, bushing: Bushing) -> None:
 
 def _alike_across(matrix: FloatArray) -> bool:
     """Whether a matrix in x, y, z, tilt_x, tilt_y (and rotation) is the same turned by any angle about z."""
-    turn = np.eye(matrix.shape[0])
+    rotation_matrix = np.eye(matrix.shape[0])
     c, s = np.cos(IRRATIONAL), np.sin(IRRATIONAL)
-    turn[:2, :2] = turn[3:5, 3:5] = [[c, -s], [s, c]]
-    off = np.abs(turn @ matrix @ turn.T - matrix)
+    rotation_matrix[:2, :2] = rotation_matrix[3:5, 3:5] = [[c, -s], [s, c]]
+    off = np.abs(rotation_matrix @ matrix @ rotation_matrix.T - matrix)
     return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))
 
 

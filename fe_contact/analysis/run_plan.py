@@ -14,7 +14,7 @@ from fe_contact.analysis.request.request import Checked
 from fe_contact.analysis.request.request_check import as_checked
 from fe_contact.errors import positive
 from fe_contact.geometry import ParallelAxes
-from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
+from fe_contact.options import LEVELS, MESHES, AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import Prediction, predict_run, unit_work
 from fe_contact.planning.cost_of_derivatives import ContactWork
 from fe_contact.planning.expected_curves import ExpectedCurves
@@ -118,7 +118,7 @@ def plan_run(
     needed = () if decision.wished is None else (_decision(decision.wished, curves, cache),)
     passes = tuple(_decision(later, curves, cache) for later in decision.passes)
     rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
-    levels = sorted(rows.values(), key=lambda row: LEVELS.index(row.level))
+    levels = sorted(rows.values(), key=lambda row: MESHES.index(row.level))
     conflict = ""
     if budget is not None and (options.tolerance is not None or options.level is not None):
         conflict = _conflict(decision, positive("time_budget", budget, "Seconds."), cache)

@@ -54,13 +54,13 @@ class _CoarseFace:
         return transform.reshape(len(frames), 60, 60)
 
 
-def coarse_face(section: FloatArray, thickness: float, turn: float, half: int) -> _CoarseFace:
+def coarse_face(section: FloatArray, thickness: float, angle: float, half: int) -> _CoarseFace:
     """Return the face that elements hang on, on its lower half (`half` -1) or its upper one (+1).
 
-    `section` (m, 8, 2) are their section nodes at the middle of the thin layer, which turns by `turn` in
+    `section` (m, 8, 2) are their section nodes at the middle of the thin layer, which turns by `angle` in
     rad, m.
     """
-    nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, turn)
+    nodes = above(section[:, SIDE], ACROSS - 0.5 * half, thickness, angle)
     return _CoarseFace(nodes, face_functions(ALONG, 0.5 * (ACROSS + half)))
 
 

@@ -34,17 +34,17 @@ class TurningLoads:
 
         Raises `SolveError`: the harmonic is not positive definite.
         """
-        turn = np.exp(2j * np.pi * number / self.teeth)
+        phase = np.exp(2j * np.pi * number / self.teeth)
         matrix = np.empty(self.across.shape, dtype=complex, order="F")
-        matrix.real = turn.real * (self.across + self.across.T) + np.eye(len(matrix))
-        matrix.imag = turn.imag * (self.across.T - self.across)
+        matrix.real = phase.real * (self.across + self.across.T) + np.eye(len(matrix))
+        matrix.imag = phase.imag * (self.across.T - self.across)
         if number == 0 and self.spring is not None:
             matrix.real += self.spring @ self.spring.T
         factor, info = lapack.zpotrf(matrix, lower=1, clean=0, overwrite_a=1)
         if info:
             raise SolveError(f"ring of teeth: harmonic {number} is not positive definite (pivot {info})")
         left, right = np.split(self.loads, 2)
-        x = blas.ztrsm(1.0, factor, np.asfortranarray(left + turn * right), lower=1, overwrite_b=1)
+        x = blas.ztrsm(1.0, factor, np.asfortranarray(left + phase * right), lower=1, overwrite_b=1)
         return np.asarray(blas.ztrsm(1.0, factor, x, lower=1, trans_a=2, overwrite_b=1))
 
     def within(self, basis: FloatArray) -> TurningLoads:
@@ -86,7 +86,7 @@ def left_cuts(solutions: Iterable[ComplexArray], teeth: int, reach: int, first: 
         x = weight * solution
         waves.append(x[:, first:])
         for j in range(-reach - 1, reach + 1):
-            turn = np.exp(2j * np.pi * n * j / teeth)
-            near[j] = near.get(j, 0.0) + turn.real * x.real[:, :first] - turn.imag * x.imag[:, :first]
+            phase = np.exp(2j * np.pi * n * j / teeth)
+            near[j] = near.get(j, 0.0) + phase.real * x.real[:, :first] - phase.imag * x.imag[:, :first]
     turns = np.exp(2j * np.pi / teeth * np.outer(np.arange(teeth), np.arange(len(waves))))
     return LeftCuts(near, np.tensordot(turns, np.stack(waves), axes=1).real)

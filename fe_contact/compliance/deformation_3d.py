@@ -136,11 +136,11 @@ def _deformed(
     points, displacement = np.empty((count, 3)), np.empty((count, 3))
     stress = np.empty((*numbers.shape, 3, 3))
     for i, tooth in enumerate(view):
-        turn = turn_about_axis(2.0 * math.pi * tooth / teeth)
+        rotation_matrix = turn_about_axis(2.0 * math.pi * tooth / teeth)
         motion = elements.displacement(fields[:, i])
-        points[numbers[i]] = elements.nodes @ turn.T
-        displacement[numbers[i]] = motion @ turn.T
-        stress[i] = turn @ elements.stress(motion) @ turn.T
+        points[numbers[i]] = elements.nodes @ rotation_matrix.T
+        displacement[numbers[i]] = motion @ rotation_matrix.T
+        stress[i] = rotation_matrix @ elements.stress(motion) @ rotation_matrix.T
     cells = numbers.reshape(-1, numbers.shape[-1])
     mean = nodal_mean(cells, stress.reshape(-1, *stress.shape[2:]), count)
     flip = np.array([1.0, 1.0, -1.0 if left else 1.0])

@@ -60,12 +60,12 @@ class DeformedGear:
 
     def placed(self, angle: float, center: tuple[float, float, float]) -> DeformedGear:
         """Return the gear turned counter-clockwise by `angle` (rad) about its axis, its center moved (m)."""
-        turn = turn_about_axis(angle)
+        rotation_matrix = turn_about_axis(angle)
         return replace(
             self,
-            points=self.points @ turn.T + np.asarray(center),
-            displacement=self.displacement @ turn.T,
-            stress=turn @ self.stress @ turn.T,
+            points=self.points @ rotation_matrix.T + np.asarray(center),
+            displacement=self.displacement @ rotation_matrix.T,
+            stress=rotation_matrix @ self.stress @ rotation_matrix.T,
         )
 
 

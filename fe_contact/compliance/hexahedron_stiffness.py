@@ -30,19 +30,19 @@ _NODE_DISTANCE = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0))
 _NODE, _FUNCTION = _NODE_DISTANCE.argmin(axis=1), _NODE_DISTANCE.argmin(axis=0)  # scikit-fem to VTK, back
 
 
-def layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:
+def layer_nodes(section: FloatArray, thickness: float, angle: float) -> FloatArray:
     """Return the nodes (m, 20, 3) of the hexahedra between two turned copies of quadrilaterals, m.
 
     `section` (m, 8, 2) has corners counter-clockwise and middles of sides 0-1, 1-2, 2-3, 3-0 at the
-    middle of the layer, where z = 0. Its top is turned against its bottom by `turn` in rad.
+    middle of the layer, where z = 0. Its top is turned against its bottom by `angle` in rad.
     """
-    return above(section[:, SECTION], 0.5 * REFERENCE[:, 2], thickness, turn)
+    return above(section[:, SECTION], 0.5 * REFERENCE[:, 2], thickness, angle)
 
 
-def above(points: FloatArray, level: FloatArray, thickness: float, turn: float) -> FloatArray:
+def above(points: FloatArray, level: FloatArray, thickness: float, angle: float) -> FloatArray:
     """Return section points (m, p, 2) swept along the helix to the levels (p,), in layers: (m, p, 3)."""
     x, y = points[..., 0], points[..., 1]
-    c, s = np.cos(turn * level), np.sin(turn * level)
+    c, s = np.cos(angle * level), np.sin(angle * level)
     return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(thickness * level, x.shape)], axis=-1)
 
 

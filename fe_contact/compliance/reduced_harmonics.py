@@ -124,8 +124,8 @@ def _residual_energy(
     within, behind, ahead = signs @ basis, signs @ ring.across @ basis, signs @ ring.across.T @ basis
     rank, residuals = modes.shape[1], []
     for number, (x, weight) in enumerate(zip(solutions, weights(ring.teeth), strict=True)):
-        turn = np.exp(2j * np.pi * number / ring.teeth)
-        out = left + turn * right - (within + turn.conj() * behind + turn * ahead) @ x
+        phase_factor = np.exp(2j * np.pi * number / ring.teeth)
+        out = left + phase_factor * right - (within + phase_factor.conj() * behind + phase_factor * ahead) @ x
         if number == 0 and ring.spring is not None:
             out -= (signs @ ring.spring) @ (ring.spring.T @ basis @ x)
         out = np.concatenate([out[:, :rank] @ modes.T, out[:, rank:]], axis=1)

@@ -70,10 +70,10 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
     load, internal = np.zeros_like(u), np.zeros_like(u)
     forces_in = sector.matrix @ local
     for i, j in enumerate(mesh.teeth):
-        turn, nodes = rotation(j * mesh.pitch_angle).T, mesh.sector_nodes[i]
-        u[nodes] = local[:, i].reshape(-1, 2) @ turn
-        internal[nodes] += forces_in[:, i].reshape(-1, 2) @ turn
-        load[nodes] += local_load[:, i].reshape(-1, 2) @ turn
+        rotation_matrix, nodes = rotation(j * mesh.pitch_angle).T, mesh.sector_nodes[i]
+        u[nodes] = local[:, i].reshape(-1, 2) @ rotation_matrix
+        internal[nodes] += forces_in[:, i].reshape(-1, 2) @ rotation_matrix
+        load[nodes] += local_load[:, i].reshape(-1, 2) @ rotation_matrix
     if ring.hub_matrix is not None:
         internal[mesh.hub_nodes] += (ring.hub_matrix @ u[mesh.hub_nodes].ravel()).reshape(-1, 2)
     return Field(u, load, internal)

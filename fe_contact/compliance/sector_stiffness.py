@@ -88,12 +88,12 @@ def placed_layer(
     section: QuadSector, batch: Batch, axes: FloatArray, turn_per_length: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return nodes (m, 20, 3) of a batch and Cartesian displacements (m, 60, 60) per freedom."""
-    quads, turn = section.grid.quads[batch.quads], batch.thickness * turn_per_length
+    quads, angle = section.grid.quads[batch.quads], batch.thickness * turn_per_length
     corners = section.points[quads]
-    nodes = layer_nodes(corners, batch.thickness, turn)
+    nodes = layer_nodes(corners, batch.thickness, angle)
     frames = cylindrical_frames(nodes) @ axes[quads[:, SECTION]]
     if batch.half:
-        face = coarse_face(corners, batch.thickness, turn, batch.half)
+        face = coarse_face(corners, batch.thickness, angle, batch.half)
         return face.attach(nodes), face.transform(frames)
     transform, every = np.zeros((len(nodes), 20, 3, 20, 3)), np.arange(20)
     transform[:, every, :, every] = frames.transpose(1, 0, 2, 3)

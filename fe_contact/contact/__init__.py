@@ -16,7 +16,6 @@ from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_force
 from fe_contact.contact.model import Break, ContactModel
 from fe_contact.contact.model_terms import with_compliances, with_flanks
 from fe_contact.contact.pitches import in_pitches
-from fe_contact.contact.plain_touch import flank_coordinate
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution_start import Start
@@ -39,7 +38,6 @@ __all__ = [
     "contact_problem",
     "face_contact_problem",
     "face_flank_forces",
-    "flank_coordinate",
     "force_changes",
     "in_pitches",
     "load_arm",

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.contact.free_end import ENDLESS, FreeEnds, end_softness
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
-from fe_contact.contact.plain_touch import FLAT, Touch, conjugate_touch, flank_coordinate
+from fe_contact.contact.plain_touch import FLAT, Touch, conjugate_touch
 from fe_contact.contact.problem import Candidates, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import modified_touch
@@ -175,8 +175,8 @@ def _loaded_slices(
     slices: Slices,
 ) -> LoadedSlices:
     """Lay load patches where the points of the slices of all pairs touch; `middle` is that of the slices."""
-    tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
-    tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
+    tip_1 = float(pair.pinion.flank_coordinate(pair.pinion.tip_roll_length))
+    tip_2 = float(pair.wheel.flank_coordinate(pair.wheel.tip_roll_length))
     radius = touch.radius / math.cos(pair.base_helix_angle)
     shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, radius, rule)
     shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, radius, rule)

@@ -87,7 +87,7 @@ def face_flank_forces(
     Returns
     -------
     dict, dict
-        Tooth number to nodal forces (nf,) against the outward normal, in the freedoms of the compliance, N.
+        Tooth number to inward nodal forces (nf,) in the freedoms of the compliance, N.
     """
     forces: list[ByTooth] = []
     slices, pressed, row = _pressed(candidates, force, position)
@@ -107,7 +107,7 @@ def face_flank_forces(
             nodal = np.zeros(int(flank.index.max()) + 1)
             nodal[loads.nodes[k, :used]] = loads.forces[k, :used]
             share = pressed[i] * lever[row, i]
-            _add(by_tooth, int(direction * slices.pair[i]), -share * nodal)
+            _add(by_tooth, int(direction * slices.pair[i]), share * nodal)
         forces.append(by_tooth)
     return forces[0], forces[1]
 

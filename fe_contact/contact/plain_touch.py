@@ -122,9 +122,9 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
         lever_1[valid] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[valid] = corner.lever_arm_ratio_wheel[corner.valid]
     radius = _relative_radius(pair, touched_1, touched_2)
-    s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
-    high = flank_coordinate(pair.pinion, tip_1) - s_1
-    low = s_2 - flank_coordinate(pair.wheel, tip_2)
+    s_1, s_2 = pair.pinion.flank_coordinate(touched_1), pair.wheel.flank_coordinate(touched_2)
+    high = pair.pinion.flank_coordinate(tip_1) - s_1
+    low = s_2 - pair.wheel.flank_coordinate(tip_2)
     none, plain = np.zeros((*gap.shape, 0)), np.zeros(gap.shape)
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
@@ -162,8 +162,3 @@ def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray)
     flattest = FLAT * pair.wheel.base_radius
     radius = relative_radius(roll_1, pair.wheel.sign * roll_2)
     return np.where((radius >= 0.0) & (radius <= flattest), radius, flattest)
-
-
-def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
-    """Flank coordinate s in m of a roll length; negative on a ring gear (see `FlankProfile`)."""
-    return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))

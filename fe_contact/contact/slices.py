@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
@@ -56,7 +55,28 @@ class Slices:
         knots = np.concatenate([np.zeros(degree + 1), knots[2:-2], np.full(degree + 1, float(count))])
         at = (self.point_center - self.center[0]) / self.width + 0.5
         within = np.arange(count)[:, None] + 0.5 + np.array([-1.0, 1.0]) / math.sqrt(12.0)  # Gauss points
-        curves, means = (
-            scipy.interpolate.BSpline.design_matrix(x, knots, degree).toarray() for x in (at, within.ravel())
-        )
+        curves, means = (basis_splines(x, knots, degree) for x in (at, within.ravel()))
         return curves, np.linalg.inv(means.reshape(count, 2, count).mean(axis=1))
+
+
+def basis_splines(at: FloatArray, knots: FloatArray, degree: int) -> FloatArray:
+    """Return the basis splines of some degree at coordinates: (N,) and (S + degree + 1,) to (N, S).
+
+    De Boor's recurrence over the degree, with the order of terms of scipy.interpolate, which gives the same
+    bits: loading that takes a tenth of a first table of a plane pair.
+    """
+    count, rows = knots.size - degree - 1, np.arange(at.size)
+    interval = np.clip(np.searchsorted(knots, at, side="right") - 1, degree, count - 1)
+    values = [np.ones(at.size)]
+    for j in range(1, degree + 1):
+        raised = [np.zeros(at.size)]
+        for n, lower in enumerate(values, 1):
+            left, right = knots[interval + n - j], knots[interval + n]
+            weight = lower / (right - left)
+            raised[-1] = raised[-1] + weight * (right - at)
+            raised.append(weight * (at - left))
+        values = raised
+    splines = np.zeros((at.size, count))
+    for n, value in enumerate(values):
+        splines[rows, interval - degree + n] = value
+    return splines

@@ -17,7 +17,7 @@ from fe_contact.contact.flank_slope import flank_slope, rolls_at
 from fe_contact.contact.least_gap import Nodes, least_gap, samples
 from fe_contact.contact.model import GapTerm
 from fe_contact.contact.parabolic_gap import shifted_gap, touching_offsets
-from fe_contact.contact.plain_touch import FLAT, Touch, flank_coordinate
+from fe_contact.contact.plain_touch import FLAT, Touch
 from fe_contact.contact.rough_flanks import DesignedSurface, DeviatingTeeth, curvature_bound
 from fe_contact.contact.rough_strip import BREAKS, rough_strip
 from fe_contact.contact.strip import Gap, rounded, with_breaks
@@ -308,7 +308,7 @@ class _Flanks:
         for k, (gear, lists, of) in enumerate(sets):
             sign, toothing = (1.0, pair.pinion) if gear == 0 else (-1.0, pair.wheel)
             list_of[k] = of + len(along)
-            along += [np.sort(sign * flank_coordinate(toothing, nodes)) for nodes in lists]
+            along += [np.sort(sign * toothing.flank_coordinate(nodes)) for nodes in lists]
         start = np.cumsum([0, *(surface.size for surface in along)])
         gears = np.array([gear for gear, _, _ in sets], dtype=bool)[:, None]
         return Nodes(np.concatenate(along), start, list_of, np.where(gears, -touch.s_2, touch.s_1))
@@ -435,7 +435,7 @@ class _Flanks:
     def _ends(self) -> list[float]:
         """Flank coordinates of the edges of both gears, those that a cut tip leaves, m."""
         gears = (self._pair.pinion, self._pair.wheel)
-        return [float(flank_coordinate(gear, gear.tip_form_roll_length)) - _AT_EDGE for gear in gears]
+        return [float(gear.flank_coordinate(gear.tip_form_roll_length)) - _AT_EDGE for gear in gears]
 
     def _slope_of(self, gear: int, x: FloatArray, at_edge: BoolArray) -> tuple[FloatArray, FloatArray]:
         """Return the slope of what is removed from all flanks of a gear at x, and its change along them.

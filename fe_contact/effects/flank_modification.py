@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact import Break, flank_coordinate
+from fe_contact.contact import Break
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
 from fe_contact.flank.extent import Extent
@@ -57,7 +57,7 @@ class ModificationGap:
         return tuple(
             Break(
                 index,
-                flank_coordinate(gear, start.roll_length),
+                gear.flank_coordinate(start.roll_length),
                 1 if start.towards_tip == (index == 0) else -1,
                 start.jump,
                 start.bend,

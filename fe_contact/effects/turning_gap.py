@@ -36,7 +36,7 @@ class TurningGap:
     """Base radius of the gear, m."""
     period: int
     """Base pitches after which the gap repeats."""
-    turn: float
+    roll_angle: float
     """Angle by which the gear turns while it rolls over a whole flank, rad."""
     run_out: RunOut
     waves: tuple[Wave, ...]
@@ -57,7 +57,7 @@ class TurningGap:
             teeth=gear.teeth,
             base_radius=gear.base_radius,
             period=period,
-            turn=abs(gear.tip_roll_length - gear.form_roll_length) / gear.base_radius,
+            roll_angle=abs(gear.tip_roll_length - gear.form_roll_length) / gear.base_radius,
             run_out=gear.run_out,
             waves=gear.waves,
             flanks=flanks,
@@ -93,9 +93,9 @@ class TurningGap:
             low=-out - waves,
             high=out + waves,
             slope=steep / radius,
-            spread=float(height @ np.minimum(order * self.turn, 2.0)),
+            spread=float(height @ np.minimum(order * self.roll_angle, 2.0)),
             bend=float(height @ order**2) / radius**2,
-            turn=steep * radius,
+            rotation_bound=steep * radius,
         )
         count = 0 if self.surfaces is None else len(self.surfaces.amounts)
         flanks = Extent() if self.surfaces is None else self.surfaces.extents
@@ -111,7 +111,7 @@ class TurningGap:
     def nodes(self, pair: ParallelAxes, tooth: int) -> FloatArray:
         """Return roll lengths of the gear in m, between two of which its profile turns back once at most."""
         gear = self._toothing(pair)
-        waves = float(self._harmonics[:, 2].max(initial=0.0)) * self.turn / (2.0 * math.pi)
+        waves = float(self._harmonics[:, 2].max(initial=0.0)) * self.roll_angle / (2.0 * math.pi)
         ends = sorted((gear.form_roll_length, gear.tip_roll_length))
         nodes = np.linspace(ends[0], ends[1], math.ceil(_IN_WAVE * max(waves, 1.0)) + 1)
         if self.surfaces is None or tooth >= len(self.surfaces.nodes):
@@ -197,17 +197,17 @@ def _take_harmonics(
 ) -> None:
     """Take harmonics (H, 6) of the turn of a gear off a gap at points (k,); `face` from its mid-face, m."""
     inclined = turning.per_face * turning.face_width
-    turn, along = np.empty(gap.size), np.empty(gap.size)
+    revolutions, along = np.empty(gap.size), np.empty(gap.size)
     for k in range(gap.size):
         along[k] = face[k] / turning.face_width
         tooth = float(meeting[k] % turning.period) / turning.teeth
         rolled = (roll[k] - turning.pitch_point) * turning.per_roll
-        turn[k] = tooth + rolled + (face[k] + turning.axial_offset) * turning.per_face
+        revolutions[k] = tooth + rolled + (face[k] + turning.axial_offset) * turning.per_face
     for h in range(len(harmonics)):
         amplitude, over_face, order, waves, inclination, phase = harmonics[h]
         advance, late = waves + inclination * order * inclined, phase / (2.0 * math.pi)
         for k in range(gap.size):
-            angle = order * turn[k] + advance * along[k] - late
+            angle = order * revolutions[k] + advance * along[k] - late
             gap[k] -= (amplitude + over_face * along[k]) * _cosine(angle)
 
 

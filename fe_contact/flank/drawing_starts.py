@@ -24,9 +24,9 @@ from bounds import (
     described,
 )
 from fe_contact.errors import InputError, declared_fields
-from fe_contact.flank.involute import radius_at_roll_length, roll_length_at_radius
 from fe_contact.flank.part import SHORTEST
 from fe_contact.flank.tooth import Tooth
+from fe_contact.involute import radius_at_roll_length, roll_length_at_radius
 
 _REMEDY = "A relief starts on the involute, before the end of the flank to which it runs."
 

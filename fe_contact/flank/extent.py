@@ -28,7 +28,7 @@ class Extent:
     kink: FloatArray | float = 0.0
     bend: FloatArray | float = 0.0
     """`kink`, `bend`: Bounds of jumps of the slope, and of the curvature in 1/m, over the roll length."""
-    turn: FloatArray | float = 0.0
+    rotation_bound: FloatArray | float = 0.0
     """Bound of the slope times the square of the base radius, for deviations that turn with a gear, m^2. The
     angle of the gear grows with the root of the length along the flank, so that such a gap bends too.
     """
@@ -66,7 +66,7 @@ class Extent:
         roll = rolls[gear]
         per_length = base_radius / roll  # roll length over length along the flank
         kinks = _KINK * self.kink * per_length * (1.0 / rolls[0] + 1.0 / rolls[1])
-        return np.asarray(self.bend * per_length**2 + self.turn / roll**3 + kinks)
+        return np.asarray(self.bend * per_length**2 + self.rotation_bound / roll**3 + kinks)
 
 
 _NAMES = tuple(field.name for field in fields(Extent))

@@ -75,7 +75,7 @@ class FlankModification(_Figures):
     @cached_property
     def only_removes(self) -> bool:
         """Whether material is added nowhere, as slopes and measured flanks may."""
-        return not any(getattr(self, name) for name in fields_of(Kind.SLOPE, Kind.SURFACE))
+        return not any(getattr(self, name) for name in fields_of(Kind.DEVIATION, Kind.SURFACE))
 
     @property
     def varies_along_profile(self) -> bool:

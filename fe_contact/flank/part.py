@@ -14,7 +14,7 @@ from fe_contact.errors import InputError, declared_fields
 from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
-_ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
+_ACTING = (Kind.AMOUNT, Kind.DEVIATION, Kind.EDGE)
 SHORTEST = 1e-9
 """Shortest length over which an amount acts, m. A shorter one is a step, whose slope is undefined."""
 

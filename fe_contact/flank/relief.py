@@ -29,7 +29,7 @@ def amount(along: Direction, description: str, example: float, *, later: bool = 
 def slope(along: Direction, description: str, example: float, *, later: bool = False) -> Any:
     """Return the field of a difference of material removed in m, of either sign."""
     bound = between(-_DEEPEST, _DEEPEST)
-    return declared(0.0, Declared(Kind.SLOPE, "m", bound, description, example, along, later=later))
+    return declared(0.0, Declared(Kind.DEVIATION, "m", bound, description, example, along, later=later))
 
 
 def length(along: Direction, description: str, example: float, *, later: bool = False) -> Any:

@@ -10,9 +10,9 @@ import numpy as np
 
 from bounds import Declared, Direction, Kind, SiNote, Text, Wording, between, declared
 from fe_contact.errors import InputError, within
-from fe_contact.flank.involute import involute_normal, involute_point
 from fe_contact.flank.part import FlankPart, ReliefStart
 from fe_contact.flank.tooth import Tooth
+from fe_contact.involute import involute_normal, involute_point
 from fe_contact.types import FloatArray
 
 FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)

@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import inverse_involute, involute_function
+from fe_contact.involute import inverse_involute, involute_function
 
 if TYPE_CHECKING:
     from fe_contact.geometry.toothing import Toothing

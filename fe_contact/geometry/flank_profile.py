@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from bounds import from_to
 from fe_contact.errors import InputError
-from fe_contact.flank.involute import involute_normal, involute_point
 from fe_contact.geometry.toothing import Toothing
+from fe_contact.involute import involute_normal, involute_point
 from fe_contact.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.geometry.trochoid import Trochoid
+from fe_contact.involute import involute_function, roll_length_at_radius
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import ClassVar
 
 from bounds import Declared, Kind, declared, described, integers, required, up_to
 from fe_contact.errors import integer
-from fe_contact.flank.involute import inverse_involute, involute_function
 from fe_contact.geometry.basic_rack import ROOT_RADIUS, BasicRack
 from fe_contact.geometry.cutter_trochoid import CutterTrochoid
 from fe_contact.geometry.form_point import FormPoint
@@ -24,6 +23,7 @@ from fe_contact.geometry.ring_gear_feasibility import (
     refuse_tip_diameter,
 )
 from fe_contact.geometry.toothing import PROFILE_SHIFT, Toothing
+from fe_contact.involute import inverse_involute, involute_function
 from fe_contact.types import Json
 
 _RIM = "Outer diameter of the rim, which is held rigidly all round; above the root diameter"

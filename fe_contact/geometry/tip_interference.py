@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from fe_contact.flank.involute import involute_function
+from fe_contact.involute import involute_function
 from fe_contact.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:

@@ -12,22 +12,24 @@ from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
+import numpy as np
+
 from bounds import Declared, Kind, SiNote, between, declared, described, one_of, required, up_to
 from fe_contact.body import CLAMPED, BoreSeat
 from fe_contact.errors import declared_fields, within
-from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import ADDENDUM, DEDENDUM, NORMAL_MODULE, PRESSURE_ANGLE, ROOT_RADIUS
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation, counted
 from fe_contact.geometry.tooth_deviations import NO_RUN_OUT, RunOut, Wave, deviations_period
 from fe_contact.geometry.tooth_flank import MAX_TEETH, ToothFlank, check_flanks, turned_back
+from fe_contact.involute import involute_function, roll_length_at_radius
 from fe_contact.material import STEEL, Material
 
 if TYPE_CHECKING:
     from fe_contact.body import Web
     from fe_contact.geometry.fillet_curve import FilletCurve
     from fe_contact.geometry.form_point import FormPoint
-    from fe_contact.types import Json
+    from fe_contact.types import FloatArray, Json
 
 
 _FACE = Declared(Kind.LENGTH, "m", between(1e-6, 50.0), "Face width b", 0.025, with_unit=True)
@@ -348,3 +350,7 @@ class Toothing:
     def roll_length(self, radius: float) -> float:
         """Roll length in m at `radius` >= base radius."""
         return roll_length_at_radius(self.base_radius, radius)
+
+    def flank_coordinate(self, roll_length: FloatArray | float) -> FloatArray:
+        """Flank coordinate s in m at a roll length in m; negative on a ring gear (see `FlankProfile`)."""
+        return np.asarray(self.sign * np.square(roll_length) / (2.0 * self.base_radius))

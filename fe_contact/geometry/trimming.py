@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from fe_contact.flank.involute import involute_function
+from fe_contact.involute import involute_function
 
 
 def radial_clearance(

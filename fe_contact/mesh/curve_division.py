@@ -64,10 +64,10 @@ def spread(
     callable
         Maps (k, 2) points to (k,) sizes.
     """
-    from scipy.spatial.distance import cdist  # noqa: PLC0415 (start-up time)
 
     def size(at: FloatArray) -> FloatArray:
-        nearest: FloatArray = np.min(sizes + growth * cdist(at, points), axis=1)
+        across, along = (at[:, None, axis] - points[:, axis] for axis in (0, 1))  # (k, n) each
+        nearest: FloatArray = np.min(sizes + growth * np.sqrt(across * across + along * along), axis=1)
         return np.minimum(nearest, largest)
 
     return size

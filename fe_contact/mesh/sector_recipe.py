@@ -139,6 +139,15 @@ class SectorRecipe:
         )
 
     @classmethod
+    def medium(cls, gear: Toothing) -> SectorRecipe:
+        """Return the recipe between draft and standard: flank elements of 0.17 modules, about 12 layers."""
+        draft, standard = cls.draft(gear), cls.standard(gear)
+        lengths: Json = {name: math.sqrt(getattr(draft, name) * getattr(standard, name)) for name in _SIZES}
+        layers = 2 * math.ceil((draft.layers + standard.layers) / 4)
+        growth = math.sqrt(draft.body_growth * standard.body_growth)
+        return replace(standard, layers=layers, body_growth=growth, **lengths)
+
+    @classmethod
     def fine(cls, gear: Toothing) -> SectorRecipe:
         """Return the recipe of reference solutions: flank elements of 0.1 modules, 18 layers or more."""
         m = gear.normal_module

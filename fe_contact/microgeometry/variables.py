@@ -14,9 +14,9 @@ from fe_contact.geometry import ParallelAxes
 from model_studies import in_unit
 
 GEARS = ("pinion", "wheel")
-QUANTITIES = fields_of(Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+QUANTITIES = fields_of(Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 """Fields of `FlankModification` that can be varied."""
-SLOPES, LENGTHS = fields_of(Kind.SLOPE), fields_of(Kind.LENGTH)
+SLOPES, LENGTHS = fields_of(Kind.DEVIATION), fields_of(Kind.LENGTH)
 """Quantities with a sign, and quantities that are lengths, not removed material."""
 ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELDS[name].along)
 

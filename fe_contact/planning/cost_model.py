@@ -127,6 +127,7 @@ _HUB_FREEDOMS, _FILL = 20_000, 0.33
 _SOLID_MESHER = 0.15
 _SOLID_EFFORT = {
     "draft": (9.3e-5, 2.28, 1.11, 0.34),
+    "medium": (9.7e-5, 2.43, 1.0, 0.3),
     "standard": (1.05e-4, 2.58, 0.89, 0.25),
     "fine": (7.3e-4, 2.35, 0.81, 0.19),
 }

@@ -12,11 +12,12 @@ from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.sector_recipe import HELICAL_BODY_LAYERS, wound
 from fe_contact.types import Json
 
-PLANE_REFINEMENT = {"draft": 0.6, "standard": 1.0, "fine": 2.0}
+PLANE_REFINEMENT = {"draft": 0.6, "medium": 0.8, "standard": 1.0, "fine": 2.0}
 
 
 SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
     "draft": SectorRecipe.draft,
+    "medium": SectorRecipe.medium,
     "standard": SectorRecipe.standard,
     "fine": SectorRecipe.fine,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,9 @@ from fe_contact.planning.expected_curves import (
     HELICAL_SLICES,
     PLANE,
     PLANE_POSITIONS,
+    QUIET,
+    QUIET_SCATTER,
+    QUIET_SLICES,
     RELIEVED,
     SLICES,
     SPUR,
@@ -25,11 +29,19 @@ from fe_contact.planning.expected_curves import (
     ExpectedCurves,
     usual_curves,
 )
-from fe_contact.planning.model_error import helical_share, in_small_displacements, model_errors
+from fe_contact.planning.model_error import (
+    helical_share,
+    in_small_displacements,
+    is_relieved_helical,
+    model_errors,
+)
 from fe_contact.planning.plan import Plan
 from fe_contact.planning.plane_bias import plane_bias
 from fe_contact.ste.plane_bias import PlaneBias
 from fe_contact.types import FloatArray, Json
+
+NINE_OF_TEN = 1.28
+"""Standard deviations of a normal distribution below which nine of ten lie."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +71,8 @@ class ExpectedError:
     """Whether the caller chose the model, so that no run of this request lowers `plane`."""
     bias: PlaneBias | None = None
     """Bias of a plane that is not corrected for the finite width; `plane` is its size then."""
+    scatter: float = 0.0
+    """Standard deviation of the logarithm of the stated over the expected error; 0: not known."""
 
     @property
     def numerical(self) -> float:
@@ -69,6 +83,11 @@ class ExpectedError:
     def bought(self) -> float:
         """The part that work lowers, to which a tolerance applies: with the plane, unless it was chosen."""
         return self.numerical if self.chosen else float(np.hypot(self.numerical, self.plane))
+
+    @property
+    def prudent(self) -> float:
+        """The part that work lowers which nine runs of ten keep, as far as the scatter of runs is known."""
+        return self.bought * math.exp(NINE_OF_TEN * self.scatter)
 
     @property
     def text(self) -> str:
@@ -111,16 +130,25 @@ def expected_error(
     worst = np.unravel_index(int(np.argmax(relative)), relative.shape)
     at_worst = {name: float((part / known.scale)[worst]) for name, part in parts.items()}
     mean, ripple = (float(value) for value in absolute.max(axis=1)) if known.absolute else (None, None)
-    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias)
+    scatter = QUIET_SCATTER if _is_quiet(pair, plan) else 0.0
+    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias, scatter=scatter)
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
     """Return the median error by mesh of mean and of peak-to-peak, over the mean's rise under load."""
-    if not isinstance(plan.discretization, FaceDiscretization):
+    made = plan.discretization
+    if not isinstance(made, FaceDiscretization):
         return PLANE[plan.level]
+    if is_relieved_helical(pair):
+        mean, ripple = QUIET[plan.level]
+        return made.remaining * mean, made.remaining * ripple
     helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]
     mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(SPUR[plan.level], wound, strict=True))
     return mean, ripple
+
+
+def _is_quiet(pair: ParallelAxes, plan: Plan) -> bool:
+    return isinstance(plan.discretization, FaceDiscretization) and is_relieved_helical(pair)
 
 
 def _modified(pair: ParallelAxes) -> bool:
@@ -136,7 +164,8 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
     if isinstance(made, FaceDiscretization):
-        part = max(HELICAL_SLICES * pair.overlap_ratio, SPUR_SLICES)
+        by_overlap = QUIET_SLICES if _is_quiet(pair, plan) else HELICAL_SLICES
+        part = max(by_overlap * pair.overlap_ratio, SPUR_SLICES)
         slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * known.added
     elif made.corrected:
         plane = np.outer(CORRECTION * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean)

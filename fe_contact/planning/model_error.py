@@ -54,6 +54,8 @@ HELICAL_OVERLAP = 0.5
 """Overlap ratio from which the constants of helical pairs hold alone. The pairs of the calibration had 0.5
 and more.
 """
+RELIEVED_OVERLAP = 0.9
+"""Least overlap ratio of the pairs that the constants of relieved helical pairs were set on."""
 HARMONIC_OVER_PEAK, FLAT_HARMONICS = 0.5, 3
 """Harmonics over the peak-to-peak of unmodified pairs, and number of the first harmonics that are equal,
 since the handover is a step. From there harmonic k falls with 1/k.
@@ -134,6 +136,14 @@ def helical_share(pair: ParallelAxes) -> float:
     A helix of next to no overlap leaves the errors of a spur pair.
     """
     return min(abs(pair.overlap_ratio) / HELICAL_OVERLAP, 1.0)
+
+
+def is_relieved_helical(pair: ParallelAxes) -> bool:
+    """Whether a pair is helical, solid, and relieved on both gears: its contact ends inside the flanks."""
+    gears = pair.pinion, pair.wheel
+    solid = not pair.internal and all(gear.web is None for gear in gears)
+    relieved = all(gear.modification.varies_along_profile for gear in gears)
+    return solid and relieved and abs(pair.overlap_ratio) >= RELIEVED_OVERLAP
 
 
 def point_error(

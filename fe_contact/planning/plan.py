@@ -131,7 +131,7 @@ class Plan:
     parts: tuple[str, ...]
     """Parts of the gears' bodies that the finite elements have, as in `ContactModel`."""
     level: str = "standard"
-    """"draft", "standard" or "fine": that of the meshes."""
+    """"draft", "medium", "standard" or "fine": that of the meshes."""
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""

@@ -10,13 +10,14 @@ from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.options import LEVELS, AnalysisOptions
+from fe_contact.options import LEVELS, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.expected_curves import (
     ExpectedCurves,
 )
 from fe_contact.planning.expected_error import ExpectedError, expected_error, percent
+from fe_contact.planning.model_error import is_relieved_helical
 from fe_contact.planning.plan import make_plan
 from fe_contact.types import FloatArray, Json
 
@@ -26,7 +27,7 @@ class MeshOption:
     """A mesh with its slices."""
 
     level: str
-    """"draft", "standard" or "fine"."""
+    """"draft", "medium", "standard" or "fine"."""
     slices: int
     """Number of slices of the face; 1 in the plane."""
     error: ExpectedError
@@ -67,13 +68,17 @@ class MeshChoice:
 
 
 def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
-    """Return the option of least effort whose error is expected to be within the tolerance.
+    """Return the option of least effort whose error is expected to be within the tolerance, prudently.
+
+    Prudent is what nine runs of ten keep, where runs scatter by a known amount: a mesh that misses is paid
+    for as well as the one after it. What is expected within the tolerance, but not prudently, comes next.
 
     Expected errors are parts of the size of each quantity that the tolerance counts by, and without what
     lasts, which no mesh mends. If there is none: where it is the plane that is beyond it, the one of least
     effort whose numerical error is within it; else the most exact one. Said in either case.
     """
-    within = [option for option in options if option.error.bought <= tolerance.relative]
+    within = [option for option in options if option.error.prudent <= tolerance.relative]
+    within = within or [option for option in options if option.error.bought <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
         return MeshChoice(best, True, f"expected error {best.error.text}")
@@ -124,7 +129,9 @@ def mesh_options(
     meshes = [option(level) for level in LEVELS]
     usual = make_plan(pair, load, options, model, "draft").discretization
     if isinstance(usual, FaceDiscretization):
-        meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
+        levels = MESHES if is_relieved_helical(pair) else LEVELS
+        meshes += [option(level) for level in levels if level not in LEVELS]
+        meshes += [option(level, n) for level in levels for n in FINER_SLICES]
     return meshes
 
 

@@ -13,7 +13,7 @@ from fe_contact.ste.metadata import SCHEMA_VERSION, content_hash
 from host.directories import cache_home
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.schemas import Case
-from model_studies.cached_file import cached_in, read_cached
+from model_studies.cached_file import keep_cached, read_cached
 from service.version import program_tag
 
 
@@ -36,11 +36,11 @@ class CachedTables:
 
     def table(self, case: Case) -> SteDatabase:
         """Return the table of a case; one that is computed is kept, unless points of it failed."""
-        return cached_in(
-            self.file(case),
-            SteDatabase.from_netcdf,
-            lambda: self.compute(case),
-            SteDatabase.to_netcdf,
-            DatabaseError,
-            keeps=lambda table: not table.n_failed,
-        )
+        file = self.file(case)
+        cached = read_cached(file, SteDatabase.from_netcdf, DatabaseError)
+        if cached is not None:
+            return cached
+        table = self.compute(case)
+        if not table.n_failed:
+            keep_cached(table, file, SteDatabase.to_netcdf)
+        return table

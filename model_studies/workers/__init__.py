@@ -5,21 +5,13 @@ the caller, whatever the number of workers, and results come in the order of the
 """
 
 from model_studies.workers.dask_cluster import ByDask, dask_workers
-from model_studies.workers.executor import (
-    ByExecutor,
-    InProcess,
-    OrHere,
-    RunCost,
-    Workers,
-    WorkersLost,
-    cluster_cached,
-    divided,
-    local_processes,
-    pays,
-    spent,
-    task_cpu_seconds,
-)
+from model_studies.workers.dispatch import divided, pays, spent
+from model_studies.workers.executor import ByExecutor, local_processes
+from model_studies.workers.fallback import OrHere
+from model_studies.workers.in_process import InProcess, Workers, WorkersLost, cluster_cached
 from model_studies.workers.remembering import Remembering
+from model_studies.workers.remote_task import task_cpu_seconds
+from model_studies.workers.run_cost import RunCost
 
 __all__ = [
     "ByDask",

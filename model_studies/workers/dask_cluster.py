@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from host.extras import require
-from model_studies.workers.executor import MAX_SHARED, Packed, RunCost, WorkersLost, do_task
+from model_studies.workers.in_process import WorkersLost
+from model_studies.workers.remote_task import MAX_SHARED, Packed, do_task
+from model_studies.workers.run_cost import RunCost
 
 if TYPE_CHECKING:
     from distributed import Client

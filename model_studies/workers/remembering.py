@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from model_studies.workers.content_digest import content_digest
-from model_studies.workers.executor import RunCost, Workers
+from model_studies.workers.in_process import Workers
+from model_studies.workers.run_cost import RunCost
 
 S = TypeVar("S")
 T = TypeVar("T")

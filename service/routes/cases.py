@@ -47,7 +47,7 @@ ENTRY = "lineofaction.gearbox.from_rexs.unit_answer:unit_of_rexs"
 
 
 class CaseInputs(BoundaryModel):
-    """A case."""
+    """The inputs that name one case."""
 
     case: Case = Field(description="The case, as in a case file")
 
@@ -128,7 +128,7 @@ def case_to_toml(body: CaseRequest) -> TomlBody:
 
 
 class SceneInputs(BoundaryModel):
-    """A scene."""
+    """The inputs that name one scene."""
 
     scene: SceneInput = Field(description="The scene, as in a scene file")
 

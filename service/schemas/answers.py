@@ -55,7 +55,7 @@ class Link(BaseModel):
 
 
 class Landing(BaseModel):
-    """The landing page."""
+    """The landing page of the service, with links to its parts."""
 
     title: str
     description: str
@@ -101,7 +101,7 @@ class ProcessSummary(BaseModel):
 
 
 class ProcessList(BaseModel):
-    """All processes."""
+    """The list of all processes of the service."""
 
     processes: list[ProcessSummary]
     links: list[Link]
@@ -245,7 +245,7 @@ class FaultBody(BaseModel):
 
 
 class ProblemBody(BaseModel):
-    """Problem details."""
+    """Problem details by RFC 9457, with the faults of the input."""
 
     type: str = Field(examples=["urn:lineofaction:problem:bad-input"])
     title: str = Field(examples=["The input cannot be used"])

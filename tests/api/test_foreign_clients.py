@@ -94,7 +94,7 @@ def run_by_generated_client(service: Service, generated: ModuleType, process: st
             return dict(content.attrs)
 
 
-def run_by_owslib(service: Service, process: str, inputs: Json) -> None:
+def check_run_by_owslib(service: Service, process: str, inputs: Json) -> None:
     """Run a process from submission to the address of its result."""
     owslib = Processes(f"{service.url}/v1/", headers=service.headers)
     assert process in [summary["id"] for summary in owslib.processes()]
@@ -123,7 +123,7 @@ def test_a_generated_client_reads_a_refusal(service: Service, generated: ModuleT
 @pytest.mark.drawn
 @pytest.mark.parametrize("process", INPUTS)
 def test_owslib_runs_a_process(service: Service, process: str) -> None:
-    run_by_owslib(service, process, INPUTS[process])
+    check_run_by_owslib(service, process, INPUTS[process])
 
 
 @pytest.fixture(scope="module")
@@ -142,4 +142,4 @@ def test_foreign_clients_get_what_is_computed(working: Service, generated: Modul
     attributes = run_by_generated_client(working, generated, process, inputs)
     study = stored_study(attributes)
     assert process == (("simulate" if "schema" in attributes else "analyze") if study is None else study.name)
-    run_by_owslib(working, process, inputs)
+    check_run_by_owslib(working, process, inputs)

@@ -166,17 +166,17 @@ def _without_surrogates(value: Any) -> Any:
 
 @pytest.mark.law
 def test_no_spoiled_body_is_a_defect(target: Target) -> None:
-    statuses_of(150, target, TARGETS)
+    check_answers(150, target, TARGETS)
 
 
 @pytest.mark.nightly
 def test_none_of_ten_thousand_is_a_defect(whole: Target) -> None:
-    statuses = statuses_of(10_000, whole, TARGETS | LIVE_TARGETS)
+    statuses = check_answers(10_000, whole, TARGETS | LIVE_TARGETS)
     Path("out").mkdir(exist_ok=True)
     Path("out/fuzzed_bodies.json").write_text(json.dumps(dict(sorted(statuses.items()))))
 
 
-def statuses_of(count: int, target: Target, targets: dict[str, Any]) -> Counter[int]:
+def check_answers(count: int, target: Target, targets: dict[str, Any]) -> Counter[int]:
     """Send so many bodies, check their answers and count these by status.
 
     Accepted are at least half as many as are nudged, and refused as 422 at least half as many as are spoiled.

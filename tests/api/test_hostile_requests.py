@@ -39,7 +39,7 @@ def http() -> Iterator[TestClient]:
         yield TestClient(app, raise_server_exceptions=False)
 
 
-def refused(answer: Response, *statuses: int) -> Any:
+def assert_refused(answer: Response, *statuses: int) -> Any:
     assert answer.status_code in statuses, answer.text[:300]
     assert answer.headers["content-type"] == "application/problem+json"
     return answer.json()
@@ -59,7 +59,7 @@ TOML = {
 
 @pytest.mark.parametrize("kind", TOML)
 def test_toml_that_costs_much_is_refused(http: TestClient, kind: str) -> None:
-    problem = refused(http.post("/v1/cases/from-toml", json={"toml": TOML[kind]}), 422)
+    problem = assert_refused(http.post("/v1/cases/from-toml", json={"toml": TOML[kind]}), 422)
     assert len(problem["errors"]) <= 50
     if "long" in kind:
         assert problem["errors"][0]["bound"] == "TOML with keys of at most 32 parts"
@@ -71,7 +71,7 @@ def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alon
     monkeypatch.setattr("service.app.capacity", lambda _workers: Capacity(1))
     app = create_app(Settings(data_directory=tmp_path), works=False)
     with TestClient(app) as http:
-        problem = refused(http.get("/v1/jobs"), 503)
+        problem = assert_refused(http.get("/v1/jobs"), 503)
         assert problem["type"] == "urn:lineofaction:problem:too-many-requests"
         assert http.get("/health").status_code == 200
     assert 'loa_problems_total{problem="too-many-requests"}' in app.state.metrics.text().decode()
@@ -87,7 +87,7 @@ def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read() -> None:
 
 def test_a_body_of_many_unknown_fields_gets_some_faults(http: TestClient) -> None:
     case = CASE | {f"field{number}": 0 for number in range(20_000)}
-    problem = refused(http.post("/v1/cases/outline", json={"inputs": {"case": case}}), 422)
+    problem = assert_refused(http.post("/v1/cases/outline", json={"inputs": {"case": case}}), 422)
     assert len(problem["errors"]) == 50
 
 
@@ -98,7 +98,7 @@ def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: 
 
     pair = CASE["pair"] | {name: CASE["pair"][name] | {field: 1e-300} for name in ("pinion", "wheel")}
     body = {"inputs": {"case": CASE | {"pair": pair}}}
-    problem = refused(http.post(f"/v1/processes/{process}/execution", json=body), 422)
+    problem = assert_refused(http.post(f"/v1/processes/{process}/execution", json=body), 422)
     assert f"pair.pinion.{field}" in [fault["field"] for fault in problem["errors"]]
 
 
@@ -113,7 +113,7 @@ def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: 
 )
 @pytest.mark.parametrize("path", ["/v1/processes/analyze/execution", QUERY])
 def test_json_that_is_deep_or_long_is_refused(http: TestClient, path: str, body: bytes) -> None:
-    refused(http.post(path, content=body, headers={"Content-Type": "application/json"}), 400, 413, 422)
+    assert_refused(http.post(path, content=body, headers={"Content-Type": "application/json"}), 400, 413, 422)
 
 
 CBOR = {
@@ -136,7 +136,7 @@ def test_cbor_that_announces_much_is_refused_without_room_for_it(http: TestClien
     answer = http.post(QUERY, content=CBOR[kind], headers={"Content-Type": "application/cbor"})
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    refused(answer, 422)
+    assert_refused(answer, 422)
     assert peak < 64e6
 
 
@@ -146,7 +146,9 @@ def test_a_packed_body_is_refused(http: TestClient, path: str) -> None:
     packed = gzip.compress(b"\0" * 1600, mtime=0)
     kind = "application/octet-stream" if path == QUERY else "application/json"
     content = packed[: len(packed) // 16 * 16]
-    refused(http.post(path, content=content, headers={"Content-Type": kind, "Content-Encoding": "gzip"}), 415)
+    assert_refused(
+        http.post(path, content=content, headers={"Content-Type": kind, "Content-Encoding": "gzip"}), 415
+    )
     assert http.post(QUERY, json={"position": [0], "deflection_um": [5]}).status_code == 200
 
 
@@ -171,18 +173,18 @@ def test_a_host_that_is_this_machine_is_answered(http: TestClient, host: str) ->
 def test_a_page_of_another_site_does_not_reach_a_service_without_keys(http: TestClient, host: str) -> None:
     for path in ("/v1/jobs", "/", "/health", "/v1/jobs/"):
         answer = http.get(path, headers={"Host": host}, follow_redirects=False)
-        refused(answer, 421)
+        assert_refused(answer, 421)
 
 
 def test_a_live_torque_that_is_next_to_nothing_is_refused(http: TestClient) -> None:
     """Its force is none (found by generated bodies)."""
-    problem = refused(http.post(f"/v1/databases/{KEY}/ste", json={"torque_n_m": [5e-324]}), 422)
+    problem = assert_refused(http.post(f"/v1/databases/{KEY}/ste", json={"torque_n_m": [5e-324]}), 422)
     assert problem["errors"][0]["field"] == "torque_n_m[0]"
 
 
 def test_a_parameter_that_a_body_does_not_need_is_checked_all_the_same(http: TestClient) -> None:
     body = {"position": [0.0], "deflection_um": [5.0]}
-    problem = refused(http.post(QUERY, json=body, params={"columns": "a" * 101}), 422)
+    problem = assert_refused(http.post(QUERY, json=body, params={"columns": "a" * 101}), 422)
     assert problem["errors"][0]["field"] == "columns"
 
 
@@ -209,7 +211,7 @@ def test_what_a_form_of_another_site_can_send_starts_nothing(http: TestClient, k
     body = json.dumps({"inputs": {"case": CASE}})
     before = http.get("/v1/jobs").json()["jobs"]
     answer = http.post("/v1/processes/analyze/execution", content=body, headers={"Content-Type": kind})
-    refused(answer, 415)
+    assert_refused(answer, 415)
     assert http.get("/v1/jobs").json()["jobs"] == before
 
 
@@ -219,11 +221,13 @@ def test_no_file_of_the_service_is_read_for_a_caller(http: TestClient) -> None:
         "database_file": "/etc/passwd"
     }
     scene = SCENE | {"meshes": [by_file]}
-    problem = refused(http.post("/v1/processes/simulate/execution", json={"inputs": {"scene": scene}}), 422)
+    problem = assert_refused(
+        http.post("/v1/processes/simulate/execution", json={"inputs": {"scene": scene}}), 422
+    )
     assert "root:" not in json.dumps(problem)
     assert any("database_file" in fault["field"] for fault in problem["errors"])
     for name in ("..%2f..%2f..%2fetc%2fpasswd", "%2e%2e/app.py", "../app.py", "static/../files.py"):
-        refused(http.get(f"/page/{name}"), 404)
+        assert_refused(http.get(f"/page/{name}"), 404)
 
 
 @pytest.mark.parametrize(

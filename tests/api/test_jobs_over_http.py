@@ -27,7 +27,7 @@ def execute(client: TestClient, **wish: Any) -> Response:
     return client.post(EXECUTION, json={"inputs": {"wish": wish}})
 
 
-def problem(answer: Response, status: int) -> dict[str, Any]:
+def assert_problem(answer: Response, status: int) -> dict[str, Any]:
     assert answer.status_code == status, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     body: dict[str, Any] = answer.json()
@@ -43,7 +43,7 @@ def test_a_full_queue_answers_429_with_a_time_to_come_back(client: TestClient) -
     refused = [answer for answer in answers if answer.status_code != 201]
     assert refused
     for answer in refused:
-        assert problem(answer, 429)["type"] == "urn:lineofaction:problem:queue-full"
+        assert assert_problem(answer, 429)["type"] == "urn:lineofaction:problem:queue-full"
         assert answer.headers["retry-after"] == "10"
     for answer in answers:
         if answer.status_code == 201:
@@ -51,13 +51,15 @@ def test_a_full_queue_answers_429_with_a_time_to_come_back(client: TestClient) -
 
 
 def test_a_body_beyond_the_limit_answers_413(client: TestClient) -> None:
-    assert problem(execute(client, text="x" * 6000), 413)["type"] == "urn:lineofaction:problem:too-large"
+    assert (
+        assert_problem(execute(client, text="x" * 6000), 413)["type"] == "urn:lineofaction:problem:too-large"
+    )
 
 
 def test_a_body_that_does_not_tell_its_length_is_counted(client: TestClient) -> None:
     pieces: Callable[[], Iterator[bytes]] = lambda: (b"x" * 1000 for _ in range(100))  # noqa: E731
     answer = client.post(EXECUTION, content=pieces(), headers={"Content-Type": "application/json"})
-    problem(answer, 413)
+    assert_problem(answer, 413)
 
 
 @pytest.mark.parametrize(
@@ -82,14 +84,14 @@ def test_a_body_that_does_not_tell_its_length_is_counted(client: TestClient) -> 
 )
 def test_a_body_that_cannot_be_used_is_one_fault_by_name(client: TestClient, text: str, field: str) -> None:
     answer = client.post(EXECUTION, content=text, headers={"Content-Type": "application/json"})
-    (fault,) = problem(answer, 422)["errors"]
+    (fault,) = assert_problem(answer, 422)["errors"]
     assert fault["field"] == field
     assert fault["bound"]
 
 
 def test_bytes_that_are_no_text_are_a_problem_too(client: TestClient) -> None:
     answer = client.post(EXECUTION, content=b"\xff\xfe\x00", headers={"Content-Type": "application/json"})
-    problem(answer, 400)
+    assert_problem(answer, 400)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +108,7 @@ def test_bytes_that_are_no_text_are_a_problem_too(client: TestClient) -> None:
 def test_every_refusal_is_a_problem(
     client: TestClient, method: str, path: str, status: int, kind: str
 ) -> None:
-    assert problem(client.request(method, path), status)["type"] == kind
+    assert assert_problem(client.request(method, path), status)["type"] == kind
 
 
 def test_an_unknown_exception_becomes_a_reference(
@@ -119,7 +121,7 @@ def test_an_unknown_exception_becomes_a_reference(
 
     monkeypatch.setattr(context.submissions, "find", explode)
     answer = client.get("/v1/jobs/any")
-    body = problem(answer, 500)
+    body = assert_problem(answer, 500)
     assert SECRET not in answer.text
     assert body["reference"] == answer.headers["x-request-id"]
     assert body["reference"] in body["detail"]
@@ -128,4 +130,4 @@ def test_an_unknown_exception_becomes_a_reference(
 def test_a_stopped_scheduler_is_not_ready(tmp_path: Path) -> None:
     app = create_app(Settings(data_directory=tmp_path), REGISTRY)
     client = TestClient(app)  # not entered: nothing is started
-    problem(client.get("/ready"), 503)
+    assert_problem(client.get("/ready"), 503)

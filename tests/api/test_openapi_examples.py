@@ -66,7 +66,7 @@ def validator(schema: str) -> Any:
     return jsonschema_rs.validator_for({"components": DESCRIPTION["components"], **json.loads(schema)})
 
 
-def conforms(example: Any, schema: dict[str, Any]) -> None:
+def assert_conforms(example: Any, schema: dict[str, Any]) -> None:
     validator(json.dumps(schema)).validate(example)
 
 
@@ -79,7 +79,7 @@ def test_every_reference_leads_somewhere() -> None:
 
 @pytest.mark.parametrize(("path", "kind", "body"), SENT, ids=[f"{path} {kind}" for path, kind, _ in SENT])
 def test_a_body_to_send_has_an_example_of_its_schema(path: str, kind: str, body: dict[str, Any]) -> None:
-    conforms(body["example"], body["schema"])
+    assert_conforms(body["example"], body["schema"])
 
 
 @pytest.mark.law
@@ -92,7 +92,7 @@ def test_every_answer_has_an_example_of_its_schema() -> None:
         )
         assert shown or kind == "text/plain", f"{method} {path} {status} {kind}"
         for example in shown:
-            conforms(example, body.get("schema", {}))
+            assert_conforms(example, body.get("schema", {}))
             if kind == "application/problem+json":
                 assert example["status"] == int(status)
 
@@ -101,7 +101,7 @@ def test_every_field_has_examples_of_its_schema() -> None:
     examples = [(field, example) for field in schemas(DESCRIPTION) for example in field.get("examples", [])]
     assert len(examples) > 400
     fields, told = ({str(n): pair[part] for n, pair in enumerate(examples)} for part in (0, 1))
-    conforms(told, {"properties": fields})
+    assert_conforms(told, {"properties": fields})
 
 
 def test_every_array_says_what_its_items_are() -> None:

@@ -53,7 +53,7 @@ def named(path: str, names: dict[str, str] = NAMES) -> str:
     return path
 
 
-def is_problem(answer: Any, *statuses: int) -> None:
+def assert_problem(answer: Any, *statuses: int) -> None:
     assert answer.status_code in statuses, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     assert set(answer.json()) - {"reference"} == {"type", "title", "status", "detail", "errors"}
@@ -70,7 +70,7 @@ def test_a_body_of_another_type_is_told_the_header_to_send(client: TestClient, p
     answer = client.post(
         named(path), content=b'{"inputs": {}}', headers={"Content-Type": sent} if sent else {}
     )
-    is_problem(answer, 415)
+    assert_problem(answer, 415)
     assert "Content-Type: application/json" in answer.json()["detail"]
     assert "application/json" in answer.headers["accept-post"]
 
@@ -83,7 +83,7 @@ def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: 
     if path.startswith(DRAFTS) and wrong in OF_FIELDS:
         assert answer.status_code == 200 and answer.json()["faults"]
         return
-    is_problem(answer, *((413,) if wrong == "too long" else (400, 404, 415, 422)))
+    assert_problem(answer, *((413,) if wrong == "too long" else (400, 404, 415, 422)))
     assert str(answer.status_code) in DOCUMENT["paths"][path]["post"]["responses"]
 
 
@@ -91,16 +91,16 @@ def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: 
 def test_what_does_not_exist_is_a_problem(client: TestClient, path: str) -> None:
     for method in [method for method, known in ROUTES if known == path and method != "POST"]:
         body = {"json": BODIES[path]} if method == "PATCH" else {}
-        is_problem(client.request(method, named(path), **body), 404)
+        assert_problem(client.request(method, named(path), **body), 404)
         odd = named(path, dict.fromkeys(NAMES, "%00%2e%2e%ff"))
-        is_problem(client.request(method, odd, **body), 404, 422)
+        assert_problem(client.request(method, odd, **body), 404, 422)
 
 
 @pytest.mark.parametrize("path", sorted({path for _, path in ROUTES}))
 def test_a_method_that_is_none_is_a_problem_and_says_which_are(client: TestClient, path: str) -> None:
     known = {method for method, other in ROUTES if other == path}
     answer = client.request("PUT", named(path))
-    is_problem(answer, 405)
+    assert_problem(answer, 405)
     assert known <= {method.strip() for method in answer.headers["allow"].split(",")}
 
 

@@ -186,7 +186,7 @@ def test_the_answer_is_of_the_type_preferred_else_that_of_the_body(
     assert ask(client, body, CBOR, accept).headers["content-type"] == kind
 
 
-def problem(answer: Response, status: int) -> dict[str, Any]:
+def assert_problem(answer: Response, status: int) -> dict[str, Any]:
     assert (answer.status_code, answer.headers["content-type"]) == (status, "application/problem+json")
     found: dict[str, Any] = answer.json()
     return found
@@ -194,13 +194,13 @@ def problem(answer: Response, status: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("kind", ["", "text/plain", "application/xml", "multipart/form-data", "json"])
 def test_other_bodies_are_415(client: TestClient, kind: str) -> None:
-    found = problem(ask(client, b'{"position": [0], "deflection_um": [0]}', kind), 415)
+    found = assert_problem(ask(client, b'{"position": [0], "deflection_um": [0]}', kind), 415)
     assert all(known in found["detail"] for known in (JSON, CBOR, RAW))
 
 
 @pytest.mark.parametrize("accept", ["text/html", "image/*", f"{JSON};q=0", "*/*;q=0"])
 def test_other_answers_are_406(client: TestClient, accept: str) -> None:
-    problem(ask(client, b'{"position": [0], "deflection_um": [0]}', JSON, accept), 406)
+    assert_problem(ask(client, b'{"position": [0], "deflection_um": [0]}', JSON, accept), 406)
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf"), 1.1e9])
@@ -212,7 +212,7 @@ def test_a_value_that_is_no_number_or_too_large_is_named(
     given = {column: [0.0] * 5 for column in LIMITS}
     given[name][3] = value
     answer = ask(client, *BODIES[sent](given), columns=",".join(given))
-    (fault,) = problem(answer, 422)["errors"]
+    (fault,) = assert_problem(answer, 422)["errors"]
     assert fault["field"] == f"{name}[3]"
     assert fault["bound"].endswith(f"from {-LIMITS[name]:g} to {LIMITS[name]:g}")
 
@@ -220,7 +220,7 @@ def test_a_value_that_is_no_number_or_too_large_is_named(
 @pytest.mark.parametrize("sent", BODIES)
 def test_too_many_points_are_one_clear_error(client: TestClient, sent: str) -> None:
     given = dict.fromkeys(("position", "deflection_um"), [0] * (MAX_POINTS + 1))
-    (fault,) = problem(ask(client, *BODIES[sent](given)), 422)["errors"][:1]
+    (fault,) = assert_problem(ask(client, *BODIES[sent](given)), 422)["errors"][:1]
     assert (fault["field"], fault["bound"]) == ("position", f"a list of at most {MAX_POINTS}")
 
 
@@ -265,7 +265,7 @@ def test_a_body_that_is_no_query_is_refused_by_name(
     if field == "":  # one position serves all misalignments
         assert len(answer.json()["force_n"]) == 2
         return
-    assert [fault["field"] for fault in problem(answer, 422)["errors"]] == [field]
+    assert [fault["field"] for fault in assert_problem(answer, 422)["errors"]] == [field]
 
 
 @pytest.mark.parametrize(
@@ -273,19 +273,19 @@ def test_a_body_that_is_no_query_is_refused_by_name(
 )
 def test_columns_that_make_no_query_are_refused(client: TestClient, names: str) -> None:
     body = struct.pack("<6d", *range(6)) if names else struct.pack("<d", 1.0)
-    (fault,) = problem(ask(client, body, RAW, columns=names), 422)["errors"]
+    (fault,) = assert_problem(ask(client, body, RAW, columns=names), 422)["errors"]
     assert fault["field"] == "columns"
 
 
 @pytest.mark.parametrize("key", ["ABC", "0" * 63, "0" * 65, "0" * 64 + "%0A"])
 def test_a_key_that_is_none_is_refused(client: TestClient, key: str) -> None:
     answer = client.post(f"/v1/databases/{key}/query", json={"position": [0.0], "deflection_um": [0.0]})
-    assert [fault["field"] for fault in problem(answer, 422)["errors"]] == ["key"]
+    assert [fault["field"] for fault in assert_problem(answer, 422)["errors"]] == ["key"]
 
 
 def test_an_unknown_table_is_not_found(client: TestClient) -> None:
     answer = client.post(f"/v1/databases/{'0' * 64}/query", json={"position": [0.0], "deflection_um": [0.0]})
-    assert problem(answer, 404)["type"] == "urn:lineofaction:problem:not-found"
+    assert assert_problem(answer, 404)["type"] == "urn:lineofaction:problem:not-found"
 
 
 def test_only_the_query_itself_passes_the_router_by(client: TestClient) -> None:

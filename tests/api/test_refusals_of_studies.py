@@ -228,7 +228,7 @@ def test_a_question_is_refused_by_its_field_each_way(
     """Over HTTP in a document of its own type and before there is a job; the others compute nothing."""
     name, subject = subject_of(study)
     monkeypatch.setattr(STUDIES[study].run, "compute", None)
-    served.refuses(study, {name: subject, **inputs}, field)
+    served.assert_refused(study, {name: subject, **inputs}, field)
     answer = served.http.post(f"/v1/processes/{study}/execution", json={"inputs": {name: subject, **inputs}})
     assert (answer.status_code, answer.headers["content-type"]) == (422, "application/problem+json")
     problem = answer.json()
@@ -255,13 +255,13 @@ def test_a_request_without_its_subject_or_with_an_odd_one_is_refused(served: Ser
     name, subject = subject_of(study)
     inputs = {key: value for key, value in small_inputs(study).items() if key != name}
     inputs |= {"run": ABSENT} if study == "listen" else {}
-    served.refuses(study, inputs, name)
-    served.refuses(study, {name: subject, **inputs, "odd": 1}, "odd")
+    served.assert_refused(study, inputs, name)
+    served.assert_refused(study, {name: subject, **inputs, "odd": 1}, "odd")
     if name == "case":
         wrong, field = {"case": subject | {"load": {"torque_n_m": [-1.0]}}}, "load.torque_n_m[0]"
     else:
         wrong, field = {"scene": subject | {"shafts": []}}, "shafts"
-    served.refuses(study, inputs | wrong, field)
+    served.assert_refused(study, inputs | wrong, field)
     answer = served.http.post(f"/v1/processes/{study}/execution", json={"inputs": inputs | wrong})
     assert [fault["field"] for fault in answer.json()["errors"]] == [field]  # as in the file of the subject
 
@@ -278,11 +278,13 @@ def test_a_case_beside_a_scene_is_refused(served: Served, study: str) -> None:
 def test_gears_too_narrow_for_tolerances_are_refused(served: Served) -> None:
     case = subject_of("scatter")[1]
     narrow = case["pair"]["wheel"] | {"face_width_mm": 3.0}
-    served.refuses("scatter", {"case": case | {"pair": case["pair"] | {"wheel": narrow}}}, "face_width")
+    served.assert_refused(
+        "scatter", {"case": case | {"pair": case["pair"] | {"wheel": narrow}}}, "face_width"
+    )
 
 
 def test_a_sample_too_large_for_a_job_is_refused_by_the_service_alone(served: Served) -> None:
-    served.refuses("scatter", {"case": subject_of("scatter")[1], "samples": 1_000_000}, "samples")
+    served.assert_refused("scatter", {"case": subject_of("scatter")[1], "samples": 1_000_000}, "samples")
 
 
 # What the text of an option, or of a file, must be.

@@ -138,7 +138,7 @@ def _counted() -> Iterator[None]:
         Path("out/generated_bodies.json").write_text(json.dumps(counts, indent=1))
 
 
-def checked(case: schemathesis.Case) -> None:
+def check_described(case: schemathesis.Case) -> None:
     """Send a request and check the answer by everything the document says."""
     # what a schema allows may still be no feasible pair: a refusal of it is right
     answer = case.call_and_validate(
@@ -163,12 +163,12 @@ def kind_of(fault: dict[str, Any]) -> str:
 def test_a_request_is_answered_as_documented(operation: Operation) -> None:
     @as_long_as(max(EACH * 4 // 5, FEW))
     @given(operation.as_strategy(hooks=right))
-    def answered(case: schemathesis.Case) -> None:
+    def check_answer(case: schemathesis.Case) -> None:
         if case.headers:  # drawn twice, it would be the name of another request
             case.headers.pop("Idempotency-Key", None)
-        checked(case)
+        check_described(case)
 
-    answered()
+    check_answer()
     asked.add(operation.label)
 
 
@@ -177,10 +177,10 @@ def test_a_request_is_answered_as_documented(operation: Operation) -> None:
 def test_a_body_that_breaks_its_schema_is_answered_as_documented(operation: Operation) -> None:
     @as_long_as(max(-(-EACH // 5), FEW // 5))
     @given(operation.as_strategy(generation_mode=GenerationMode.NEGATIVE))
-    def answered(case: schemathesis.Case) -> None:
-        checked(case)
+    def check_answer(case: schemathesis.Case) -> None:
+        check_described(case)
 
-    answered()
+    check_answer()
 
 
 EXECUTIONS = [f"POST /v1/processes/{process}/execution" for process in default_registry()]
@@ -211,7 +211,7 @@ def test_a_body_drawn_from_the_description_alone_is_answered_as_documented(opera
 
     @as_long_as(max(EACH // 5, FEW // 5))
     @given(operation.as_strategy())
-    def answered(case: schemathesis.Case) -> None:
-        checked(case)
+    def check_answer(case: schemathesis.Case) -> None:
+        check_described(case)
 
-    answered()
+    check_answer()

@@ -160,6 +160,7 @@ def test_none_outlives_a_supervisor_that_is_killed(server: tuple[subprocess.Pope
     process.kill()
     process.wait()
     until(lambda: not any(lives(pid) for pid in family))
+    assert len(family) > NUMBER
 
 
 def test_processes_that_die_at_once_are_not_started_again_and_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,7 +44,7 @@ def client(port: int) -> httpx2.Client:
 
 
 @contextmanager
-def stalled(port: int, key: str, number: int, held: int, status: bytes) -> Iterator[None]:
+def check_stalled(port: int, key: str, number: int, held: int, status: bytes) -> Iterator[None]:
     """Begin so many requests; wait until so many of them are held, and the others refused with a status."""
     with ExitStack() as stack:
         connections = [stack.enter_context(begun(port, key)) for _ in range(number)]
@@ -63,7 +63,11 @@ def test_a_key_that_ends_no_body_leaves_the_others_theirs(settings: Settings) ->
     file = KeyFile(settings.key_file)
     slow, other = file.add("slow"), {"Authorization": f"Bearer {file.add('other')}"}
     app = create_app(settings, REGISTRY, works=False)
-    with served(app) as port, stalled(port, slow, ATTACKERS, Capacity().share, b"429"), client(port) as http:
+    with (
+        served(app) as port,
+        check_stalled(port, slow, ATTACKERS, Capacity().share, b"429"),
+        client(port) as http,
+    ):
         assert http.get("/v1/jobs", headers=other).status_code == 200
         assert http.post(EXECUTION, json=BODY, headers=other).status_code == 201
         mine = {"Authorization": f"Bearer {slow}"}
@@ -75,7 +79,7 @@ def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings:
     """All callers are one; what carries no body is answered."""
     app = create_app(settings, REGISTRY, works=False)
     maximum = Capacity().requests
-    with served(app) as port, stalled(port, "none", ATTACKERS, maximum, b"503"), client(port) as http:
+    with served(app) as port, check_stalled(port, "none", ATTACKERS, maximum, b"503"), client(port) as http:
         assert http.get("/v1/jobs").status_code == 200
         refused = http.post(EXECUTION, json=BODY)
         assert refused.status_code == 503 and "bodies under way" in refused.json()["detail"]
@@ -84,7 +88,7 @@ def test_bodies_that_do_not_end_take_no_place_of_requests_without_keys(settings:
 def test_a_limit_of_the_key_takes_the_place_of_the_share(settings: Settings) -> None:
     file = KeyFile(settings.key_file)
     app, key = create_app(settings, REGISTRY, works=False), file.add("few", connections=3)
-    with served(app) as port, stalled(port, key, 5, 3, b"429"):
+    with served(app) as port, check_stalled(port, key, 5, 3, b"429"):
         pass
 
 

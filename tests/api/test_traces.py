@@ -244,7 +244,8 @@ def test_nothing_of_opentelemetry_is_loaded_by_the_client_and_its_sdk_by_nobody_
         "assert not begun_span('queue', '', 0.0).is_recording()\n"
         "assert not [name for name in sys.modules if name.startswith('opentelemetry.sdk')]\n"
     )
-    subprocess.run([sys.executable, "-c", script], check=True, cwd=Path(__file__).parents[2])
+    done = subprocess.run([sys.executable, "-c", script], check=False, cwd=Path(__file__).parents[2])
+    assert done.returncode == 0
 
 
 def test_without_the_extra_the_log_says_what_to_install(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -121,7 +121,7 @@ def test_every_depth_and_length_has_a_slider_and_acts_along_what_it_is_declared_
             slider = page.locator(f"#live-{gear}-{depth.field}")
             assert slider.is_disabled() == (Direction.FACE in depth.what.along), depth.field
             signed = float(slider.get_attribute("min") or "nan") < 0.0
-            assert signed == (depth.what.kind is Kind.SLOPE), depth.field
+            assert signed == (depth.what.kind is Kind.DEVIATION), depth.field
 
 
 def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit: Visit) -> None:

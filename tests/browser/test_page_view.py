@@ -43,6 +43,8 @@ def test_a_small_window_has_room_for_the_picture(
     page.goto(address)
     page.wait_for_selector(f"{CANVAS}[data-frames]", state="attached")
     until(lambda: (page.locator(CANVAS).bounding_box() or {"height": 0.0})["height"] > 120.0)
+    box = page.locator(CANVAS).bounding_box()
+    assert box is not None and box["height"] > 120.0
     page.close()
 
 

@@ -30,7 +30,7 @@ FIGURES = figures(FlankModification)
 EVERY = pytest.mark.parametrize("figure", FIGURES, ids=[figure.name for figure in FIGURES])
 DEPTHS = pytest.mark.parametrize(
     "figure",
-    [figure for figure in FIGURES if figure.what.kind in (Kind.AMOUNT, Kind.SLOPE)],
+    [figure for figure in FIGURES if figure.what.kind in (Kind.AMOUNT, Kind.DEVIATION)],
     ids=lambda figure: figure.name,
 )
 
@@ -241,7 +241,7 @@ def test_design_variables_and_scatter_are_depths_and_lengths() -> None:
     free = [each.field for each in FIGURES if each.name in QUANTITIES]
     assert list(GearVariablesInput.model_fields) == list(GearScatterInput.model_fields) == free
     kinds = {each.what.kind for each in FIGURES if each.name in QUANTITIES}
-    assert kinds == {Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH}
+    assert kinds == {Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH}
     assert set(ACROSS_FACE) == {
         each.name for each in FIGURES if each.name in QUANTITIES and Direction.FACE in each.what.along
     }

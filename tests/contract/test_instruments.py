@@ -114,7 +114,7 @@ def dangling(tree: Path) -> set[str]:
     return {*links.dangling_links(tree), *links.dangling_imports(tree / instruments.PAGE)}
 
 
-def works_without(name: str, folder: Path) -> None:
+def check_work_without(name: str, folder: Path) -> None:
     tree = copy_of_tree(folder)
     gone = instruments.retire([name], tree)
     assert dangling(tree) <= dangling(ROOT)
@@ -133,10 +133,10 @@ def works_without(name: str, folder: Path) -> None:
 def test_the_tree_without_an_instrument_works(tmp_path: Path) -> None:
     """The one whose number the files of the tree draw: another with every change."""
     drawn = sum(file.stat().st_size for house in structure.HOUSES for file in structure.files_of(house))
-    works_without(NAMES[drawn % len(NAMES)], tmp_path)
+    check_work_without(NAMES[drawn % len(NAMES)], tmp_path)
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("name", NAMES)
 def test_the_tree_without_any_instrument_works(name: str, tmp_path: Path) -> None:
-    works_without(name, tmp_path)
+    check_work_without(name, tmp_path)

@@ -20,8 +20,6 @@ LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
 MAX_PRIVATE = 60
 """Imports of names with an underscore by tests, at most: the number may only fall."""
-MAX_SECOND_HEADS = 5
-"""Comments of their own between the definitions of the product's files, at most: the number may only fall."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
@@ -142,7 +140,7 @@ def test_a_file_has_one_head() -> None:
         for file in structure.files_of(house)
     }
     heads = [f"{file.relative_to(ROOT)}: {head}" for file, found in files.items() for head in found]
-    assert len(heads) <= MAX_SECOND_HEADS, heads
+    assert heads == []
 
 
 def test_constants_stand_above_the_first_definition() -> None:

@@ -56,7 +56,7 @@ def changed_scene(example: Table, changes: Mapping[str, Any] = NONE, tables: Tab
 
 
 @contextmanager
-def refused(field: str, words: str = "") -> Iterator[list[Fault]]:
+def assert_refused(field: str, words: str = "") -> Iterator[list[Fault]]:
     """Check that an input is refused by one fault of a field, whose bound has these words; give it."""
     faults: list[Fault] = []
     with pytest.raises(BadInput) as caught:
@@ -68,5 +68,5 @@ def refused(field: str, words: str = "") -> Iterator[list[Fault]]:
 
 def check_refused(example: Table, field: str, value: Any, tables: Tables = NONE) -> None:
     """Check that a value at a field, or changes elsewhere, are one fault of that field."""
-    with refused(field):
+    with assert_refused(field):
         changed_scene(example, value if isinstance(value, By) else {field: value}, tables)

@@ -63,7 +63,7 @@ class Served:
             known = self.http.get(reference["href"], headers=again)
             assert (known.status_code, known.content) == (304, b"")
 
-    def refuses(self, process: str, inputs: dict[str, Any], field: str) -> None:
+    def assert_refused(self, process: str, inputs: dict[str, Any], field: str) -> None:
         jobs = len(self.http.get("/v1/jobs").json()["jobs"])
         with pytest.raises(BadInput) as caught:
             self.client.submit(process, inputs)

@@ -32,8 +32,9 @@ from model_studies.workers import (
     RunCost,
     Workers,
     WorkersLost,
+    cluster_cached,
     dask_cluster,
-    executor,
+    dispatch,
 )
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
@@ -111,7 +112,7 @@ def cluster() -> Iterator[Cluster]:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.01)
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -286,6 +287,6 @@ def divided(shared: float, item: float) -> float:
     return shared / item
 
 
-@executor.cluster_cached
+@cluster_cached
 def kept_quotient(shared: float, item: float) -> float:
     return shared / item

@@ -18,8 +18,7 @@ from study_runs import unmeasured
 
 import lineofaction as loa
 from fe_contact.analysis.pairs import contact_lines
-from model_studies.workers import ByDask, InProcess, RunCost, Workers, local_processes
-from model_studies.workers import executor as executors
+from model_studies.workers import ByDask, InProcess, RunCost, Workers, dispatch, local_processes
 
 Figures = dict[str, Any]
 CASES = {"whole": 1.0, "half": 0.5, "less": 0.25}
@@ -78,7 +77,7 @@ def small_tasks() -> Iterator[pytest.MonkeyPatch]:
     """Divide small questions as large ones are."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(contact_lines, "TASK_SECONDS", 0.0005)
-        patch.setattr(executors, "START_SECONDS", 0.0)
+        patch.setattr(dispatch, "START_SECONDS", 0.0)
         yield patch
 
 

@@ -12,8 +12,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, RingGear, corner_contact, tooth_profile
+from fe_contact.involute import involute_function
 from fe_contact.types import FloatArray
 
 RACKS = st.fixed_dictionaries(

@@ -67,7 +67,7 @@ def internal(numbers: dict[str, Any], rim: float) -> RingGear:
         raise
 
 
-def good_mesh(gear: Gear | RingGear, seat_radius: float) -> Any:
+def check_mesh(gear: Gear | RingGear, seat_radius: float) -> Any:
     mesh = mesh_gear(gear)
     for part in (mesh.sector, mesh.hub):
         if part is not None:
@@ -78,7 +78,7 @@ def good_mesh(gear: Gear | RingGear, seat_radius: float) -> Any:
     return mesh
 
 
-def good_section(gear: Gear | RingGear, recipe: SectorRecipe) -> Any:
+def check_section(gear: Gear | RingGear, recipe: SectorRecipe) -> Any:
     section = quad_sector(gear, recipe)
     quality = quad_quality(section.points, section.grid.quads)
     assert quality.angle.min() >= np.radians(15.0)
@@ -93,7 +93,7 @@ def good_section(gear: Gear | RingGear, recipe: SectorRecipe) -> Any:
 )
 def test_mesh_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float) -> None:
     gear = external(numbers, bore)
-    mesh = good_mesh(gear, 0.5 * gear.bore_diameter)
+    mesh = check_mesh(gear, 0.5 * gear.bore_diameter)
     assert mesh.sector.s[0] <= mesh.sector.s[-1] - 0.5 * gear.normal_module
 
 
@@ -107,7 +107,7 @@ def test_mesh_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float) -> 
 def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, level: str) -> None:
     gear = external(numbers, bore)
     recipe = getattr(SectorRecipe, level)(gear)
-    section = good_section(gear, recipe)
+    section = check_section(gear, recipe)
     assert section.s[-1] - section.s[0] > 0.5 * gear.normal_module
     sector = swept_sector(section.grid, gear.face_width, recipe)
     assert len(sector.left) == len(sector.right) > 0
@@ -123,8 +123,8 @@ def test_sector_of_a_random_gear_is_good(numbers: dict[str, Any], bore: float, l
 )
 def test_mesh_of_a_random_ring_gear_is_good(numbers: dict[str, Any], rim: float, level: str) -> None:
     gear = internal(numbers, rim)
-    good_mesh(gear, gear.seat_radius)
-    good_section(gear, getattr(SectorRecipe, level)(gear))
+    check_mesh(gear, gear.seat_radius)
+    check_section(gear, getattr(SectorRecipe, level)(gear))
 
 
 def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor() -> None:
@@ -132,4 +132,4 @@ def test_a_root_land_too_short_for_an_element_is_part_of_its_neighbor() -> None:
     numbers = {"teeth": 30, "normal_module": 31.25e-3, "face_width": 187.5e-3, "cutter_teeth": 13}
     numbers |= {"normal_pressure_angle": 0.4526947747360292, "root_radius_coefficient": 0.00390625}
     gear = RingGear(**numbers, rim_diameter=1.078125)
-    good_mesh(gear, gear.seat_radius)
+    check_mesh(gear, gear.seat_radius)

@@ -12,7 +12,6 @@ import pytest
 
 from fe_contact.analysis.analyze import analyze
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.backlash import base_circle_backlash
 from fe_contact.geometry.printed_data import (
@@ -22,6 +21,7 @@ from fe_contact.geometry.printed_data import (
     PROFILE_SHIFT,
     backlash_rounding,
 )
+from fe_contact.involute import involute_function
 from lineofaction.gearbox.convert.case import analysis_options, gear_pair, table_axes
 from lineofaction.gearbox.schemas import Case, validated
 
@@ -153,16 +153,16 @@ def nominal_backlash(pair: ParallelAxes, m_n: float, beta: float, a: float, x_1:
 def test_the_printed_pair_that_jams_most_gets_its_table() -> None:
     row = min(PAIRS, key=jams_most)
     assert not float(row["helix_angle_deg"])
-    gets_its_table(row, "plane_strain")
+    check_table(row, "plane_strain")
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("row", PAIRS, ids=names)
 def test_a_printed_pair_gets_its_table(row: Row) -> None:
-    gets_its_table(row, "auto")
+    check_table(row, "auto")
 
 
-def gets_its_table(row: Row, model: str) -> None:
+def check_table(row: Row, model: str) -> None:
     case = printed_case(row, model)
     pair = gear_pair(case)
     table = analyze(pair, table_axes(case), analysis_options(case))

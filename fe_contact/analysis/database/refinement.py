@@ -13,7 +13,7 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.analysis.request.model_choice import Decision, next_model
-from fe_contact.options import LEVELS
+from fe_contact.options import BETWEEN, LEVELS
 from fe_contact.planning.discretization import (
     FINER_SLICES,
     SLICE_ORDER,
@@ -38,7 +38,10 @@ SMALL = 0.3
 squares.
 """
 
-MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
+MESH_STEP = {
+    "plane": {"draft": 0.45, "medium": 0.6, "standard": 0.2},
+    "face": {"draft": 0.4, "medium": 0.55, "standard": 0.45},
+}
 """Error of the next level over that of a level, from the pairs of docs/lab/index.md, "Constants"."""
 
 CLOSER = 0.25
@@ -116,7 +119,7 @@ class _Resolution:
     def _next_level(self, *, across_face: bool) -> _Resolution | None:
         if self.level == LEVELS[-1] or not self.level_left:
             return None
-        higher = LEVELS[LEVELS.index(self.level) + 1]
+        higher = "standard" if self.level == BETWEEN else LEVELS[LEVELS.index(self.level) + 1]
         part = MESH_STEP["face" if across_face else "plane"][self.level]
         finer = self._with(_MESH, part, f"mesh {self.level} -> {higher}")
         finer = replace(finer, level=higher, level_left=self.level_left - 1)
@@ -153,7 +156,9 @@ class _Resolution:
 def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
     """Choose what to refine, of the sources that dominate, to keep the tolerance; or say why no pass pays.
 
-    A pass goes up one mesh level at most, since the level between costs a third of the finer one.
+    A pass goes up one mesh level at most, since the level between costs a third of the finer one. Where it
+    is known how runs scatter, no pass begins that is expected to miss the tolerance and to lower the errors
+    by less than it leaves of them.
     `shares` (6 or more, ...) are the errors by source `AT_NODES` in parts of what is allowed, of every
     quantity at every node, without those that no run lowers; more sources are not looked at.
     """
@@ -178,6 +183,11 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
         f"{source_words(AT_NODES[source])} takes {engineering(begun.sources[source], 2)} of the tolerance"
     )
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
+    if refined.mesh.option.error.scatter and finer.used > 1.0 and begun.used - finer.used < finer.used:
+        return (
+            f"{', '.join(finer.steps)} would lower the errors from {engineering(begun.used, 2)} to "
+            f"{engineering(finer.used, 2)} of the tolerance, by less than it leaves"
+        )
     return Refinement(refined, AT_NODES[source], finer.steps, finer.used)
 
 

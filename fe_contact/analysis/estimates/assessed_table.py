@@ -12,6 +12,7 @@ from fe_contact.analysis.estimates.curve_errors import curve_errors, load_arm_er
 from fe_contact.analysis.estimates.error_sources import estimate_errors, largest_known
 from fe_contact.analysis.estimates.interval_goal import IntervalGoal
 from fe_contact.analysis.estimates.position_errors import position_errors
+from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, mesh_bias
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.estimates.tolerance_shares import interval_goal
 from fe_contact.analysis.estimates.validation_axes import AxisError, validation_axes
@@ -85,6 +86,8 @@ class AssessedTable:
     """
     bias: PlaneBias | None
     """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
+    mesh_bias: FloatArray | None = None
+    """How much higher the mean lies on exact meshes, where its sign is known; in the errors, m. (F,)"""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with these errors and with the metadata that state them."""
@@ -116,7 +119,8 @@ class AssessedTable:
         """Return the receipt's fields of the errors as plain JSON."""
         sources = {"error_by_source": self.by_source, "held_out": self.validation}
         bias = {"bias": self.bias.to_json()} if self.bias else {}
-        return sources | bias | _summary(self.curve_error)
+        signed = {} if self.mesh_bias is None else {"mesh_bias": {"mean_m": self.mesh_bias.tolist()}}
+        return sources | bias | signed | _summary(self.curve_error)
 
 
 def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[AssessedTable, SolvedTable]:
@@ -167,6 +171,7 @@ def assessed_table(made: SolvedTable, coarse: OperatingPoints) -> tuple[Assessed
         sources.to_json(),
         {name: error.to_json() for name, error in validation.axes.items()},
         table_bias(made.table, fine, plan),
+        mesh_bias(ste, plan) if has_signed_errors(fine.nominal.pair, discretization) else None,
     )
     return assessed, made
 

@@ -15,6 +15,7 @@ import numpy as np
 from fe_contact.analysis.estimates.error_sources import CORRECTION_ERROR, contact_error
 from fe_contact.analysis.estimates.half_position_errors import errors_by_halves
 from fe_contact.analysis.estimates.position_errors import PositionErrors
+from fe_contact.analysis.estimates.relieved_helical import has_signed_errors, with_signed_errors
 from fe_contact.analysis.estimates.rough_flank_errors import of_quantities, rough_flank_errors
 from fe_contact.analysis.estimates.table_sample import Nested, TableSample
 from fe_contact.analysis.pairs.operating_points import OperatingPoints
@@ -54,6 +55,8 @@ face more. The values were set on the pairs of docs/lab/index.md ("Constants"). 
 of standard.
 """
 
+COARSER_THAN_STANDARD = ("draft", "medium")
+
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k. Half the
 slices and coarse meshes have errors in other harmonics than the table, whose harmonics may hardly change.
@@ -86,7 +89,12 @@ def curve_errors(
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
-    deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    if has_signed_errors(pair, made):
+        deflection, *changes, by_slices, free_ends = _measured(points, nested, plan, second_order=True)
+        added = _added_by_load(solutions, sample)
+        by_mesh, by_patches = with_signed_errors(np.stack(changes), nested, added, plan)
+    else:
+        deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
     if points.period > 1:
         deflection[OFF_MESH] = _off_mesh_by_load(points, solutions, sample)
     by_source = {
@@ -123,16 +131,27 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
     return np.stack([by_source[name] for name in OF_LOAD_ARM])
 
 
-def _measured(points: OperatingPoints, nested: Nested, plan: Plan, balance: float = 0.0) -> FloatArray:
+def _measured(
+    points: OperatingPoints,
+    nested: Nested,
+    plan: Plan,
+    balance: float = 0.0,
+    *,
+    second_order: bool = False,
+) -> FloatArray:
     """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
-    `balance` is the least change of a mean over the mean size of the change about it.
+    `balance` is the least change of a mean over the mean size of the change about it. With `second_order`
+    meshes leave what second order does of their change over the face, without the constants of pairs.
     """
     made, pair = plan.discretization, points.nominal.pair
     helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
-    parts = 1.0, _left_by_mesh(pair, plan, helical), plan.remaining_patches, 1.0, CORRECTION_ERROR
+    by_mesh = _left_by_mesh(pair, plan, helical)
+    if second_order:
+        by_mesh = np.full(QUANTITIES, made.remaining)
+    parts = 1.0, by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
     return _changes(
         nested.sample,
         (nested.table, nested.patched, nested.plane, nested.table, nested.table),
@@ -162,6 +181,13 @@ def _changes(
         change[MEAN] = np.maximum(change[MEAN], minimum)
     change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *first.shape[1:])
     return sample.spread(np.moveaxis(_shared(change, helical), 1, 0))
+
+
+def _added_by_load(solutions: Sequence[ContactSolution], sample: TableSample) -> FloatArray:
+    """Return what the load adds to the mean at the loads and alignments of a sample, (f, m, d) in m."""
+    places = [solutions[k] for k in sample.places]
+    added = [place.deflection[:, sample.nodes[0]] - place.no_load[:, None] for place in places]
+    return sample.shaped([np.nanmean(deflection, axis=0) for deflection in added])
 
 
 def _off_mesh_by_load(
@@ -195,7 +221,7 @@ def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
     """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
     made = plan.discretization
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
-    level = "draft" if plan.level == "draft" else "standard"
+    level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
     if isinstance(made, FaceDiscretization):
         spur, wound = (np.array(LEFT_BY_MESH[kind][level]) for kind in (straight, "helical"))
         mean, ripple, harmonics = (1.0 - helical) * spur + helical * made.remaining * wound

@@ -79,7 +79,7 @@ def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisVal
 
     Returns
     -------
-    HeldOut
+    AxisValidation
         Without axes for a table with failed points, or whose transmission error does not rise with load
         everywhere: neither can be interpolated.
     """

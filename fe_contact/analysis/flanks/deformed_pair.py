@@ -129,7 +129,11 @@ def _deformed_gears(solved: SolvedOperatingPoint, neighbors: int = 1) -> tuple[B
         solid = [face_flank_forces(candidates, force, p, face, offset) for p in positions]
         first, second = (
             deformed_solids(
-                gear, made.recipes[i], [both[i] for both in solid], neighbors, seen_from_behind=gear.sign < 0
+                gear,
+                made.recipes[i],
+                [_outward(both[i]) for both in solid],
+                neighbors,
+                seen_from_behind=gear.sign < 0,
             )
             for i, gear in enumerate(gears)
         )
@@ -142,6 +146,11 @@ def _deformed_gears(solved: SolvedOperatingPoint, neighbors: int = 1) -> tuple[B
         for i, gear in enumerate(gears)
     )
     return tuple(zip(first, second, strict=True))
+
+
+def _outward(by_tooth: dict[int, FloatArray]) -> dict[int, FloatArray]:
+    """Return inward nodal forces by tooth as forces along the outward normal."""
+    return {tooth: -forces for tooth, forces in by_tooth.items()}
 
 
 def _placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: Both) -> DeformedPair:

@@ -247,14 +247,12 @@ def _forces(
         if units[0].across_face:
             offset = solved.contact.pair.axial_offset
             gears = face_flank_forces(candidates, force, p, units, offset)
-            inward = -1.0  # these forces count positive out of the flank
         else:
             gears = plane_flank_forces(candidates, force, p, units)
-            inward = 1.0
         for loads, by_tooth, direction in zip(out, gears, (-1, 1), strict=True):
             for tooth, forces in by_tooth.items():
                 pair_index = np.searchsorted(pairs, direction * tooth)
-                loads[p, pair_index] = inward * forces
+                loads[p, pair_index] = forces
     return out[0], out[1]
 
 

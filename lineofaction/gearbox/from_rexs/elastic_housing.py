@@ -41,8 +41,8 @@ def elastic_housings(layout: Layout, seats: dict[int, str]) -> Iterator[Table]:
         if not any(bearings):
             group.say("", "refused", "no reduction point refers to a bearing of the scene")
             continue
-        turn = np.kron(np.eye(2 * len(points)), layout.axes.turn(Placement.of(group) or FIXED))
-        turned = turn @ matrix @ turn.T
+        rotation = np.kron(np.eye(2 * len(points)), layout.axes.rotation(Placement.of(group) or FIXED))
+        turned = rotation @ matrix @ rotation.T
         rows = [index for index, name in enumerate(bearings) if name]
         group.say("", "taken", "elastic housing")
         text = f"stiffness under {len(rows)} bearings; u, v, w turned to x, y, z, mm to m"

@@ -59,9 +59,9 @@ class Layout:
         """Return +1 or -1 for u along z or against it; +1 of shafts that are not parallel."""
         return self.shafts[shaft].sense if shaft in self.shafts else 1
 
-    def turn(self, part: Part, rotor_side: Part) -> FloatArray:
+    def rotation(self, part: Part, rotor_side: Part) -> FloatArray:
         """Return the matrix that takes u, v, w of a part on a shaft to x, y, z."""
-        return self.axes.turn(Placement.of(part) or self.shafts[rotor_side.id].placement)
+        return self.axes.rotation(Placement.of(part) or self.shafts[rotor_side.id].placement)
 
     def rotor(self, shaft: int) -> int:
         """Return the rotor of a shaft."""

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from fe_contact.flank.involute import involute_function
+from fe_contact.involute import involute_function
 from lineofaction.gearbox.from_rexs.gear_unit import Part
 from lineofaction.gearbox.from_rexs.meshing import Meshing
 from lineofaction.gearbox.from_rexs.toothing import SHIFT, ToothingData

@@ -126,7 +126,7 @@ def _gravity(layout: Layout) -> list[float]:
             part.say("account_for_gravity", "refused", "the file gives gravity no direction")
             break
         placement = Placement.of(part) or FIXED
-        turned = layout.axes.turn(placement) @ vector / length * (size or STANDARD_GRAVITY)
+        turned = layout.axes.rotation(placement) @ vector / length * (size or STANDARD_GRAVITY)
         return [float(value) + 0.0 for value in np.round(turned, 12)]
     return [0.0, 0.0, 0.0]
 

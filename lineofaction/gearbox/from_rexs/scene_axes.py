@@ -43,6 +43,6 @@ class SceneAxes:
         across = float(np.linalg.norm(np.cross(self.rows[2], placement.axes[0])))
         return 0 if across > PARALLEL else (1 if along > 0.0 else -1)
 
-    def turn(self, placement: Placement) -> FloatArray:
+    def rotation(self, placement: Placement) -> FloatArray:
         """Return the matrix that takes u, v, w of a place to x, y, z."""
         return np.asarray(self.rows @ placement.axes.T)

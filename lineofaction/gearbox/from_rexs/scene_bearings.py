@@ -105,7 +105,7 @@ class SceneBearings:
         geometry = BearingGeometry.of(part)
         if isinstance(geometry, str):
             return geometry
-        sense = 1 if float(self._layout.turn(part, entry.rotor_side)[2, 0]) > 0.0 else -1
+        sense = 1 if float(self._layout.rotation(part, entry.rotor_side)[2, 0]) > 0.0 else -1
         located = located_row(part, geometry, sense)
         return located if isinstance(located, str) else located | further_fields(part)
 
@@ -127,7 +127,7 @@ class SceneBearings:
         full = np.zeros((6, 6))
         rows = np.array([0, 1, 2, 4, 5])
         full[np.ix_(rows, rows)] = matrix
-        both = np.kron(np.eye(2), self._layout.turn(part, rotor_side))
+        both = np.kron(np.eye(2), self._layout.rotation(part, rotor_side))
         return np.asarray((both @ full @ both.T)[:5, :5])
 
     def _z(self, part: Part, rotor_side: Part, side: str) -> float:

@@ -32,7 +32,7 @@ class SceneForce:
     """Position of the force from the left end of that shaft."""
     load: int
     """Id of the external load of the file."""
-    turn: FloatArray
+    rotation: FloatArray
     """Rotation from components along u, v, w of the load's shaft to x, y, z. Shape (3, 3)."""
     lever: float
     """Distance along z from the force in the scene to the load in the file, m; 0 unless the load is beyond
@@ -44,7 +44,7 @@ class SceneForce:
         The moment about the axis is not in it: torques drive and load the train.
         """
         wrench = np.array(point.forces.get(self.load, (0.0,) * len(FORCES)))
-        force, moment = self.turn @ wrench[:3], self.turn @ wrench[3:]
+        force, moment = self.rotation @ wrench[:3], self.rotation @ wrench[3:]
         moment[:2] += self.lever * np.array([-force[1], force[0]])
         moment[2] = 0.0
         return {"name": self.name, "force_n": _digits(force), "moment_n_m": _digits(moment)}
@@ -73,7 +73,7 @@ def scene_forces(
         shaft, z = shafts.by_rotor[layout.rotor(placed.part.id)], layout.z_on(placed, part)
         position = shaft.position_mm(z)
         lever = z - shaft.begin - position * MM
-        turn = layout.axes.turn(placed.placement)
+        rotation = layout.axes.rotation(placed.placement)
         part.say("", "taken", f"acts on shaft {shaft.name}")
         if part.number("width_of_external_load", "width of a line load, mm"):
             text = "a line load is not spread: its force acts at u_coordinate_on_shaft"
@@ -85,7 +85,7 @@ def scene_forces(
                 f"{abs(lever) / MM:.6g} mm beyond the end of its shaft: the force is there, with its moment"
             )
             part.say("u_coordinate_on_shaft", "derived", text)
-        yield SceneForce(names.of(part), shaft.name, position, part.id, turn, lever)
+        yield SceneForce(names.of(part), shaft.name, position, part.id, rotation, lever)
 
 
 def _placed(layout: Layout, load: Part, shafts: SceneShafts) -> tuple[PlacedShaft | None, str]:

@@ -20,7 +20,7 @@ class ShaftPart:
     """A shaft."""
 
     component: int
-    turn: FloatArray
+    rotation: FloatArray
     """Rotation from components along u, v, w to x, y, z. Shape (3, 3)."""
     sense: int
     """+1 where u is along z, -1 where it is against it."""
@@ -33,7 +33,7 @@ class BearingPart:
     """A bearing, or a coupling, on the ground."""
 
     component: int
-    turn: FloatArray
+    rotation: FloatArray
     """Rotation from components along the bearing's u, v, w to x, y, z. Shape (3, 3)."""
     shaft_inside: bool
     """Whether the shaft is on the inner side."""
@@ -82,13 +82,14 @@ def scene_parts(
     of_shafts = {}
     for rotor, shaft in shafts.by_rotor.items():
         if (placed := layout.shafts.get(rotor)) is not None:
-            turn, zero = layout.axes.turn(placed.placement), float(placed.start[2]) - shaft.begin
-            of_shafts[shaft.name] = ShaftPart(rotor, turn, placed.sense, zero)
+            rotation, zero = layout.axes.rotation(placed.placement), float(placed.start[2]) - shaft.begin
+            of_shafts[shaft.name] = ShaftPart(rotor, rotation, placed.sense, zero)
     of_bearings = {}
     for entry in (*layout.unit.bearings, *layout.unit.couplings):
         if entry.part.id in seats and entry.rotor_side.id in layout.shafts:
-            turn, inside = layout.turn(entry.part, entry.rotor_side), entry.rotor_side.id == entry.inner.id
-            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, turn, inside)
+            rotation = layout.rotation(entry.part, entry.rotor_side)
+            inside = entry.rotor_side.id == entry.inner.id
+            of_bearings[seats[entry.part.id]] = BearingPart(entry.part.id, rotation, inside)
     return SceneParts(of_shafts, of_bearings, of_meshes)
 
 

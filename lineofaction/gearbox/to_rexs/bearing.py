@@ -54,7 +54,7 @@ def bearing_results(part: BearingPart, load: BearingLoad) -> tuple[Attribute, ..
 
 
 def _turned(part: BearingPart, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return part.turn.T @ values[:3], part.turn.T @ np.array([*values[3:5], 0.0])
+    return part.rotation.T @ values[:3], part.rotation.T @ np.array([*values[3:5], 0.0])
 
 
 def _loads(side: str, force: FloatArray, moment: FloatArray) -> Iterator[Attribute]:

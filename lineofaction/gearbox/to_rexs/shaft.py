@@ -19,7 +19,7 @@ def shaft_results(part: ShaftPart, position: FloatArray, motion: FloatArray) -> 
     """
     order = slice(None, None, part.sense)
     u = part.sense * (position - part.zero)[order]
-    displacement = (motion[:, :3] @ part.turn)[order]
+    displacement = (motion[:, :3] @ part.rotation)[order]
     torsion = part.sense * motion[order, 5]
     return (
         calculated("u_coordinates_of_beam_nodes", (u / MM).tolist(), "mm"),

@@ -86,7 +86,7 @@ def in_python(folder: Path, damping=None, mount: Mount | None = None) -> Reduced
     return reduced_housing(MeshedHousing(mesh, GRAY_CAST_IRON, seats, tuple(feet), points, 4, damping))
 
 
-def same(one: ReducedHousing, other: ReducedHousing) -> None:
+def assert_same(one: ReducedHousing, other: ReducedHousing) -> None:
     for name in ("mass", "stiffness", "damping", "frequency"):
         np.testing.assert_array_equal(getattr(one, name), getattr(other, name), err_msg=name)
     np.testing.assert_array_equal(one.surface.motion, other.surface.motion)
@@ -102,7 +102,7 @@ def test_a_scene_on_a_step_file_is_that_on_its_file_of_modes(folder: Path) -> No
     (ours,), (theirs,) = own.scene.housings, of_file.scene.housings
     for name in ("bushings", "mass", "stiffness", "damping", "seat_positions", "modal_coordinates"):
         assert getattr(ours, name) == getattr(theirs, name), name
-    same(own.housings["case"], of_file.housings["case"])
+    assert_same(own.housings["case"], of_file.housings["case"])
     assert of_file.inputs.housings[0].modes_file is None
 
 
@@ -110,7 +110,7 @@ def test_mounts_and_a_loss_factor_reach_the_housing(folder: Path) -> None:
     rates = {"mount_stiffness_n_per_m": [2e7, 5e7, 3e7], "mount_damping_n_s_per_m": [2e3, 5e3, 3e3]}
     feet = [housing()["feet"][0] | rates, *(part | rates for part in SIDES)]
     mount = Mount(*(tuple(map(tuple, np.diag(values).tolist())) for values in rates.values()))
-    same(
+    assert_same(
         tabled(folder, feet=feet, loss_factor=LOSS).housings["case"],
         in_python(folder, MaterialDamping(LOSS), mount),
     )
@@ -141,7 +141,7 @@ def test_the_second_time_a_housing_comes_from_the_cache(folder: Path, monkeypatc
     first = tabled(folder).housings["case"]
     monkeypatch.setattr(kept, "mesh_step", lambda *_: pytest.fail("meshed again"))
     monkeypatch.setattr(kept, "reduce_housing", lambda _: pytest.fail("reduced again"))
-    same(first, tabled(folder).housings["case"])
+    assert_same(first, tabled(folder).housings["case"])
     with pytest.raises(pytest.fail.Exception, match="reduced again"):
         tabled(folder, modes=5)
     with pytest.raises(pytest.fail.Exception, match="meshed again"):

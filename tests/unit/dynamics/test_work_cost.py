@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.work_cost import Cost, announce, measured, on_this_host
+from dynamics.work_cost import Cost, WorkMeter, announce, on_this_host
 from host import memory_figure
 from model_studies import host_speed
 from model_studies.run_log import FILE, record
@@ -18,10 +18,14 @@ from model_studies.run_log import FILE, record
 GROWN = """
 import json
 import numpy as np
-from dynamics.work_cost import Cost, measured, peak_memory
+from dynamics.work_cost import Cost, WorkMeter, peak_memory
 size = 2 * peak_memory()
-cost = [measured("work", Cost(0.0, 0.0), None, lambda: np.ones(size // part).sum())[1] for part in (8, 16)]
-print(json.dumps([size, *(one.bytes for one in cost)]))
+grown = []
+for part in (8, 16):
+    meter = WorkMeter.at_start("work", Cost(0.0, 0.0), None)
+    np.ones(size // part).sum()
+    grown.append(meter.finish().bytes)
+print(json.dumps([size, *grown]))
 """
 KIND, COST = "work", Cost(10.0, 2e9)
 
@@ -47,8 +51,9 @@ def test_work_is_logged_beside_its_uncorrected_prediction(tmp_path: Path) -> Non
     """Else a correction would be corrected again, and forgotten after so many runs."""
     for _ in range(5):
         record(tmp_path, {KIND: 30.0}, {KIND: 60.0})
-    result, cost = measured(KIND, COST, tmp_path, lambda: float(np.sum(np.sin(np.arange(3_000_000.0)))))
-    assert np.isfinite(result)
+    meter = WorkMeter.at_start(KIND, COST, tmp_path)
+    np.sin(np.arange(3_000_000.0))
+    cost = meter.finish()
     last = json.loads((tmp_path / FILE).read_text("utf-8").splitlines()[-1])
     assert (last["stage"], last["predicted"]) == (KIND, 30.0)
     assert last["measured"] == cost.seconds > 0.0

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from bad_inputs import GOOD
-from changed_scenes import changed, refused
+from changed_scenes import assert_refused, changed
 from spur_case import spur_case
 
 from bounds import Kind
@@ -197,7 +197,7 @@ def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
     assert blank is not None
     found = (blank.rim_thickness, blank.web_thickness, blank.hub_diameter, blank.web_offset)
     assert found == pytest.approx((8e-3, 10e-3, 45e-3, -2e-3), rel=1e-15)
-    with refused("pair.pinion.blank.rim_thickness_mm", "12.5 mm") as faults:
+    with assert_refused("pair.pinion.blank.rim_thickness_mm", "12.5 mm") as faults:
         gear_pair(case(blank=given | {"rim_thickness_mm": 20.0}))
     assert faults[0].value == pytest.approx(20.0)
 
@@ -214,12 +214,12 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
     seat = replace(seat, key=None)
     assert seat.stiffness == pytest.approx((1e12, 2e12, 3e12), rel=1e-15)
     assert (seat.width, seat.offset) == pytest.approx((20e-3, -2e-3), rel=1e-15)
-    with refused("pair.pinion.seat.width_mm", "25 mm") as faults:
+    with assert_refused("pair.pinion.seat.width_mm", "25 mm") as faults:
         gear_pair(case(seat={"width_mm": 30.0}))
     assert faults[0].value == pytest.approx(30.0)
-    with refused("pair.pinion.seat.tangential_foundation_n_per_mm3"):
+    with assert_refused("pair.pinion.seat.tangential_foundation_n_per_mm3"):
         gear_pair(case(seat={"key": key}))
-    with refused("pair.pinion.seat.key.width_mm"):
+    with assert_refused("pair.pinion.seat.key.width_mm"):
         gear_pair(case(seat=given | {"key": key | {"width_mm": 200.0}}))
 
 
@@ -246,11 +246,11 @@ def test_a_shaft_arrives_in_si_on_the_side_of_its_gear() -> None:
     assert first is None and second is not None
     assert (second.length, second.diameter, second.position) == pytest.approx((0.2, 0.04, -0.02), rel=1e-12)
     assert second.bearing_stiffness == pytest.approx(4e8, rel=1e-12)
-    with refused("pair.wheel.shaft.position_mm") as faults:
+    with assert_refused("pair.wheel.shaft.position_mm") as faults:
         gear_pair(changed_case({"pair.wheel.shaft": shaft | {"position_mm": 401.0}}))
     assert (faults[0].value, faults[0].bound) == (401.0, "from -200 to 400")
     inside = {"pair.wheel.shaft": shaft | {"position_mm": 100.0}, "accuracy.model": "plane_strain"}
-    with refused("pair.wheel.shaft"):
+    with assert_refused("pair.wheel.shaft"):
         check_case(changed_case(inside))
 
 
@@ -272,7 +272,7 @@ def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
     assert allowed() == AllowedError(0.01, 20e-9)
     assert allowed(tolerance=0.02, tolerance_floor_nm=0.0) == AllowedError(0.02, 0.0)
     assert allowed(tolerance_floor_nm=50.0).floor == pytest.approx(5e-8)
-    with refused("accuracy.tolerance"):
+    with assert_refused("accuracy.tolerance"):
         allowed(tolerance=1e-6)
 
 
@@ -297,7 +297,7 @@ def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> Non
 def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
     good, wrong = (changed_case({"errors.center_distance_change_mm": [0.0, far]}) for far in (0.1, 8.0))
     assert check_case(good).center_distance == pytest.approx(0.08)
-    with refused("errors.center_distance_change_mm[1]") as faults:
+    with assert_refused("errors.center_distance_change_mm[1]") as faults:
         check_case(wrong)
     assert faults[0].value == 8.0
     bound = faults[0].bound
@@ -339,7 +339,7 @@ def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(
 ) -> None:
     distance = {"pair.center_distance_mm": 80.0 + 2.0 * (pinion.get("teeth", 20) - 20)}
     own = {f"pair.pinion.{name}": value for name, value in pinion.items()}
-    with refused(field, words):
+    with assert_refused(field, words):
         check_case(changed_case(own | distance | {"accuracy": accuracy}))
 
 
@@ -419,7 +419,7 @@ def test_a_grid_of_a_case_inside_a_scene_is_found(tmp_path: Path) -> None:
 
 
 def test_a_client_cannot_name_a_file() -> None:
-    with refused("pair.pinion.flank_grid_csv") as faults:
+    with assert_refused("pair.pinion.flank_grid_csv") as faults:
         validated(Case, changed(GOOD, {"pair.pinion.flank_grid_csv": "/etc/passwd"}))
     assert faults[0].bound.startswith("left out")
 
@@ -444,7 +444,7 @@ def test_a_client_cannot_name_a_file() -> None:
 def test_a_file_that_holds_no_grid_is_refused_by_what_is_wrong(
     tmp_path: Path, lines: list[str], said: str
 ) -> None:
-    with refused("pair.pinion.flank_grid_csv", said):
+    with assert_refused("pair.pinion.flank_grid_csv", said):
         read_model(Case, written(tmp_path, *lines))
 
 
@@ -469,7 +469,7 @@ def test_a_grid_that_differs_over_the_face_is_no_matter_of_the_plane() -> None:
     plane = GOOD | {"accuracy": {"model": "plane_strain"}}
     even = INLINE | {"removed_um": [[0, 0], [2, 2]]}
     check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": even})))
-    with refused("pair.pinion.flank_grid.removed_um"):
+    with assert_refused("pair.pinion.flank_grid.removed_um"):
         check_case(validated(Case, changed(plane, {"pair.pinion.flank_grid": INLINE})))
 
 
@@ -531,5 +531,5 @@ def test_flanks_of_teeth_arrive_in_si() -> None:
     ],
 )
 def test_bad_waves_are_refused_by_the_name_of_the_case(gear: dict[str, Any], field: str) -> None:
-    with refused(field, ""):
+    with assert_refused(field, ""):
         gear_pair(case(**gear))

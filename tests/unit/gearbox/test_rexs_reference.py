@@ -177,8 +177,8 @@ def test_an_upgraded_example_has_names_of_the_newest_version(path: Path) -> None
 @pytest.mark.parametrize("path", examples(), ids=lambda path: path.name)
 def test_what_is_written_of_an_example_is_valid(path: Path) -> None:
     document = read_rexs(path)
-    _validate(document)
-    _validate(Document(upgrade(document.model)[0]))
+    assert_valid(document)
+    assert_valid(Document(upgrade(document.model)[0]))
 
 
 def test_a_stage_with_results_is_valid() -> None:
@@ -186,7 +186,7 @@ def test_a_stage_with_results_is_valid() -> None:
     cases = StageCase.all_of(GearUnit(document.model), {})
     table = replace(small_table(), metadata=Metadata(case=case_json(cases[0].case)))
     written = exported(document, cases, [table])
-    _validate(written)
+    assert_valid(written)
     known = attributes_of("2.0.0")
     (stage,) = [part for part in written.model.components if part.id == STAGE]
     results = [entry for entry in stage.attributes if entry.origin and not entry.id.startswith("custom_")]
@@ -207,7 +207,7 @@ def test_a_deflection_is_valid_and_its_attributes_belong_to_their_components(
     document = make()
     unit = OpenedUnit.of(document)
     written = deflected(document, unit, deflection_of_unit(unit))
-    _validate(written)
+    assert_valid(written)
     known, owned = attributes_of("2.0.0"), owners("2.0.0")
     names = set()
     for _, part in written.model.all_components():
@@ -227,11 +227,11 @@ def test_every_kind_of_bearing_has_the_attributes_of_results() -> None:
 
 
 def test_what_is_written_of_every_form_is_valid() -> None:
-    _validate(Document(small_model()))
+    assert_valid(Document(small_model()))
     assert small_document().files
 
 
-def _validate(document: Document) -> None:
+def assert_valid(document: Document) -> None:
     """Validate both forms against the published schemas, as they are but for the three numbers of 2.0.0."""
     schema, rules = _schemas()
     schema.assertValid(etree.fromstring(serialized(document, "a.rexs")))

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from changed_scenes import DROP, By, changed, changed_scene, check_refused, refused
+from changed_scenes import DROP, By, assert_refused, changed, changed_scene, check_refused
 from small_table import small_table
 
 from dynamics.assembly.assemble import assemble
@@ -145,7 +145,7 @@ def test_a_part_beyond_an_end_of_its_shaft_is_a_fault_of_the_draft(kind: str) ->
     for end in (0.0, length):
         placed(end)
     for beyond in (-0.1, length + 0.1):
-        with refused(f"{kind}[0].position_mm", "from 0 to 180 mm from its left end") as faults:
+        with assert_refused(f"{kind}[0].position_mm", "from 0 to 180 mm from its left end") as faults:
             placed(beyond)
         assert faults[0].value == beyond
         assert faults[0].suggestion == "Lengthen the shaft, or move what sits on it."

@@ -22,12 +22,12 @@ from model_studies.workers import (
     InProcess,
     RunCost,
     WorkersLost,
+    dispatch,
     divided,
     local_processes,
     pays,
     spent,
 )
-from model_studies.workers import executor as executors
 
 
 @dataclass(frozen=True)
@@ -66,15 +66,15 @@ def burned(_: None, seconds: float) -> float:
 def test_only_work_that_takes_longer_than_a_process_starts_is_sent(
     items: list[float], seconds: float | None, sent: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(executors, "START_SECONDS", 0.1)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.1)
     workers = Noting()
     assert list(divided(workers, burned, None, items, seconds)) == items
     assert workers.sent == items[len(items) - sent :]
 
 
 def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executors, "START_SECONDS", 0.2)
-    monkeypatch.setattr(executors, "AWAKE", 0.25)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.2)
+    monkeypatch.setattr(dispatch, "AWAKE", 0.25)
     for tasks, sent in ((0, 0), (1, 3)):
         workers = Noting(RunCost(tasks))
         assert list(divided(workers, burned, None, [0.0, 0.0, 0.0], 0.1)) == [0.0, 0.0, 0.0]
@@ -84,7 +84,7 @@ def test_workers_that_are_awake_take_less(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_time_of_the_caller_between_results_is_no_time_of_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executors, "START_SECONDS", 0.1)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.1)
     workers = Noting()
     for _ in divided(workers, burned, None, [0.0] * 4):
         burned(None, 0.1)
@@ -105,7 +105,7 @@ def test_what_was_spent_has_the_tasks_of_workers() -> None:
 @pytest.fixture(autouse=True)
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Send everything, whatever it costs."""
-    monkeypatch.setattr(executors, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 class Unsolved(Exception):

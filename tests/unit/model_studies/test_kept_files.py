@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from model_studies.cached_file import cached_in
+from model_studies.cached_file import keep_cached, read_cached
 
 
 class Counted:
@@ -18,15 +18,13 @@ class Counted:
         return "result"
 
 
-def kept(file: Path | None, counted: Counted, keep: bool = True) -> str:
-    return cached_in(
-        file,
-        Path.read_text,
-        counted.make,
-        lambda made, at: at.write_text(made),
-        OSError,
-        lambda _made: keep,
-    )
+def kept(file: Path | None, counted: Counted) -> str:
+    cached = read_cached(file, Path.read_text, OSError)
+    if cached is not None:
+        return cached
+    made = counted.make()
+    keep_cached(made, file, lambda text, at: at.write_text(text))
+    return made
 
 
 def test_a_result_is_made_once_for_its_file(tmp_path):
@@ -38,10 +36,10 @@ def test_a_result_is_made_once_for_its_file(tmp_path):
     assert counted.times == 2
 
 
-def test_what_is_not_to_be_kept_leaves_no_file(tmp_path):
-    file = tmp_path / "kept"
-    assert kept(file, Counted(), keep=False) == kept(None, Counted()) == "result"
-    assert not list(tmp_path.iterdir())
+def test_without_a_file_nothing_is_kept():
+    counted = Counted()
+    assert [kept(None, counted), kept(None, counted)] == ["result", "result"]
+    assert counted.times == 2
 
 
 def test_a_folder_that_cannot_be_made_loses_nothing(tmp_path):

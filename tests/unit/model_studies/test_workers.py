@@ -41,10 +41,11 @@ from model_studies.workers import (
     Workers,
     WorkersLost,
     dask_workers,
-    executor,
+    dispatch,
 )
 from model_studies.workers.content_digest import content_digest
-from model_studies.workers.executor import Packed, _Done
+from model_studies.workers.remote_task import Packed
+from model_studies.workers.run_cost import TaskResult
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SCATTER = Scatter(modification={"wheel.profile_slope": 3e-6}, rule=GaussHermite(2))
@@ -119,7 +120,7 @@ def test_a_single_start_is_divided_and_finds_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Its sample, its walks, their nodes and those beside its end; also where designs end in mid-walk."""
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(evaluations=evaluations, positions=16, exploration=8)
     here, there = (
@@ -170,7 +171,7 @@ def test_an_interrupted_optimization_of_a_single_start_gives_the_best_so_far(
     pair: GearPair, compliances: Path, pool: ByExecutor, task: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In its sample, in its walks, at nodes of one design, and in the analyses behind them."""
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(SequentialLinearProgramming(sample=4), evaluations=20, positions=16, exploration=8)
     request = design_request(pair, [100.0], variables, SCATTER, search=search, map_torques=[200.0], **DRAFT)
@@ -285,7 +286,7 @@ class Here:
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.005)
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -394,7 +395,7 @@ class DearWorkers:
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:
-            yield self.cost.add(_Done(function(shared, item), DEAR, 0))
+            yield self.cost.add(TaskResult(function(shared, item), DEAR, 0))
 
 
 def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:

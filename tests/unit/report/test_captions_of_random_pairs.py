@@ -350,7 +350,7 @@ def check_loads(database: SteDatabase) -> None:
     assert (chosen[0], chosen[-1]) == (shown[0], shown[-1])
 
 
-def check(database: SteDatabase, drawn: dict[str, Figure]) -> None:
+def check_findings(database: SteDatabase, drawn: dict[str, Figure]) -> None:
     """Every finding, by the numbers of the table; no exponents; and the ripple fills half of its panel."""
     check_loads(database)
     assert drawn.keys() <= CHECKS.keys()
@@ -383,7 +383,7 @@ def seeds() -> list[object]:
 @pytest.mark.drawn
 @pytest.mark.parametrize("seed", seeds())
 def test_findings_are_true_of_random_pairs(seed: int) -> None:
-    check(*drawn_at_random(seed))
+    check_findings(*drawn_at_random(seed))
 
 
 def test_the_random_pairs_have_every_figure() -> None:
@@ -408,4 +408,4 @@ def computed() -> list[GearPair]:
 def test_findings_are_true_of_computed_pairs(pair: GearPair) -> None:
     model = "plane_strain" if pair.base_helix_angle == 0.0 else "3d"
     database = analyze(pair, torques=[20.0, 45.0, 70.0], level="draft", model=model)
-    check(database, figures(database))
+    check_findings(database, figures(database))

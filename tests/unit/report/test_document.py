@@ -214,10 +214,12 @@ def test_orders_have_whole_ticks() -> None:
 @pytest.mark.law
 def test_the_first_harmonics_are_told_apart_by_eye(database: SteDatabase) -> None:
     colors = {line.name: line.color for line in ripple_over_torque(database).content[1].lines}
-    assert all(max(part) > 80 for part in apart([colors[f"{k}"] for k in range(1, 9)]))  # none is near black
+    assert all(
+        max(part) > 80 for part in assert_apart([colors[f"{k}"] for k in range(1, 9)])
+    )  # none is near black
 
 
-def apart(colors: Sequence[str]) -> list[list[int]]:
+def assert_apart(colors: Sequence[str]) -> list[list[int]]:
     """Return the parts of colors that are told apart by eye, on the screen and in a picture of few colors."""
     parts = [[int(color[at : at + 2], 16) for at in (1, 3, 5)] for color in colors]
     assert min(np.abs(np.subtract(a, b)).sum() for i, a in enumerate(parts) for b in parts[:i]) > 60
@@ -231,8 +233,8 @@ def apart(colors: Sequence[str]) -> list[list[int]]:
 
 @pytest.mark.law
 def test_pairs_of_teeth_and_categories_are_told_apart_by_eye() -> None:
-    apart([palette.category(k) for k in range(6)])
-    apart([palette.tooth_pair(k) for k in range(6)])
+    assert_apart([palette.category(k) for k in range(6)])
+    assert_apart([palette.tooth_pair(k) for k in range(6)])
 
 
 SIMPLE = (

@@ -20,7 +20,7 @@ from structlog.testing import capture_logs
 from fe_contact.analysis.pairs import contact_lines
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.problems import BadInput
-from model_studies.workers import RunCost, dask_cluster, executor
+from model_studies.workers import RunCost, dask_cluster, dispatch
 from service.settings import Settings, load_settings
 from service.worker import job_executor as cluster
 from service.worker.order import WorkOrder
@@ -45,7 +45,7 @@ NOTHING_STORED = SimpleNamespace(find=lambda *_: None)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-4)
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,7 @@ def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(
 def test_a_job_without_tasks_does_not_look_for_the_cluster(
     data: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(executor, "START_SECONDS", 1e3)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
     monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
     assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
 

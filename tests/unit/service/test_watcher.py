@@ -67,6 +67,7 @@ def test_a_state_that_was_reached_before_anybody_followed_is_reported(
     received: list[Job | None] = []
     with watcher.following(job, received.append):
         until(lambda: _status(received) == "successful")
+    assert _status(received) == "successful"
 
 
 def test_a_dismissal_is_reported_to_those_of_that_job_alone(machine: Bench, watcher: Watcher[Job]) -> None:
@@ -118,6 +119,7 @@ def test_what_is_not_heard_is_seen(
         until(lambda: _status(received) == "running")
         machine.submissions.dismiss(job.id)
         until(lambda: _status(received) == "dismissed")
+    assert _status(received) == "dismissed"
 
 
 def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher[Job]) -> None:
@@ -126,6 +128,7 @@ def test_a_job_that_is_removed_ends_its_streams(machine: Bench, watcher: Watcher
         with writing(machine.engine) as connection:
             connection.execute(delete(jobs).where(jobs.c.id == job.id))
         until(lambda: received[-1:] == [None])  # it may have been seen before it was removed
+    assert received.count(None) == 1
 
 
 def test_without_followers_there_is_no_thread(machine: Bench, watcher: Watcher[Job]) -> None:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.flank.involute import involute_normal
 from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.involute import involute_normal
 from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.quadratic_mesh import QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits

@@ -28,7 +28,7 @@ Torques = Annotated[tuple[Load, ...], *_LIST]
 Misalignments = Annotated[
     Annotated[Misalignment, ONE] | Annotated[tuple[Misalignment, ...], *_LIST, MANY], ONE_OR_MANY
 ]
-_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+_FREE = figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 
 
 def _ends(figure: Figure) -> tuple[Any, Any]:

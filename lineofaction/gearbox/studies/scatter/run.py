@@ -43,7 +43,7 @@ MAX_SAMPLES = 100_000
 _TOLERATED = {
     f"{gear}.{figure.field}": f"{gear}.{figure.name}"
     for gear in GEARS
-    for figure in figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+    for figure in figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 }
 """Figures of the case file that a drawing may bound, by their names in the library."""
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")

@@ -58,7 +58,7 @@ class FactorInput(BoundaryModel):
         )
 
     class UniformInput(BoundaryModel):
-        """A uniform distribution."""
+        """A uniform distribution between two bounds."""
 
         low: Value = Field(description="Lowest value", examples=[0.05])
         high: Value = Field(description="Highest value", examples=[0.15])

@@ -35,7 +35,7 @@ STEPS = 9
 """Values of an axis whose range is not given."""
 _MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
 _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
-_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+_FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         size, kind = swept.what.boundary_value(reference_value), swept.what.what.kind
         if kind is Kind.LENGTH:
             return _evenly(0.5 * size, 1.5 * size)
-        return _evenly(-2.0 * size if kind is Kind.SLOPE else 0.0, 2.0 * size)
+        return _evenly(-2.0 * size if kind is Kind.DEVIATION else 0.0, 2.0 * size)
     if swept.name == TORQUE:
         loads = case.load.torque_n_m or [
             float(pair.torque(force)) for force in case.load.normal_force_n or ()

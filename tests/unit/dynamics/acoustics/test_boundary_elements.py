@@ -20,7 +20,7 @@ from dynamics.acoustics import (
 from dynamics.acoustics.boundary_elements import BoundaryElements
 from dynamics.errors import InputError
 from host import MissingExtra
-from model_studies.workers import InProcess, executor, local_processes
+from model_studies.workers import InProcess, dispatch, local_processes
 
 AIR = Air()
 MODEL = BoundaryElements()
@@ -113,7 +113,7 @@ def test_resistance_is_reciprocal_and_independent_of_place_and_turn() -> None:
 @pytest.mark.law
 def test_operators_by_blocks_of_panels_are_the_whole_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever assembles them: a pool has a library of its own, which sees a block at a time."""
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     whole = layer_operators.layer_operators(FINE, 2.0)
     monkeypatch.setattr(layer_operators, "BLOCK", 170)
     with local_processes(2) as pool:

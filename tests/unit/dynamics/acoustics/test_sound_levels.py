@@ -18,6 +18,7 @@ from dynamics.acoustics import (
     Range,
     Recording,
     a_weighting,
+    band_cases,
     errors_db,
     free_field_pressure,
     level_bands,
@@ -68,7 +69,8 @@ def resonance(values) -> float:
 
 def level_band(level, ranges) -> LevelBand:
     """Return the band of one level."""
-    return level_bands(lambda values: np.array([level(values)]), ranges)[0]
+    levels = np.array([[level(values)] for values in band_cases(ranges)])
+    return level_bands(ranges, levels)[0]
 
 
 DAMPING, ORDER_FREQUENCY = Range(0.005, 0.01, 0.02), Range(0.97, 1.0, 1.0)

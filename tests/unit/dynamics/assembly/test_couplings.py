@@ -280,7 +280,7 @@ def _dense(rows, columns):
 def test_entries_are_those_of_the_matrices():
     arrays = _arrays(2)
     size = arrays.mass.shape[0]
-    for name in ("damping", "stiffness", "direction", "turn"):
+    for name in ("damping", "stiffness", "direction", "position_gradient"):
         np.testing.assert_array_equal(_dense(getattr(arrays.sparse, name), size), getattr(arrays, name))
     moved = _dense(arrays.sparse.mobility, size) @ arrays.mass
     np.testing.assert_allclose(moved, np.eye(size), atol=1e-14)

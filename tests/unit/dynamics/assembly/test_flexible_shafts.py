@@ -91,7 +91,7 @@ def test_shafts_wind_up_between_where_torque_enters_and_leaves():
     assert turned("input", 0.2) == pytest.approx(0.0, abs=1e-12 * twisted)
     assert turned("input", 0.06) == pytest.approx(-twisted, rel=1e-9, abs=0.0)
     behind = float(
-        system.arrays.turn[0] @ start.displacement
+        system.arrays.position_gradient[0] @ start.displacement
     )  # base pitches: as far as the pinion has turned
     assert behind == pytest.approx(-twisted * 20 / (2.0 * math.pi), rel=1e-9, abs=0.0)
     back = turned("output", 0.15) - turned("output", 0.06)

@@ -15,7 +15,7 @@ from sounding_housings import smooth_motion, with_surface
 from dynamics.acoustics import ElementalRadiators
 from dynamics.noise import housing_radiation
 from model_studies.host_speed import host_slowness
-from model_studies.workers import InProcess, RunCost, executor, local_processes
+from model_studies.workers import InProcess, RunCost, dispatch, local_processes
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ def test_the_first_frequencies_are_sent_for_the_whole_and_later_ones_by_what_the
     body, costs, workers = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), [], Noting()
     request = body, ElementalRadiators(), [100.0, 900.0]
     housing_radiation(*request, expected=costs.append)
-    monkeypatch.setattr(executor, "START_SECONDS", 0.6 * costs[0].seconds / host_slowness(None))
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.6 * costs[0].seconds / host_slowness(None))
     computed = housing_radiation(*request, workers=workers)
     assert len(workers.sent) == 1 and 1 < workers.sent[0] < computed.frequency.size
 
 
 @pytest.mark.law
 def test_workers_compute_the_same_resistance_and_their_time_counts(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
     bare, hull = bare_housing(modal=8), box((0.3, 0.2, 0.15), (6, 4, 3))
     body, seen = with_surface(bare, hull, smooth_motion(hull, len(bare.stiffness))), []
     with local_processes(2) as pool:

@@ -83,14 +83,14 @@ def some_forces(count: int) -> np.ndarray:
 @pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
 def test_equals_the_uncondensed_solution_in_the_plane(teeth: int, bore: float, real: int | None) -> None:
     gear = replace(PLANE, teeth=teeth, bore_diameter=bore)
-    agrees_with_the_whole_mesh(gear, coarse_plane(gear, real_teeth=real))
+    assert_agrees_with_the_whole_mesh(gear, coarse_plane(gear, real_teeth=real))
 
 
 def test_equals_the_uncondensed_solution_of_a_ring_gear() -> None:
-    agrees_with_the_whole_mesh(RING, coarse_plane(RING))
+    assert_agrees_with_the_whole_mesh(RING, coarse_plane(RING))
 
 
-def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
+def assert_agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
     found = in_plane(gear, recipe, teeth=5)
     mesh = mesh_gear(gear, recipe)
     matrix = stiffness_matrix(mesh.points, mesh.triangles, STRAIN.lame_parameters(gear.material))

@@ -17,7 +17,6 @@ from fe_contact.contact import (
     Slices,
     contact_candidates,
     face_contact_problem,
-    flank_coordinate,
     solve_contact,
     with_face_tilt,
 )
@@ -34,7 +33,7 @@ HALF = 0.25 * MODULE
 
 def smooth_body(gear: Toothing, seed: int) -> FlankCompliance3D:
     """Smooth springs between all points of all flanks, stiffer to the root, and a key at three teeth."""
-    tip = float(flank_coordinate(gear, gear.tip_roll_length))
+    tip = float(gear.flank_coordinate(gear.tip_roll_length))
     s = np.linspace(-0.3 * tip, tip, 25)
     z = np.linspace(-0.5, 0.5, 6) * gear.face_width
     index = np.full((2 * z.size - 1, s.size), -1)

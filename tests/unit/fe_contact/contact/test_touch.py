@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from fe_contact import FlankModification, Gear, GearPair
-from fe_contact.contact.plain_touch import conjugate_touch, flank_coordinate
+from fe_contact.contact.plain_touch import conjugate_touch
 from fe_contact.contact.touch import modified_touch
 from fe_contact.effects.flank_modification import ModificationGap
 from fe_contact.flank.relief_shape import SHAPES
@@ -97,7 +97,7 @@ def test_against_a_direct_search(position, shape):
     )
     plain, modified = touches(gears, [position], (Removed(),))
     s_1, s_2, radius = (float(value[0, 0]) for value in (plain.s_1, plain.s_2, plain.radius))
-    tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
+    tip = float(gears.pinion.flank_coordinate(gears.pinion.tip_roll_length))
 
     def gap(x):
         roll = np.sqrt(2 * gears.pinion.base_radius * np.array([s_1 + x, s_2 - x]))
@@ -144,13 +144,13 @@ def test_a_triangular_relief_against_a_direct_search_at_any_place_of_the_face(sh
         term = ModificationGap(modification, FlankModification())
         modified = modified_touch(gears, plain, np.array([face]), (term,))
         s_1, radius = float(plain.s_1[0, 0]), float(plain.radius[0, 0])
-        reach = float(flank_coordinate(pinion, tip)) - s_1
+        reach = float(pinion.flank_coordinate(tip)) - s_1
 
         x = np.linspace(max(-0.4e-3, -0.3 * s_1), min(0.4e-3, reach), 4001)
         here = np.sqrt(2.0 * pinion.base_radius * (s_1 + x))
         gap = x**2 / (2.0 * radius) + modification.material_removed(pinion, here, face)
         assert modified.gap[0, 0] == pytest.approx(gap.min(), abs=1e-10)
-        away = flank_coordinate(pinion, begin) - modified.s_1[0, 0]
+        away = pinion.flank_coordinate(begin) - modified.s_1[0, 0]
         assert modified.offset[0, 0] == pytest.approx([away], abs=1e-12)
         assert modified.jump[0, 0] == pytest.approx(start.jump, rel=1e-12)
 
@@ -163,7 +163,7 @@ def test_gaps_run_over_the_start_of_a_relief_and_past_the_edge():
     assert np.all(modified.gap >= 0.0)
     gears = pair(tip_relief=15e-6, tip_relief_length=0.9e-3)
     _, modified = touches(gears, np.linspace(-0.7, 0.7, 30), (Removed(),))
-    tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
+    tip = float(gears.pinion.flank_coordinate(gears.pinion.tip_roll_length))
     assert modified.offset_1 == pytest.approx(tip - modified.s_1, abs=1e-12)
     assert modified.offset_2 == pytest.approx(tip - modified.s_2, abs=1e-12)
     # Past E the edge is what touches unless the relief opens faster than the flanks.
@@ -238,7 +238,7 @@ def test_the_edge_of_a_chamfer_touches_like_the_tip_of_a_shorter_tooth(make, sid
     assert found.gap[:, 0] == pytest.approx(wanted.gap, rel=2e-3, abs=1e-12)
     at = found.s_1 if side == "exit" else found.s_2
     gear = gears.pinion if side == "exit" else gears.wheel
-    assert at[:, 0] == pytest.approx(float(flank_coordinate(gear, gear.tip_form_roll_length)), abs=1e-12)
+    assert at[:, 0] == pytest.approx(float(gear.flank_coordinate(gear.tip_form_roll_length)), abs=1e-12)
     left = found.slope[:, 0]
     opening = np.abs(left) if side == "exit" else left + found.jump[:, 0, -1]
     assert opening == pytest.approx(wanted.slope_angle, rel=0.08, abs=2e-4)
@@ -261,8 +261,8 @@ def test_a_cut_tip_against_a_direct_search(make, edge):
     roll_1 = gears.pinion.tip_form_roll_length + beyond
     inside = roll_1 <= gears.pinion.tip_roll_length
     _, found = touches_at(gears, roll_1)
-    tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
-    form = float(flank_coordinate(gears.pinion, gears.pinion.tip_form_roll_length))
+    tip = float(gears.pinion.flank_coordinate(gears.pinion.tip_roll_length))
+    form = float(gears.pinion.flank_coordinate(gears.pinion.tip_form_roll_length))
     for k in np.flatnonzero(inside):
         s = np.linspace(form - 1e-5, min(tip, form + 0.1e-3), 200_001)
         roll = np.sqrt(2.0 * gears.pinion.base_radius * s)

@@ -13,14 +13,14 @@ import pytest
 from spur_gears import make_gear, make_ring
 
 from fe_contact.errors import InfeasibleGeometry, InputError
-from fe_contact.flank.involute import (
+from fe_contact.geometry import FlankModification, GearPair, iso6336_stiffness
+from fe_contact.involute import (
     inverse_involute,
     involute_function,
     involute_normal,
     involute_point,
     roll_length_at_radius,
 )
-from fe_contact.geometry import FlankModification, GearPair, iso6336_stiffness
 from fe_contact.material import Material
 
 

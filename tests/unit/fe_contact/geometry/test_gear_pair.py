@@ -13,10 +13,10 @@ from spur_gears import gear as bored
 from spur_gears import make_gear, make_ring
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, GearPair, ParallelAxes, RingGear
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear_pair import InternalGearPair
+from fe_contact.involute import involute_function
 
 MODULE = 4e-3
 

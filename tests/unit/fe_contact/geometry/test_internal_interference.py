@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, gear_pair
 from fe_contact.geometry.flank_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.gear_pair import InternalGearPair
@@ -23,6 +22,7 @@ from fe_contact.geometry.tip_interference import (
     trochoidal_interference,
 )
 from fe_contact.geometry.trimming import radial_clearance
+from fe_contact.involute import involute_function
 from fe_contact.types import FloatArray
 
 MODULE = 4e-3

@@ -12,10 +12,10 @@ from scipy.spatial import cKDTree
 from spur_gears import make_gear, make_ring
 
 from fe_contact.errors import InputError
-from fe_contact.flank.involute import involute_point
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.geometry.flank_profile import ToothProfile
 from fe_contact.geometry.toothing import Toothing
+from fe_contact.involute import involute_point
 from fe_contact.types import FloatArray
 
 SMOOTH = {

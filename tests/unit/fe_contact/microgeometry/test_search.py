@@ -32,7 +32,7 @@ from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.options import Run
 from fe_contact.types import Estimate, FloatArray
 from model_studies.stage_clock import StageClock
-from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, executor
+from model_studies.workers import ByExecutor, InProcess, RunCost, WorkersLost, dispatch
 
 START = np.array([0.9, 0.1, 0.5])
 BOTTOM = np.array([0.3, 0.6, 0.2])
@@ -252,7 +252,7 @@ def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> No
 )
 def test_walks_by_others_end_for_the_same_reason(method: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever the number of designs: also where a walk by itself ends with the last of them."""
-    monkeypatch.setattr(executor, "START_SECONDS", -1.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", -1.0)
     with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(2) as two:
         reasons = set()
         for evaluations in range(1, 150):
@@ -289,7 +289,7 @@ class Interrupted:
 def test_a_start_whose_workers_are_interrupted_keeps_the_best_so_far(
     after: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(executor, "START_SECONDS", -1.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", -1.0)
     bowl, workers = cast(DesignProblem, Bowl()), Interrupted(after)
     search = Search(SequentialLinearProgramming(sample=4, trials=2))
     run = search_from(bowl, search, START, 0, cancel=workers.stop.is_set, workers=workers)

@@ -49,7 +49,7 @@ def relieved(cache: Path) -> SolvedTable:
     return solved(GearPair(RELIEVED, GEAR), cache, **THREE_LOADS)
 
 
-def require(made: SolvedTable) -> None:
+def assert_lawful(made: SolvedTable) -> None:
     support = [each.solution for each in made.support]
     require_laws(check_laws(made.table, made.places.places, made.solved, support), made.table)
 
@@ -157,7 +157,7 @@ def planted(made: SolvedTable, fault: Break) -> SolvedTable:
 def test_a_planted_break_fails_by_law_place_and_numbers(relieved: SolvedTable, fault: Break) -> None:
     broken = planted(relieved, fault)
     with pytest.raises(SolveError, match=f"{fault.law}: .* is .* at position .*, bound ") as refused:
-        require(broken)
+        assert_lawful(broken)
     assert refused.value.partial is broken.table
 
 
@@ -179,7 +179,7 @@ def test_every_law_has_a_planted_break(relieved: SolvedTable) -> None:
     ids=["plain", "light and heavy", "relieved", "uneven pitches", "misaligned", "helical"],
 )
 def test_tables_as_solved_obey_all_laws(pair: GearPair, asked: Any, cache: Path) -> None:
-    require(solved(pair, cache, **asked))
+    assert_lawful(solved(pair, cache, **asked))
 
 
 def test_a_run_whose_table_breaks_a_law_fails_with_it(
@@ -229,7 +229,7 @@ def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: 
     grid = FlankGrid(tuple(np.linspace(*ends, 24)), (-7.5e-3, 7.5e-3), tuple((x, x) for x in removed))
     pair = GearPair(replace(small, tooth_flanks=(ToothFlank(tooth=2, flank_grid=grid),)), small)
     run = solved(pair, cache, torques=[10.0], level="draft")
-    require(run)
+    assert_lawful(run)
     problem, solution = run.solved[0]
     steps = approach_steps(run.places.places[0].contact.pair, problem, len(run.table.position), solution.load)
     curve = run.table.static_transmission_error[:, 0, 0, 0]

@@ -18,7 +18,7 @@ from fe_contact.analysis.pairs import contact_lines
 from fe_contact.analysis.pairs.contact_block import ContactBlock
 from fe_contact.geometry import FlankModification, Shaft
 from fe_contact.options import Run
-from model_studies.workers import InProcess, RunCost, executor
+from model_studies.workers import InProcess, RunCost, dispatch
 
 pytestmark = pytest.mark.usefixtures("coarse_sectors")
 
@@ -54,7 +54,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 0.002)
-    monkeypatch.setattr(executor, "START_SECONDS", 0.0)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 0.0)
 
 
 def gear(**other: Any) -> Gear:
@@ -164,7 +164,7 @@ def test_tasks_do_not_depend_on_who_works(cache: Path) -> None:
 
 def test_too_little_to_send_stays_here(monkeypatch: pytest.MonkeyPatch) -> None:
     """A table as a whole: its gears as well, which nobody has condensed."""
-    monkeypatch.setattr(executor, "START_SECONDS", 1e3)
+    monkeypatch.setattr(dispatch, "START_SECONDS", 1e3)
     workers = Elsewhere()
     analyze(helical(), torques=[60.0], level="draft", positions=16, workers=workers)
     assert not workers.tasks

@@ -14,15 +14,15 @@ DAY = (0, 3)
 @pytest.mark.law
 def test_drawn_tables_cover_what_is_solved_between_their_loads(tmp_path: Path) -> None:
     drawn = list(drawn_tables(count=DAY[-1] + 1))
-    assess([drawn[k] for k in DAY], tmp_path, minimum=0.9)  # of ten points nine
+    check_coverage([drawn[k] for k in DAY], tmp_path, minimum=0.9)  # of ten points nine
 
 
 @pytest.mark.nightly
 def test_thirty_drawn_tables_cover_what_is_solved_between_their_nodes(tmp_path: Path) -> None:
-    assess(list(drawn_tables()), tmp_path)
+    check_coverage(list(drawn_tables()), tmp_path)
 
 
-def assess(drawn, cache, minimum=0.95):
+def check_coverage(drawn, cache, minimum=0.95):
     found = [between_nodes(*table, cache) for table in drawn]
     ripple, mean = (np.concatenate([getattr(one, name) for one in found]) for name in ("ripple", "mean"))
     assert covered(ripple) >= minimum

@@ -22,7 +22,7 @@ from fe_contact.errors import InputError
 from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
 from lineofaction.gearbox.studies.ablate.run import RUN
-from model_studies.workers import RunCost, executor
+from model_studies.workers import RunCost, dispatch
 
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
 PAIR = GearPair(RELIEVED, GEAR)
@@ -75,7 +75,7 @@ def test_large_tables_are_shared_by_their_blocks_and_small_ones_whole(
     """`start`: seconds that pay for workers, in those that one of the tables takes."""
     request = Ablation.request(PAIR, *table_request(**ASKED))  # type: ignore[arg-type]
     seconds = request.predicted(request.planned(None), None, with_errors=False).cpu_seconds
-    monkeypatch.setattr(executor, "START_SECONDS", start * seconds)
+    monkeypatch.setattr(dispatch, "START_SECONDS", start * seconds)
     monkeypatch.setattr(contact_lines, "TASK_SECONDS", 1e-3)
     only, names = ["tooth_coupling", "corner_contact", "profile_modification"], set()
 

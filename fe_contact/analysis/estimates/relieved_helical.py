@@ -1,0 +1,119 @@
+"""Errors of the meshes of relieved helical pairs: of the mean with their sign, of the ripple without one.
+
+Where reliefs end the contact inside the flanks, meshes and load patches change the compliance by the same
+part at every position: finer meshes soften it, narrower patches stiffen it. What they leave of the mean has a
+known sign, and a doubt of its own. What they leave of peak-to-peak has none: the difference of two meshes
+along the curve tells its size alone.
+
+The constants are of drawn pairs of electric drives (docs/lab/index.md, "Quiet helical pairs").
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.analysis.estimates.table_sample import Nested
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.discretization import Discretization, FaceDiscretization
+from fe_contact.planning.model_error import is_relieved_helical
+from fe_contact.planning.plan import Plan
+from fe_contact.ste.curve_quantities import MEAN, PEAK_TO_PEAK, mean_of_curves
+from fe_contact.types import FloatArray
+
+
+class MeshRemainder(NamedTuple):
+    """What a mesh leaves of its changes, over what second order leaves of them."""
+
+    mesh: float
+    patches: float
+    """`mesh`, `patches`: Of the mean, by its sign, of the change by the mesh and of that by the patches."""
+    doubt: float
+    """Of the mean without a sign, over the change by the mesh."""
+    ripple: float
+    """Of peak-to-peak, over half the peak-to-peak of the difference of the curves of many loads."""
+    harmonics: float
+    """Over the change of a phasor."""
+
+
+REMAINDER = {
+    "draft": MeshRemainder(0.72, 1.55, 0.3, 1.35, 2.0),
+    "medium": MeshRemainder(1.0, 1.55, 0.5, 1.0, 2.0),
+    "standard": MeshRemainder(0.45, 1.55, 0.2, 1.2, 1.8),
+}
+"""The level fine has those of standard."""
+
+
+def remainder_of(plan: Plan) -> MeshRemainder:
+    """Return what the meshes of a plan leave."""
+    return REMAINDER.get(plan.level, REMAINDER["standard"])
+
+
+def has_signed_errors(pair: ParallelAxes, made: Discretization) -> bool:
+    """Whether the errors of a discretization follow the laws of this file."""
+    return isinstance(made, FaceDiscretization) and is_relieved_helical(pair)
+
+
+def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:
+    """Return how much higher the mean lies on exact meshes, and the doubt of that, each (f, m, d) in m.
+
+    At the loads and alignments that were solved again; `nested` is of transmission error.
+    """
+    by_mesh = _mean(nested, nested.patched - nested.coarse) * plan.discretization.remaining
+    by_patches = _mean(nested, nested.table - nested.patched) * plan.remaining_patches
+    return mean_of_limit(remainder_of(plan), by_mesh, by_patches)
+
+
+def mesh_bias(nested: Nested, plan: Plan) -> FloatArray:
+    """Return how much higher the mean lies on exact meshes, (F,) in m: where it does most at each load."""
+    signed = nested.sample.spread(mean_left(nested, plan)[0])
+    by_load = signed.reshape(signed.shape[0], -1)
+    worst = np.abs(by_load).argmax(axis=1)
+    return np.asarray(np.take_along_axis(by_load, worst[:, None], axis=1)[:, 0])
+
+
+def mean_of_limit(
+    left: MeshRemainder, by_mesh: FloatArray | float, by_patches: FloatArray | float
+) -> tuple[FloatArray, FloatArray]:
+    """Return how much higher the mean of the limit lies, and the doubt of that, m.
+
+    `by_mesh` and `by_patches` are what second order leaves of the changes of the mean, in m.
+    """
+    signed, doubt = left.mesh * by_mesh + left.patches * by_patches, left.doubt * np.abs(by_mesh)
+    return np.asarray(signed), np.asarray(doubt)
+
+
+def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) -> FloatArray:
+    """Return what meshes leave of peak-to-peak, (f, ...) in m.
+
+    A difference of two meshes is small at one load by accident, at several loads it is not: its size in parts
+    of what the load adds to the mean, `added` (f, ...), is that of all loads. `half` (f, ...) is what second
+    order leaves of half the peak-to-peak of the difference. Both are in m.
+    """
+    loads = half.shape[0]
+    relative = np.sqrt(np.mean(np.square(half / added), axis=0))
+    return np.asarray(left.ripple * np.sqrt(1.0 + 1.0 / loads) * relative * added)
+
+
+def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, plan: Plan) -> FloatArray:
+    """Return the errors by mesh and by patches (2, 23, F, M, D) in m.
+
+    `changes` are what second order leaves of them. The error by mesh holds all that is left of the mean.
+    `added` (f, m, d) is what the load adds to the mean at the points that were solved again, m.
+    """
+    left, remaining = remainder_of(plan), plan.discretization.remaining
+    by_mesh, by_patches = changes.copy()
+    by_mesh *= left.harmonics
+    signed, doubt = mean_left(nested, plan)
+    half = 0.5 * remaining * np.ptp(np.nan_to_num(nested.patched - nested.coarse), axis=0)
+    by_mesh[MEAN] = nested.sample.spread(np.abs(signed) + doubt)
+    by_mesh[PEAK_TO_PEAK] = nested.sample.spread(ripple_of_limit(left, half, added))
+    by_patches[MEAN] = 0.0
+    return np.stack([by_mesh, by_patches])
+
+
+def _mean(nested: Nested, difference: FloatArray) -> FloatArray:
+    sample = nested.sample
+    rows = np.nan_to_num(difference).reshape(sample.knots.size, -1)
+    return mean_of_curves(sample.knots, rows, sample.period).reshape(difference.shape[1:])
