@@ -38,6 +38,11 @@ class Front:
         i, b = float(len(self.inner)), float(len(self.border))
         return i**3 / 6.0 + 0.5 * i * i * b + 0.5 * i * b * b
 
+    @property
+    def update_entries(self) -> int:
+        """Numbers of the symmetric matrix that goes up."""
+        return len(self.border) * (len(self.border) + 1) // 2
+
     def fronts(self) -> Iterator[Front]:
         """Yield all fronts, children before their parent."""
         for child in self.children:
@@ -71,6 +76,16 @@ class EliminationTree:
         """Numbers copied in gathering the fronts."""
         return sum((len(f.inner) + len(f.border)) ** 2 for f in self.root.fronts())
 
+    @property
+    def largest_border(self) -> int:
+        """Most freedoms that go up from one front."""
+        return max(len(front.border) for front in self.root.fronts())
+
+    @property
+    def waiting_entries(self) -> int:
+        """Most numbers of updates that wait for their parents at a time."""
+        return _waiting(self.root)
+
     def working_entries(self) -> int:
         """Most numbers in memory at a time besides factors, with the results that fronts leave."""
         return _working(self.root)
@@ -84,6 +99,15 @@ def _working(front: Front) -> int:
         borders += len(child.border) ** 2
     inner, border = len(front.inner), len(front.border)
     return max(peak, borders + inner * (inner + border) + border**2)
+
+
+def _waiting(front: Front) -> int:
+    """Return the most numbers of updates that wait below a front; its own then takes their place."""
+    peak = waiting = 0
+    for child in front.children:
+        peak = max(peak, waiting + max(_waiting(child), child.update_entries))
+        waiting += child.update_entries
+    return peak
 
 
 def bisected_tree(

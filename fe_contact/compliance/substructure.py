@@ -10,11 +10,15 @@ import numpy as np
 from scipy.linalg import blas, lapack
 
 from fe_contact.compliance.elimination_tree import EliminationTree, Front
+from fe_contact.compliance.front_assembly import add_elements, add_updates
+from fe_contact.compliance.front_memory import FrontBlocks, FrontMemory
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
-from host.loops import njit
 from model_studies.progress import Report, unreported
+
+NOTHING, NO_ROWS = np.zeros(0), np.zeros(0, dtype=np.int64)
+"""Update of a child that a front does not have, and its rows."""
 
 
 @dataclass(frozen=True)
@@ -69,102 +73,71 @@ def condense(
     factors: list[_FrontFactor] = []
     done, total = 0.0, tree.operations
 
-    def eliminate(front: Front, gathered: _Gathered) -> None:
+    def eliminate(front: Front, blocks: FrontBlocks) -> None:
         nonlocal done
-        factors.append(_FrontFactor(front, *_eliminated(gathered)))
+        factors.append(_eliminated(front, blocks))
         done += front.operations
         report(done / total)
 
-    matrix = _reduced(tree.root, tree.order, freedoms, stiffness, eliminate)
+    work = _Work(tree.order, freedoms, stiffness, FrontMemory(tree), eliminate)
+    kept = len(tree.root.border)
+    matrix = _by_columns(_reduced(tree.root, work), kept, kept)
     return matrix, Condensation(tuple(factors[::-1]), tree.root.border, len(tree.order))
 
 
-def _reduced(
-    front: Front,
-    order: IntArray,
-    freedoms: IntArray,
-    stiffness: ElementStiffness,
-    eliminate: Callable[[Front, _Gathered], None],
-) -> FloatArray:
-    """Return what a front passes up; no closure that calls itself, which would keep all factors alive."""
-    parts = [_reduced(child, order, freedoms, stiffness, eliminate) for child in front.children]
-    gathered = _gathered(front, parts, order, freedoms, stiffness)
+class _Work(NamedTuple):
+    """What the elimination of every front needs; parameters of `condense`."""
+
+    order: IntArray
+    freedoms: IntArray
+    stiffness: ElementStiffness
+    memory: FrontMemory
+    eliminate: Callable[[Front, FrontBlocks], None]
+
+
+def _reduced(front: Front, work: _Work) -> FloatArray:
+    """Return what is left of a front; no closure that calls itself, which would keep all factors alive."""
+    updates = [work.memory.put_update(child, _reduced(child, work)) for child in front.children]
+    blocks = work.memory.blocks(front)
+    _gather(front, blocks, updates, work)
     if len(front.inner):
-        eliminate(front, gathered)
-    return gathered.rest
+        work.eliminate(front, blocks)
+    return blocks.rest
 
 
-class _Gathered(NamedTuple):
-    """A front by blocks: inner freedoms (i, i), border by inner ones (b, i), rest (b, b), lower triangles.
+def _gather(front: Front, blocks: FrontBlocks, updates: list[FloatArray], work: _Work) -> None:
+    """Sum a front up.
 
-    Each is an array of its own, so that BLAS works in its place.
+    It and its children are numbered as they are eliminated, so lower triangles stay lower on the way up.
     """
-
-    inner: FloatArray
-    below: FloatArray
-    rest: FloatArray
-
-
-def _gathered(
-    front: Front, parts: list[FloatArray], order: IntArray, freedoms: IntArray, stiffness: ElementStiffness
-) -> _Gathered:
-    """Return a front; `parts` is emptied.
-
-    Both are numbered as they are eliminated, so lower triangles stay lower on the way up.
-    """
+    order = work.order
     numbers, count = np.concatenate([order[front.inner], order[front.border]]), len(front.inner)
-    sizes = (count, count), (len(numbers) - count, count), (len(numbers) - count,) * 2
-    blocks = _Gathered(*(np.zeros(size, order="F") for size in sizes))
-    for child in front.children:
-        _add_part(blocks, parts.pop(0), np.searchsorted(numbers, order[child.border]))
+    rows = [np.searchsorted(numbers, order[child.border]) for child in front.children]
+    none = 2 - len(rows)
+    first, second = updates + none * [NOTHING]
+    first_rows, second_rows = rows + none * [NO_ROWS]
+    add_updates(*blocks, first, first_rows, second, second_rows, count)
     if len(front.elements):
-        numbers_of_elements = freedoms[front.elements]
-        positions = np.where(
-            numbers_of_elements >= 0, np.searchsorted(numbers, order[numbers_of_elements]), -1
-        )
-        _add_elements(blocks, stiffness.matrices, stiffness.of_element[front.elements], positions)
-    return blocks
+        freedoms = work.freedoms[front.elements]
+        positions = np.where(freedoms >= 0, np.searchsorted(numbers, order[freedoms]), -1)
+        stiffness = work.stiffness
+        add_elements(*blocks, stiffness.matrices, stiffness.of_element[front.elements], positions, count)
 
 
-def _eliminated(front: _Gathered) -> tuple[FloatArray, FloatArray]:
-    """Factorise the inner freedoms of a front; return factor and coupling. What is left is in its rest."""
+def _eliminated(front: Front, blocks: FrontBlocks) -> _FrontFactor:
+    """Factorise the inner freedoms of a front in their memory. What is left is in the block of its rest."""
+    inner, border = len(front.inner), len(front.border)
     # LAPACK leaves the upper triangle as it was: rubbish that every later call must be told to ignore.
-    factor, info = lapack.dpotrf(front.inner, lower=1, overwrite_a=1, clean=0)
+    factor, info = lapack.dpotrf(_by_columns(blocks.within, inner, inner), lower=1, overwrite_a=1, clean=0)
     if info:
         raise SolveError(f"tooth sector: stiffness is not positive definite (pivot {info})")
-    coupling = blas.dtrsm(1.0, factor, front.below, side=1, lower=1, trans_a=1, overwrite_b=1)
-    blas.dsyrk(-1.0, coupling, beta=1.0, c=front.rest, lower=1, overwrite_c=1)
-    return factor, coupling
+    below = _by_columns(blocks.below, border, inner)
+    rest = _by_columns(blocks.rest, border, border)
+    coupling = blas.dtrsm(1.0, factor, below, side=1, lower=1, trans_a=1, overwrite_b=1)
+    blas.dsyrk(-1.0, coupling, beta=1.0, c=rest, lower=1, overwrite_c=1)
+    return _FrontFactor(front, factor, coupling)
 
 
-@njit(cache=True)
-def _add_part(front: _Gathered, part: FloatArray, rows: IntArray) -> None:
-    count = len(front.inner)
-    first = np.searchsorted(rows, count)
-    for j in range(first):
-        for i in range(j, first):
-            front.inner[rows[i], rows[j]] += part[i, j]
-        for i in range(first, len(rows)):
-            front.below[rows[i] - count, rows[j]] += part[i, j]
-    for j in range(first, len(rows)):
-        for i in range(j, len(rows)):
-            front.rest[rows[i] - count, rows[j] - count] += part[i, j]
-
-
-@njit(cache=True)
-def _add_elements(front: _Gathered, pool: FloatArray, of_element: IntArray, rows: IntArray) -> None:
-    """Add element matrices at rows `rows` (e, 60), lower triangle only; -1 is held."""
-    count = len(front.inner)
-    for e in range(len(of_element)):
-        local = pool[of_element[e]]
-        for i in range(rows.shape[1]):
-            for j in range(rows.shape[1]):
-                row, column = rows[e, i], rows[e, j]
-                if column < 0 or row < column:
-                    continue
-                if row < count:
-                    front.inner[row, column] += local[i, j]
-                elif column < count:
-                    front.below[row - count, column] += local[i, j]
-                else:
-                    front.rest[row - count, column - count] += local[i, j]
+def _by_columns(block: FloatArray, rows: int, columns: int) -> FloatArray:
+    """Return flat memory as a matrix, column by column."""
+    return block.reshape(rows, columns, order="F")

@@ -1,0 +1,58 @@
+"""Memory of the fronts of one elimination, as large as its tree says.
+
+Three pieces in place of three for every front: the system clears large pages once and not as many small ones
+again for each front.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from fe_contact.compliance.elimination_tree import EliminationTree, Front
+from fe_contact.compliance.front_assembly import pack
+from fe_contact.types import FloatArray
+
+
+class FrontBlocks(NamedTuple):
+    """Lower triangle of a front by blocks, flat and column by column; at first they hold anything."""
+
+    within: FloatArray
+    """Of its i inner freedoms, i * i numbers."""
+    below: FloatArray
+    """Of its b border freedoms by the inner ones, b * i numbers."""
+    rest: FloatArray
+    """Of its border freedoms, b * b numbers: what is left of it goes up."""
+
+
+class FrontMemory:
+    """Memory for the fronts of a tree, each parent after its children.
+
+    Factors lie behind each other and stay. All fronts use the same memory for what is left; from there its
+    lower triangle goes on a stack of updates, where a parent finds those of its children on top. What is left
+    of the root stays where it is.
+    """
+
+    def __init__(self, tree: EliminationTree) -> None:
+        self._factors = np.empty(tree.factor_entries)
+        self._factored = 0  # numbers of factors so far
+        self._rest = np.empty(tree.largest_border**2)
+        self._updates = np.empty(tree.waiting_entries)
+        self._waiting = 0  # numbers of updates on the stack
+
+    def blocks(self, front: Front) -> FrontBlocks:
+        """Return the blocks of the next front."""
+        inner, border = len(front.inner), len(front.border)
+        begin, middle = self._factored, self._factored + inner * inner
+        self._factored = middle + border * inner
+        factors = self._factors[begin:middle], self._factors[middle : self._factored]
+        return FrontBlocks(*factors, self._rest[: border**2])
+
+    def put_update(self, front: Front, rest: FloatArray) -> FloatArray:
+        """Put what is left of a front in the place of its children's updates; return its update."""
+        self._waiting -= sum(child.update_entries for child in front.children)
+        update = self._updates[self._waiting : self._waiting + front.update_entries]
+        pack(rest, update)
+        self._waiting += front.update_entries
+        return update
