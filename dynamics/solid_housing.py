@@ -1,4 +1,7 @@
-"""The solid of a housing: material, walls of seats, files, settings of its reduction; no mesh."""
+"""The solid of a housing: material, walls of seats, files, settings of its reduction; no mesh.
+
+The last value of a `Declared` is an example for the documentation, not the default.
+"""
 
 from __future__ import annotations
 

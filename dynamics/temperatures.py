@@ -19,7 +19,7 @@ _REFERENCE = replace(TEMPERATURE, description="Temperature at which drawings hol
 class WarmBearing:
     """A rolling bearing as drawn and as steady temperatures leave it.
 
-    `loose`: play of a ring in its seat by the ring's name, m: of rings that their fits no longer hold.
+    `loose` has the rings that turn loose in their seats: the play in the seat, m, by the name of the ring.
     """
 
     drawn: RollingBearing
@@ -36,15 +36,16 @@ class WarmMesh:
     backlash: float
     """Change of the backlash along the transverse line of action."""
     misalignment: float
-    """Misalignment by seats of unlike temperature, as the table counts it."""
+    """Misalignment by seats of unlike temperature, with the sign and reference of the mesh's table."""
 
 
 @described
 @dataclass(frozen=True)
 class Temperatures:
-    """The temperature of the housing, and where drawings hold; the other parts have their own.
+    """Temperature of the housing, and the reference temperature at which drawings hold.
 
-    `bearings` and `meshes` are what they changed in the scene that has them; None: parts are as drawn.
+    Shafts and gears state their own temperatures. `bearings` and `meshes` are the changes of a scene by its
+    temperatures; they are None in a scene whose parts are as drawn.
     """
 
     housing_material: Material
@@ -60,7 +61,10 @@ class Temperatures:
             raise InputError("housing_material.thermal_expansion", None, "given", remedy)
 
     def strain(self, expansion: float, temperature: float | None) -> float:
-        """Return the thermal strain of a part of this expansion (1/K); None: as the housing is warm."""
+        """Return the thermal strain of a part with the coefficient of thermal expansion `expansion`, 1/K.
+
+        A part whose temperature is None has that of the housing.
+        """
         warm = self.housing if temperature is None else temperature
         return expansion * (warm - self.reference)
 

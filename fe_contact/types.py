@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
+from bounds.error_digits import with_error
 from bounds.types import BoolArray, ComplexArray, FloatArray, IntArray, Json
 
 __all__ = ["BoolArray", "ComplexArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
@@ -67,12 +68,4 @@ class Estimate:
         value, error, name = self.value / one, self.error / one, unit.replace("um", "µm")
         if not math.isfinite(error):
             return f"{value:.4g} {name}, no error stated".replace("  ", " ")
-        places = _decimals(error)
-        return f"{value:.{places}f} ± {error:.{places}f} {name}".rstrip()
-
-
-def _decimals(error: float) -> int:
-    """Return the decimals that leave two digits of an error."""
-    if error == 0.0:
-        return 6
-    return max(1 - int(f"{error:.1e}".partition("e")[2]), 0)
+        return with_error(value, error, name)

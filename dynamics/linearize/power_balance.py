@@ -50,10 +50,10 @@ class PowerBalance:
 
     @property
     def residual(self) -> float:
-        """Power that is put in and lost nowhere over that put in, all harmonics, at the worst speed."""
+        """Power put in but lost in no part, over the power put in: all harmonics, at the worst speed."""
         missing = np.abs(np.sum(self.input, axis=0) - np.sum(self.loss, axis=0)).sum(axis=-1)
-        turned = np.abs(self.input).sum(axis=(0, 2))
-        return float(np.max(missing / np.maximum(turned, 1e-300), initial=0.0))
+        total = np.abs(self.input).sum(axis=(0, 2))
+        return float(np.max(missing / np.maximum(total, 1e-300), initial=0.0))  # 0 over 0 is 0
 
     def by_kind(self) -> dict[str, FloatArray]:
         """Return the power that the parts of a kind lose together, all harmonics, (S,)."""
@@ -76,8 +76,10 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
     for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
         u, absorbed = steady.displacement[part], dict[tuple[str, str], FloatArray]()
         rate = 1j * steady.omega[part, :, None] * u
+        # the meshes come first in `gained`; after the first block `LOADS` follows, which has no cycle
         for name, cycle in zip(gained, at.cycles, strict=False):
             along = rate @ at.system.arrays.direction[cycle.rows].T
+            # forces that do not depend on speed have one row
             force = steady.force if len(steady.force) == 1 else steady.force[part]
             gained[name].append(_power(np.swapaxes(force[:, cycle.rows], 1, 2), along))
         loads = load_harmonics(at.system, at.period, speed[part], steady.harmonics, at.time)
@@ -117,7 +119,8 @@ def _losses(
         yield part.name, part.kind, _power(force, along)
     if at.turning:
         terms = gyroscopic_terms(at.system, speed)
-        damping, stiffness = (np.stack([term[k] for term in terms]) for k in (0, 1))
+        damping = np.stack([damping_term for damping_term, _ in terms])  # (S, n, n)
+        stiffness = np.stack([stiffness_term for _, stiffness_term in terms])
         force = np.einsum("sij,shj->shi", damping, rate) + np.einsum("sij,shj->shi", stiffness, u)
         yield FRAMES, "frame", _power(force, rate)
 

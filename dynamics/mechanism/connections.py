@@ -22,8 +22,6 @@ from dynamics.mechanism.supports import Supports, gather_supports, seat_axes, se
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
-QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.0
-
 
 @dataclass(frozen=True)
 class Seats:

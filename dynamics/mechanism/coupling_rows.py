@@ -22,7 +22,8 @@ ACROSS = (0, 1, 3, 4)
 
 
 QUARTER = np.zeros((SEAT, SEAT))
-"""z x of a seat's displacement and of its tilt."""
+QUARTER[[0, 1, 3, 4], [1, 0, 4, 3]] = -1.0, 1.0, -1.0, 1.0
+"""Quarter turn about z (z x) of a seat's displacement and of its tilt."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,8 @@
-"""Force laws of all flanks: table at its operating point, technique applied, damping filled in."""
+"""Force laws of all flanks: table at its operating point, technique applied, damping filled in.
+
+The technique of a mesh says how its force follows from its table: by the table itself ("variable_torque") or
+by its secant at the nominal force.
+"""
 
 from __future__ import annotations
 
@@ -54,17 +58,27 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
         except InputError as error:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
-    row_stiffness = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
+    lowest_load = [table.level[1] for table in static]  # level 0 is lift-off, without load
+    row_stiffness = np.where(nominal > 0.0, nominal, lowest_load)
     stiffness = np.array([mean_stiffness(packed, index, force) for index, force in enumerate(row_stiffness)])
-    damping = [  # as given, or from the ratio, of the gears rotating against each other on the mesh
+    damping = [  # given, or from the damping ratio of the mesh as an oscillator: c = 2 zeta sqrt(k m)
         2.0 * mesh.damping_ratio * float(np.sqrt(stiffness[f] / mesh_mobility(mechanism, f)))
         if mesh.damping is None
         else mesh.damping
         for f, mesh in enumerate(scene.meshes)
     ]
+    # without a secant among them the tables are the static ones, already packed
     alike = all(table_used is table for table_used, table in zip(used, static, strict=True))
     law = FlankLaws(packed if alike else pack_tables(used), np.array(damping), DAMPING_REACH * row_stiffness)
-    return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
+    return Flanks(
+        nominal_force=nominal,
+        mean_stiffness=stiffness,
+        used=tuple(used),
+        law=law,
+        coast=(),
+        static=packed,
+        tables=tuple(used),
+    )
 
 
 def mean_stiffness(tables: PackedTables, flank: int, force: float) -> float:
@@ -87,7 +101,10 @@ def with_technique(technique: str, table: PlainTable, force: float) -> PlainTabl
 
 
 def mesh_mobility(mechanism: Mechanism, index: int) -> float:
-    """Return 1/m of the gears rotating against each other on mesh `index`: sum of base_radius^2 / inertia."""
+    """Return the inverse of the effective mass of both gears of a mesh along its line of action, 1/kg.
+
+    It is the sum of base radius squared over polar inertia; a gear with imposed motion adds nothing.
+    """
     scene, mobility = mechanism.scene, 0.0
     for name in (scene.meshes[index].driver, scene.meshes[index].driven):
         gear = scene.gear(name)

@@ -23,6 +23,7 @@ class BearingLoadChecks:
         self._effect = system.ledger.effect_adding(BEARING_LAWS)
         off = scene.effects.get(self._effect) == "off"
         self._name = system.supports.name
+        # linear are the bearings without a law, and all where the effect that adds the laws is off
         self._watched = [i for i, name in enumerate(self._name) if off or name not in laws]
         self._has_law = [self._name[i] in laws for i in self._watched]
         self._direction: FloatArray | None = None

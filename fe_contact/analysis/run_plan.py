@@ -24,8 +24,10 @@ from fe_contact.planning.planned import MeshChoice
 from fe_contact.types import Json
 from model_studies.host_speed import host_slowness
 
-_DESIGN = 0.75
-"""A solution at equally spaced positions over the table of a search: 0.55 to 1.0 in sweeps of two pairs."""
+_DESIGN_WORK = 0.75
+"""Cost of the contact solution of one design, at equally spaced positions, over that of a table with adaptive
+positions. Sweeps of two gear pairs gave 0.55 to 1.0.
+"""
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,9 @@ class RunPlan:
     """The mesh that would be taken."""
     plan: Plan
     passes: tuple[PlannedLevel, ...]
-    """Predictions for the mesh that would be taken and, where it is tried first, for the one behind it."""
+    """Predictions by pass: for the mesh that would be taken, and where that is a trial that may miss the
+    tolerance, for the mesh that is expected to follow it.
+    """
     levels: tuple[PlannedLevel, ...]
     """Predictions for the chosen mesh and the other mesh levels of the same model. Where the time does not
     allow the mesh that the tolerance needs, its prediction is here too.
@@ -100,15 +104,15 @@ def plan_run(
     pair : GearPair, InternalGearPair or Checked
         A request that is checked already stands for pair, axes and options.
     time_budget : float, optional
-        CPU seconds in place of that of the options. It may stand beside a level: the plan says whether the
-        level fits the time.
+        CPU seconds; replaces the time budget of the options. With a level in the options, the plan says
+        whether the level fits the time.
     cache : Path, optional
-        Of flank compliances: what is in it costs nothing.
+        Directory of flank compliances; a compliance that it holds costs nothing.
     """
     checked = as_checked(pair, axes, options)
     options = checked.request.options
     budget = options.time_budget if time_budget is None else time_budget
-    if options.level is None:
+    if options.level is None:  # a level and a budget exclude each other in options
         options = replace(options, time_budget=budget)
         checked = replace(checked, request=replace(checked.request, options=options))
     decision = decide(checked, cache, tried=True)
@@ -117,6 +121,7 @@ def plan_run(
     others = [_planned(checked, name, curves, cache) for name in LEVELS if name != choice.level]
     needed = () if decision.wished is None else (_decision(decision.wished, curves, cache),)
     passes = tuple(_decision(later, curves, cache) for later in decision.passes)
+    # the same mesh may be in several groups; the last prediction is kept
     rows = {(row.model, row.level, row.slices): row for row in (*others, *needed, *passes)}
     levels = sorted(rows.values(), key=lambda row: MESHES.index(row.level))
     conflict = ""
@@ -154,14 +159,15 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
     checked : Checked
         The request whose loads every design is solved at.
     cache : Path, optional
-        Of flank compliances: what is in it costs nothing.
+        Directory of flank compliances; a compliance that it holds costs nothing.
     """
     choice = decide(checked, cache)
     pair, model = choice.checked.request.pair, choice.checked.model
-    prediction = predict_run(pair, choice.plan, model, (1, 1), cache)
+    one_alignment = 1, 1  # numbers of misalignments and of center distances
+    prediction = predict_run(pair, choice.plan, model, one_alignment, cache)
     parts = prediction.parts
     bodies = parts["compliance"]["bodies"] + parts["error estimate"]["bodies"]
-    design = _DESIGN * parts["contact"]["table"]
+    design = _DESIGN_WORK * parts["contact"]["table"]
     errors = parts["error estimate"]["solutions"]
     table = prediction.stages["contact"] + prediction.correction["error estimate"] * errors
     slowness = host_slowness(cache)
@@ -174,10 +180,13 @@ def predicted_designs(checked: Checked, cache: Path | None) -> PredictedDesigns:
 
 
 def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | None) -> PlannedLevel:
-    """Predict what was decided; its error is the one by which it was, where it was by an error."""
+    """Predict cost and error of a decision.
+
+    Where the decision was made by an expected error in m, that error is returned; else it is computed here.
+    """
     checked, option = choice.checked, choice.mesh.option
     error = option.error
-    if not error.mean:
+    if not error.mean:  # None or 0: no size of the transmission error was known to the decision
         error = expected_error(checked.request.pair, choice.plan, curves, bound=checked.request.model_chosen)
     return PlannedLevel(checked.model_name, option.level, option.slices, choice.predicted(cache), error)
 

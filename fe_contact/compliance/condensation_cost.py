@@ -101,11 +101,18 @@ def predict_cost(
     cache : Path, optional
         Directory of what is known of the host.
     """
-    return _predicted(gear.unmodified(), recipe or SectorRecipe.standard(gear), cache)
+    operations, working_bytes = _counted(gear.unmodified(), recipe or SectorRecipe.standard(gear))
+    rate = cached_speed(cache, "dense_rate", _dense_rate, _RATES)
+    seconds = {part: count / rate for part, count in operations.items()}
+    return PredictedCost({"mesh": MESH_SECONDS} | seconds, working_bytes)
 
 
 @lru_cache(maxsize=64)
-def _predicted(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> PredictedCost:
+def _counted(gear: Toothing, recipe: SectorRecipe) -> tuple[Mapping[str, float], int]:
+    """Return the multiplications with addition by part, and the bytes of the largest working set.
+
+    They are those of every host: one elimination tree serves the plan of a run and its progress.
+    """
     grid = sector_outline(tooth_profile(gear), recipe).grid
     sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)
@@ -123,9 +130,7 @@ def _predicted(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Pred
         "keeping": KEEPING * (reach + 1) * sizes.flank**2,
     }
     keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
-    rate = cached_speed(cache, "dense_rate", _dense_rate, _RATES)
-    seconds = {part: count / rate for part, count in operations.items()}
-    return PredictedCost({"mesh": MESH_SECONDS} | seconds, _working_bytes(tree, sizes) + keyed)
+    return operations, _working_bytes(tree, sizes) + keyed
 
 
 def _ring_operations(sizes: _SectorSizes) -> float:

@@ -1,4 +1,8 @@
-"""Choose the micro-geometry of a pair: least expected peak-to-peak STE over torques and scatter."""
+"""Choose the micro-geometry of a pair: least expected peak-to-peak STE over torques and scatter.
+
+A search has several starts: the start design of the request, and random designs within the bounds. A search
+run is the result of one start. A walk is a descent from one design, with few positions and without scatter.
+"""
 
 from __future__ import annotations
 
@@ -29,13 +33,14 @@ def search_all(
     run: Run,
     cancel: Cancel,
 ) -> tuple[SearchRun, ...]:
-    """Search from every start; `start_design` is the design to begin with, m.
+    """Search from every start; `start_design` is the first start, m.
 
-    At least one run: where the search is cancelled before any has ended, that of the design to begin with.
+    Returns at least one run: where the search is cancelled before any run ended, the first start itself.
     """
     from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
     first = problem.unit_point(start_design)
+    # Sobol points come in powers of two; the first one is left out, as the start design takes its place
     others = qmc.Sobol(first.size, rng=search.seed).random_base2((search.starts - 1).bit_length())[
         1 : search.starts
     ]
@@ -43,7 +48,10 @@ def search_all(
     alone = search.starts == 1 or isinstance(run.workers, InProcess)
     search_starts = _locally if alone else _remotely
     runs = search_starts(problem, search, begins, run, cancel)
-    return tuple(runs) or (SearchRun(first, problem.assess(first), 1, Ended.CANCELLED, 0.0),)
+    if runs:
+        return tuple(runs)
+    assessed = problem.assess(first)
+    return (SearchRun(first, assessed, evaluations=1, ended=Ended.CANCELLED, cpu_seconds=0.0),)
 
 
 def _locally(
@@ -72,7 +80,10 @@ def _remotely(
     run: Run,
     cancel: Cancel,
 ) -> list[SearchRun]:
-    """Let workers search; cancelled, keep what is there: a Ctrl-C may have ended some of them."""
+    """Search on workers, one task a start; a cancelled search returns the runs that have ended.
+
+    A Ctrl-C that cancels may also have ended workers, so their errors are ignored then.
+    """
     runs: list[SearchRun] = []
     try:
         for result in run.workers.run(_search_one, (problem, search), begins):
@@ -87,8 +98,10 @@ def _remotely(
 
 
 def _search_one(shared: tuple[SearchProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
-    """Search from one start: one task; an interrupted worker gives what it has."""
-    return search_from(*shared, begin[1], begin[0], ending=(Cancelled, KeyboardInterrupt))
+    """Search from one start: one task. An interrupted worker returns its best design so far."""
+    problem, search = shared
+    index, start = begin
+    return search_from(problem, search, start, index, ending=(Cancelled, KeyboardInterrupt))
 
 
 def optimize(
@@ -108,8 +121,8 @@ def optimize(
     ----------
     request : OptimizationRequest
     run : Run
-        Its workers run the searches, one per start; of a single start the designs and walks that do not wait
-        for each other. They analyze the designs at the end.
+        Its workers search, one task a start. With a single start they assess the designs, and take the walks,
+        that do not wait for each other. They analyze the designs at the end.
     cancel : callable
         Asked before every design whether to end the search: the best so far is then analyzed in full, and
         the reason says so. Remote workers end their starts first.
@@ -125,25 +138,26 @@ def optimize(
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
     clock = StageClock(run.workers.cost)
-    torques = request.torques, request.further_torques
-    study = design_study(request.space, *torques, clock, run, request.checked, request.limits)
+    study = design_study(
+        request.space, request.torques, request.further_torques, clock, run, request.checked, request.limits
+    )
     with clock.stage("search"):
         problem = posed(study, request, memory)
         runs = search_all(problem, request.search, request.start_design, run, cancel)
     choice = choose(problem, runs, request, study, clock, run, cancel)
     run.progress("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        best = choice.problem, choice.run, request.scatter
-        workers = to_the_end(run.workers, cancel)
-        aside = tuple(divided(workers, perturbation, best, request.variables))
-    return _result(request, study, choice, aside, clock)
+        shared = choice.problem, choice.run, request.scatter  # argument of every task
+        workers = to_the_end(run.workers, cancel)  # this process, once the search is cancelled
+        perturbations = tuple(divided(workers, perturbation, shared, request.variables))
+    return _result(request, study, choice, perturbations, clock)
 
 
 def _result(
     request: OptimizationRequest,
     study: DesignStudy,
     choice: Choice,
-    aside: tuple[Perturbation, ...],
+    perturbations: tuple[Perturbation, ...],
     clock: StageClock,
 ) -> Optimization:
     outcome, reason = outcome_and_reason(choice, request)
@@ -158,7 +172,7 @@ def _result(
         optimum=choice.optimum,
         runs=choice.runs,
         best_run=choice.best,
-        sensitivity=aside,
+        sensitivity=perturbations,
         not_tried=untried_steps(choice, request, study),
         cost=clock.to_json() | {"evaluations": sum(run.evaluations for run in choice.runs)},
         request=request.to_json(study),

@@ -1,4 +1,8 @@
-"""The request of a sweep: one or two axes over operating conditions and figures of the flanks."""
+"""The request of a sweep: one or two axes over operating conditions and figures of the flanks.
+
+A figure of the flanks is one quantity of the modification of one gear, such as ``pinion.tip_relief``. A
+design is one combination of the values on all axes but the torque.
+"""
 
 from __future__ import annotations
 
@@ -26,9 +30,11 @@ CONDITIONS = (TORQUE, MISALIGNMENT, CENTER_DISTANCE)
 
 
 MAX_POINTS = 4096
+"""Largest number of combinations of the values on the axes."""
 
 
 Values = Mapping[str, float]
+"""Values of a design by the name of the axis, m."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,7 @@ class SweepAxis:
 
     @property
     def largest(self) -> float:
-        """Value of the largest size on the axis."""
+        """Value on the axis whose magnitude is largest."""
         return max(self.values, key=abs)
 
 
@@ -99,12 +105,14 @@ class SweepRequest:
 
     def alignment(self, design: Values) -> tuple[float, float]:
         """Return misalignment and change of the center distance of a design, m."""
-        skew, change = self.point.misalignment, self.point.center_distance_change
-        return design.get(MISALIGNMENT, skew), design.get(CENTER_DISTANCE, change)
+        misalignment, change = self.point.misalignment, self.point.center_distance_change
+        return design.get(MISALIGNMENT, misalignment), design.get(CENTER_DISTANCE, change)
 
     @cached_property
     def checked(self) -> Checked:
-        """The request of the design that acts most: everything is checked, nothing computed.
+        """The checked request of one design: every axis but the torque at its value of largest magnitude.
+
+        All designs are checked; nothing is computed.
 
         Raises `InputError`: no axis, more than two or one twice, too many points, or a value that cannot be
         used.
@@ -118,7 +126,7 @@ class SweepRequest:
         if variables:
             check_variables(self.pair, variables)
         for design in self.designs:
-            self.flanks(design)
+            self.flanks(design)  # raises where a modification does not fit its gear
         acting = {axis.name: axis.largest for axis in self.axes}
         over = {axis.name: axis.values for axis in self.axes}
         axes = TableAxes(
@@ -126,7 +134,9 @@ class SweepRequest:
             misalignments=over.get(MISALIGNMENT, (self.point.misalignment,)),
             center_distance_changes=over.get(CENTER_DISTANCE, (self.point.center_distance_change,)),
         )
+        # as the documentation of `options` says, the choices of the caller for these three are ignored
         options = replace(self.options, positions=None, receipt="full", on_violation="report")
+        # no table is stored, so its size has no limit; all designs have the same effects
         return check_request(self.flanks(acting), axes, options, check_size=False, neglect=False)
 
     def _check_axes(self) -> None:

@@ -1,4 +1,7 @@
-"""Design variables: figures of the flank modifications that may be chosen, each between bounds."""
+"""Design variables: figures of the flank modifications that may be chosen, each between bounds.
+
+A figure is one quantity of the modification of one gear, named ``gear.quantity``.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,9 @@ GEARS = ("pinion", "wheel")
 QUANTITIES = fields_of(Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 """Fields of `FlankModification` that can be varied."""
 SLOPES, LENGTHS = fields_of(Kind.DEVIATION), fields_of(Kind.LENGTH)
-"""Quantities with a sign, and quantities that are lengths, not removed material."""
+"""`SLOPES`, `LENGTHS`: Quantities that may be negative, and lengths along the flank. All other quantities are
+depths of removed material, at least 0.
+"""
 ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELDS[name].along)
 
 
@@ -65,7 +70,7 @@ class DesignVariable:
 def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
     """Split ``gear.quantity``.
 
-    Raises `InputError`: it is neither; `field` names where it was given.
+    Raises `InputError`: `name` is not of this form; the error is that of `field`.
     """
     gear, _, quantity = name.partition(".")
     if gear not in GEARS or quantity not in QUANTITIES:
@@ -75,14 +80,15 @@ def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
 
 
 def effect_of(name: str, registry: Sequence[Effect]) -> str:
-    """Return the effect by which a figure of a modification acts."""
+    """Return the name of the effect by which a figure acts: modifications along the face, or the profile."""
     return named(registry, "face" if name.partition(".")[2] in ACROSS_FACE else "profile")
 
 
 def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> None:
-    """Refuse none, one twice, reliefs without a length, and bounds that the gears have no room for.
+    """Check the variables of a search against the gears and against each other.
 
-    Raises `InputError`.
+    Raises `InputError`: there is no variable, a variable stands twice, a relief has no length, or the
+    modifications at the bounds do not fit the gears.
     """
     names = [variable.name for variable in variables]
     if not names:
@@ -106,6 +112,7 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
 def lacks_length(pair: ParallelAxes, relief: str) -> bool:
     """Whether ``gear.quantity`` is a relief that has no length yet."""
     gear, _, quantity = relief.partition(".")
+    # None: a modification without a field for this length, which needs none
     return bool(getattr(getattr(pair, gear).modification, f"{quantity}_length", None) == 0.0)
 
 
@@ -124,12 +131,12 @@ def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
 
 
 def _with_gear(pair: ParallelAxes, name: str, values: Mapping[str, float]) -> ParallelAxes:
-    mine = {key.partition(".")[2]: float(value) for key, value in values.items() if key.startswith(name)}
-    if not mine:
+    changes = {key.partition(".")[2]: float(value) for key, value in values.items() if key.startswith(name)}
+    if not changes:
         return pair
     gear = getattr(pair, name)
     try:
-        changed = replace(gear, modification=replace(gear.modification, **mine))
+        changed = replace(gear, modification=replace(gear.modification, **changes))
     except InputError as error:
         raise error.within(name) from None
     return replace(pair, **{name: changed})

@@ -89,6 +89,12 @@ class ExpectedError:
         """The part that work lowers which nine runs of ten keep, as far as the scatter of runs is known."""
         return self.bought * math.exp(NINE_OF_TEN * self.scatter)
 
+    def probability(self, relative: float) -> float | None:
+        """Return the part of runs that keep a relative tolerance; None where their scatter is not known."""
+        if not self.scatter or not self.bought:
+            return None
+        return 0.5 * math.erfc(-math.log(relative / self.bought) / (math.sqrt(2.0) * self.scatter))
+
     @property
     def text(self) -> str:
         """Text of the errors that a tolerance applies to."""

@@ -10,7 +10,7 @@ from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.options import LEVELS, MESHES, AnalysisOptions
+from fe_contact.options import BETWEEN, LEVELS, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.expected_curves import (
@@ -81,13 +81,24 @@ def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -
     within = within or [option for option in options if option.error.bought <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
-        return MeshChoice(best, True, f"expected error {best.error.text}")
+        return MeshChoice(best, True, f"expected error {best.error.text}{_probability_text(best, tolerance)}")
     enough = [option for option in options if option.error.numerical <= tolerance.relative]
     beyond = min(option.error.plane for option in options) > tolerance.relative
     best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.bought)
     error = best.error
     parts = f"mesh {percent(error.numerical)} %, plane {percent(error.plane)} %"
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.text} ({parts})")
+
+
+def _probability_text(option: MeshOption, tolerance: AllowedError) -> str:
+    """Return in how many runs the mesh keeps the tolerance, and the mesh of the other runs' second pass."""
+    probability = option.error.probability(tolerance.relative)
+    if probability is None:
+        return ""
+    finer = MESHES[min(MESHES.index(option.level) + 1, len(MESHES) - 1)]
+    following = "standard" if finer == BETWEEN else finer
+    share = min(round(100.0 * probability), 99)
+    return f", within the tolerance in {share} % of runs; others take a second pass, mesh {following} at most"
 
 
 def mesh_for_time(

@@ -33,6 +33,11 @@ OF_LOAD_ARM = ("discretisation", "slices", "position")
 """Sources of the errors of the load arm at stored loads and alignments."""
 
 
+def source_words(source: str) -> str:
+    """Return a source as sentences and tables name it; the key in files keeps its older spelling."""
+    return source.replace("discretisation", "discretization").replace("_", " ")
+
+
 def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
     """Return the errors of the quantities (sources, 23) in m at one load and alignment.
 

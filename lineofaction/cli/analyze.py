@@ -5,6 +5,7 @@ What computes a table is loaded when none is in the cache.
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Any
 from rich.console import Console
 
 from bounds import engineering
+from bounds.error_digits import with_error
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.assessed_case import assessed_case
 from lineofaction.cli.cached_tables import CachedTables
@@ -103,10 +105,8 @@ def _show(summary: dict[str, Any]) -> None:
 
 def _over_face(load: dict[str, Any]) -> str:
     """Return mean and peak-to-peak of the gears of finite width: those of the plane model, corrected."""
-    errors = "mean_over_face_error_um" in load
     mean, ripple = (
-        f"{load[f'{name}_over_face_um']:.4g}"
-        + (f" ±{engineering(load[f'{name}_over_face_error_um'], 1)}" if errors else "")
+        with_error(load[f"{name}_over_face_um"], load.get(f"{name}_over_face_error_um", math.nan))
         for name in ("mean", "peak_to_peak")
     )
     return f"over the face at {load['torque_n_m']:.6g} N m: mean {mean} µm, peak-to-peak {ripple} µm"
@@ -188,9 +188,8 @@ def _validation_errors(axes: dict[str, Any]) -> str:
 def _row(load: dict[str, Any]) -> list[str]:
     """One load of the table, each figure with its error."""
     values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _MAX_HARMONICS]
-    figures = [f"{value:.4g}" for value in values]
+    errors = [math.nan] * len(values)
     if "mean_error_um" in load:
         errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
-        bands = [engineering(error, 1) for error in errors]
-        figures = [f"{figure} ±{band}" for figure, band in zip(figures, bands, strict=False)]
+    figures = [with_error(value, error) for value, error in zip(values, errors, strict=False)]
     return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]

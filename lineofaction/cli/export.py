@@ -1,4 +1,7 @@
-"""``loa export``: bent gears; by the kind of the file a run, the mesh force, or results in REXS."""
+"""``loa export``: deformed gears, or by the ending of the output a run, a mesh force or results in REXS.
+
+`InputFile.as_it_is` is the path of a file; it refuses values that options set over those of the file.
+"""
 
 from __future__ import annotations
 
@@ -27,12 +30,17 @@ from lineofaction.gearbox.schemas.flank_point import FlankPoint
 from lineofaction.gearbox.units import UM
 
 _MAX_POSITIONS = 256
+"""Most positions of an export of deformed gears."""
 
 
 def run_export(
     file: InputFile, output: Path, point: Point, rexs: Path | None, *, as_json: bool, **further: Any
 ) -> None:
-    """Write the export that the output's ending names; `further` has the options of each kind by name."""
+    """Write the export that the ending of the output names.
+
+    `further` has the options of single kinds: `start`, `end`, `function` of a run, `damping_n_s_per_m` and
+    `backlash_um` of a mesh force, `at` and `beside` (number of neighboring teeth) of deformed gears.
+    """
     if rexs is not None:
         export_rexs(file.as_it_is, rexs, output, point, as_json=as_json)
     elif output.suffix in (*UNIVERSAL, TABLE):
@@ -48,7 +56,7 @@ def run_export(
 def _export_deformed(
     file: InputFile, output: Path, point: Point, at: str, neighbors: int, *, as_json: bool
 ) -> None:
-    """Solve, expand, write, print."""
+    """Solve the contact, recover the displacements of both gears, write and print them."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
     case = assessed_case(file, chosen)
     where = positions(at)

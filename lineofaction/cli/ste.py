@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import with_error
 from fe_contact.ste import SteDatabase
 from lineofaction.cli.output import EMPHASIS, aligned, console, csv_text, print_json, table
 from lineofaction.cli.verb_warnings import warn
@@ -192,8 +193,7 @@ def _figure(value: float, error: float | None) -> str:
     """Write a figure to the digits of its error."""
     if error is None:
         return f"{value:.{_DECIMALS}f} (error not estimated)"
-    places = max(1 - math.floor(math.log10(error)), 0) if error else _DECIMALS
-    return f"{value:.{places}f} ± {error:.{places}f} µm"
+    return with_error(value, error, "µm")
 
 
 def _orders(curve: dict[str, Any]) -> tuple[list[_Line], list[_Line]]:

@@ -32,8 +32,9 @@ _VIEWS = {
     **{"case": _PACKED, "live": _PACKED, **dict.fromkeys(("unit", "toml", "a", "b", "c"), _VARIANT)},
     **{"tab": "[a-z]+", "name": _ANY, "at": r"\d(\.\d+)?", "motion": r"\d+", "see": _ANY, "on": "[abc]"},
 }
-"""Pattern of each word of an address that says how the page looks at a result. Variants in the background are
-views of the variant in front."""
+"""Pattern of each word of an address that says how the page looks at a result. `a`, `b` and `c` are the
+variants of a design that the page compares; `unit` is a file that the page has open.
+"""
 _JOBS = ("analyze", "simulate", "modes", "scene", "job", *studies_of("case"), *studies_of("case or scene"))
 _NAMES = {"database": _HASH} | dict.fromkeys(_JOBS, _JOB)
 _PATTERNS = _VIEWS | _NAMES
@@ -65,7 +66,9 @@ class PageAddress:
         origin, names, views = _origin(page), dict[str, str](), dict[str, str]()
         for part in filter(None, fragment.split("&")):
             name, value = _word(part)
-            (names if name in _NAMES else views)[name] = value
+            words = names if name in _NAMES else views
+            words[name] = value
+        # the file of a unit is in the browser alone, so its address holds nothing to read
         if "unit" in views and not names and "case" not in views:
             remedy = "Save the file from the page and read it with: loa open FILE"
             raise BadInput.of("unit", None, "beside a case, a database or a job", remedy)
@@ -78,7 +81,7 @@ class PageAddress:
 
     @property
     def differing(self) -> str:
-        """The difference of the page from its result, as "its design was edited"; empty: none."""
+        """Changes on the page since its result, such as "its design was edited"; empty without any."""
         parts = {"its design was edited": "case" in self.views, "its sliders moved": "live" in self.views}
         return " and ".join(part for part, holds in parts.items() if holds) if self.names else ""
 
@@ -141,7 +144,9 @@ class PageCalls(Surface):
 
     @operation
     def case_at(self, address: str) -> Steps[schemas.Case]:
-        """Return the case that the page shows at an address; one as typed needs no service.
+        """Return the case that the page shows at an address.
+
+        A case that was typed on the page is in the address itself; the service is not asked for it.
 
         Raises `BadInput`: it is no address of this service's page, or it shows no case; `NotFound`: the
         service has nothing of what it names; `Unreachable`, `ServiceError`.
@@ -201,7 +206,7 @@ class PageCalls(Surface):
         return self.session.exchange.read(lambda examples: dict(examples[0]), "GET", "/v1/examples")
 
     def _case_of(self, name: str, value: str) -> Steps[Any]:
-        """Return the case of a database or a job, for a scene the case of its first mesh; None: none."""
+        """Return the case of a database or a job; of a scene the case of its first mesh. None without one."""
         read = self.session.exchange.read
         if name == "database":
             return (yield from read(lambda figures: figures.get("case"), "GET", f"{RESULTS}/{value}"))

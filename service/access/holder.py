@@ -67,12 +67,12 @@ class Holder:
         return {name: getattr(self, name) for name in LIMITS}
 
     def ends_within(self, time: timedelta, now: datetime | None = None) -> bool:
-        """Whether the caller's time ends in less than this, or is over."""
+        """Whether the caller expires within `time` from `now`, or has expired."""
         return self.expires is not None and instant_of(self.expires) <= (now or datetime.now(UTC)) + time
 
     @property
     def expired(self) -> bool:
-        """Whether the caller's time is over."""
+        """Whether the caller has expired."""
         return self.ends_within(timedelta(0))
 
 

@@ -338,9 +338,9 @@ def test_levels_have_the_band_of_their_error_and_changes_that_of_both(visit: Vis
     # 20 lg 0.2 = -13.98, -20 lg 0.9 = 0.915, 20 lg 0.1 = -20
     name = "complaint, harmonic 2 at 80 N m"
     assert stated(curve(0.2, 0.02), curve(0.1, 0.01)) == [
-        [[name, "−20.0 dB", "± 0.92 re 1 µm; −6.0 ± 1.8 dB from A"]],
+        [[name, "−20.00 dB", "± 0.92 re 1 µm; −6.0 ± 1.8 dB from A"]],
         [
-            [f"{name}, dB re 1 µm", "−14.0 ± 0.92", "−20.0 ± 0.92"],
+            [f"{name}, dB re 1 µm", "−13.98 ± 0.92", "−20.00 ± 0.92"],
             ["the same, dB from A", "", "−6.0 ± 1.8"],
         ],
     ]

@@ -1,4 +1,8 @@
-"""Passes of a run under a tolerance: plan, run, measure, refine the largest errors, until it is met."""
+"""Passes of a run under a tolerance: plan, run, measure, refine the largest errors, until it is met.
+
+A trial is a cheap first pass that is expected to miss the tolerance. `Decision.behind` is the pass that is
+expected to follow it.
+"""
 
 from __future__ import annotations
 
@@ -42,16 +46,16 @@ class _Passes:
         done = compute_pass(choice.checked, self.case, self.run, choice, clock)
         return Pass(done.decision, done.table.metadata.receipt, done.table)
 
-    def refined(self, made: Refinement, clock: StageClock) -> Pass:
+    def refined(self, refinement: Refinement, clock: StageClock) -> Pass:
         """Run a refinement; one that fails or is interrupted says so."""
-        choice = made.decision
+        choice = refinement.decision
         try:
             done = compute_pass(choice.checked, self.case, self.run, choice, clock)
         except KeyboardInterrupt:
-            return Pass(choice, clock.to_json(), None, made, "interrupted")
+            return Pass(choice, clock.to_json(), None, refinement, "interrupted")
         except (FeContactError, MemoryError) as error:
-            return Pass(choice, clock.to_json(), None, made, str(error) or "out of memory")
-        return Pass(done.decision, done.table.metadata.receipt, done.table, made)
+            return Pass(choice, clock.to_json(), None, refinement, str(error) or "out of memory")
+        return Pass(done.decision, done.table.metadata.receipt, done.table, refinement)
 
 
 def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
@@ -63,19 +67,21 @@ def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | No
     Parameters
     ----------
     checked : Checked
-        With a tolerance and a full receipt.
+        Request with a tolerance and a full receipt.
     case : dict
-        Echoed into the result and hashed.
+        Case that is echoed into the result and hashed.
     run : Run
-        Its cache is what passes share; None: one for this run. Progress begins anew with every pass.
+        Passes share compliances by the cache of the run; without one they share a temporary directory.
+        Progress begins anew with every pass.
     on_draft : callable, optional
-        Called with every table that is refined, and what is refined.
+        Called with every table that is refined, and the refined parts in words.
 
     Returns
     -------
     SteDatabase
-        That of the pass that uses least of the tolerance, the last one if all goes well. `passes` of its
-        receipt lists all of them, its cost is theirs, and `tolerance` says why there are no more.
+        Table of the pass that uses the smallest part of the tolerance: the last pass, unless that failed or
+        did not lower the errors. In its receipt `passes` lists all passes, the cost is that of all of them,
+        and `tolerance` says why there was no further pass.
     """
     if run.cache is not None:
         return _refined(checked, _Passes(case, run, on_draft))
@@ -91,31 +97,35 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
     while True:
         clock = StageClock(shared.run.workers.cost)
         with clock.stage("planning"):
-            made = _following(table, best)
-            reason = made if isinstance(made, str) else _ended(made, passes, shared.run.cache)
-        if isinstance(made, str) or reason:
+            refinement = _next_refinement(table, best)  # or the reason why there is none
+            if isinstance(refinement, str):
+                return of_all_passes(passes, table, refinement)
+            reason = _refusal(refinement, passes, shared.run.cache)
+        if reason:
             return of_all_passes(passes, table, reason)
         if shared.on_draft is not None:
-            shared.on_draft(table, made.text)
-        last = shared.refined(made, clock)
+            shared.on_draft(table, refinement.text)
+        last = shared.refined(refinement, clock)
         passes.append(last)
         if last.table is None:
             return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
         if last.used >= best.used:
-            reason = f"pass {len(passes)} ({made.text}) did not lower the measured errors"
+            reason = f"pass {len(passes)} ({refinement.text}) did not lower the measured errors"
             return of_all_passes(passes, table, reason)
         best, table = last, last.table
 
 
-def _following(table: SteDatabase, last: Pass) -> Refinement | str:
+def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
+    """Return the refinement after a pass, or the reason why there is none."""
     tolerance = last.decision.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"
     if table.n_failed:
         return f"{table.n_failed} points failed"
     at_nodes = table.metadata.receipt["tolerance"]["used_at_nodes"]
-    if at_nodes is not None and at_nodes <= 1.0:
-        return _beyond_between(table)
+    if at_nodes is not None and at_nodes <= 1.0:  # the errors that finer meshes lower meet the tolerance
+        return _interval_reason(table)
+    # errors at nodes that work lowers; the others, those of the model, stay whatever is refined
     bought, _ = bought_shares(error_shares(table, tolerance), last.decision.checked.request)
     measured = next_pass(last.decision, bought)
     behind = last.decision.behind
@@ -131,7 +141,7 @@ def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
     return Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
 
 
-def _beyond_between(table: SteDatabase) -> str:
+def _interval_reason(table: SteDatabase) -> str:
     """Return the text of intervals that keep a table from its tolerance: no mesh lowers their errors."""
     intervals = table.metadata.receipt["tolerance"]["between_nodes"]
     if not intervals:
@@ -148,18 +158,18 @@ def _interval_text(entry: Json) -> str:
     )
 
 
-def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
+def _refusal(refinement: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     """Say why a refinement does not begin, of passes or of time; empty if it may."""
     if len(passes) == MAX_PASSES:
         return f"the limit is {MAX_PASSES} passes"
-    budget = made.decision.checked.request.options.time_budget
+    budget = refinement.decision.checked.request.options.time_budget
     if budget is None:
         return ""
     left = budget - sum(done.cost["cpu_seconds"] for done in passes)
-    needed = made.decision.predicted(cache).cpu_seconds
+    needed = refinement.decision.predicted(cache).cpu_seconds
     if needed <= left:
         return ""
     return (
-        f"{made.text} is predicted to take {engineering(needed, 2)} "
+        f"{refinement.text} is predicted to take {engineering(needed, 2)} "
         f"CPU s; {engineering(max(left, 0.0), 2)} of {budget:.3g} are left"
     )

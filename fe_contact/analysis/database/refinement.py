@@ -22,7 +22,7 @@ from fe_contact.planning.discretization import (
     face_discretization,
 )
 from fe_contact.planning.plan import CLOSEST, NodeRule
-from fe_contact.ste.curve_errors import AT_NODES, all_sources
+from fe_contact.ste.curve_errors import AT_NODES, all_sources, source_words
 from fe_contact.types import FloatArray
 
 AIM = 0.9
@@ -179,7 +179,9 @@ def next_pass(choice: Decision, shares: FloatArray) -> Refinement | str:
             return _of_model(model, begun)
         return _no_way(finest, barrier)
     finer = _settled(replace(begun, level_left=1))
-    reason = f"{AT_NODES[source]} takes {engineering(begun.sources[source], 2)} of the tolerance"
+    reason = (
+        f"{source_words(AT_NODES[source])} takes {engineering(begun.sources[source], 2)} of the tolerance"
+    )
     refined = choice.refined(finer.level, finer.slices, finer.nodes, reason)
     if refined.mesh.option.error.scatter and finer.used > 1.0 and begun.used - finer.used < finer.used:
         return (

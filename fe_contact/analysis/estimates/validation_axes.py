@@ -1,6 +1,7 @@
 """Interpolation error of a table between the nodes of its axes, measured at held-out points.
 
-A held-out point is solved, but is no node of the table.
+A held-out point is solved, but is no node of the table. Arrays run over I intervals of an axis, L loads and
+23 quantities: mean, peak-to-peak and harmonics of the transmission error.
 """
 
 from __future__ import annotations
@@ -66,28 +67,29 @@ class AxisValidation:
 def validation_axes(made: SolvedTable, goal_of: GoalOf | None = None) -> AxisValidation:
     """Solve held-out points in every interval of every axis that has one.
 
-    Positions are some of the table's, so that the axis alone is interpolated; what is missed between
-    positions `table_nodes` measures. On the other axes the point stands at the node nearest to zero; a longer
-    period is assessed in its first pitch.
+    A held-out point is solved at positions of the table, so that the table is interpolated along the axis
+    alone; the error between positions is measured by `table_nodes`. On the other axes the point stands at the
+    node nearest to zero. Where teeth differ, the first base pitch of the period is assessed.
 
     Parameters
     ----------
     made : SolvedTable
-        As computed.
+        Solved table without inserted nodes.
     goal_of : callable, optional
-        Insert nodes until their intervals meet the goal of the table; not where base pitches are derived.
+        Goal of a table; nodes are inserted until all intervals meet it. No node is inserted where some base
+        pitches of a period are derived from others instead of solved.
 
     Returns
     -------
     AxisValidation
-        Without axes for a table with failed points, or whose transmission error does not rise with load
-        everywhere: neither can be interpolated.
+        It has no axes where the table cannot be interpolated: a point failed, or the transmission error does
+        not rise with load everywhere.
     """
     table = made.table
     several = [name for name in BETWEEN_NODES if getattr(table, name).size > 1]
     if table.n_failed or not several:
         return AxisValidation(made)
-    try:
+    try:  # raises where the transmission error does not rise with load
         table.ste(table.position[0], table.force[0])
     except DatabaseError:
         return AxisValidation(made)

@@ -1,4 +1,8 @@
-"""Line load, pressure and gap along the contact lines at an operating point, and how even the load is."""
+"""Line load, pressure and gap along the contact lines at an operating point, and how even the load is.
+
+A stretch is the part of the common face that one candidate of the contact problem represents. A slice of the
+face has several stretches.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +26,7 @@ if TYPE_CHECKING:
 
 
 EDGE_STRETCHES = 6
-"""Stretches of the face over which a line load at an edge is averaged: a slice of the usual ones."""
+"""Number of stretches over which a line load at an edge is averaged: that of a slice by default."""
 Stretches = TypeVar("Stretches", FloatArray, BoolArray)
 
 _PER_POSITION = ("position", "deflection", "roll_length_1", "roll_length_2", "on_path", "force", "lever",
@@ -46,8 +50,8 @@ class FlankErrors:
     reason: str = "one solution tells no error"
     """Reason why errors that are None are not estimated."""
     kink_length: float = 0.0
-    """Strip of the largest pressure where a relief begins in it with a kink, m, else 0: the true pressure is
-    infinite at the kink, the stated one 4/pi times the mean over this length.
+    """Width of the contact strip with the largest pressure, m, where a relief begins with a kink inside it;
+    else 0. The true pressure is infinite at the kink; the stated one is 4/pi times the mean over this width.
     """
 
 
@@ -94,7 +98,7 @@ class LoadDistribution:
     metadata: Metadata = field(default_factory=Metadata)
     """Case, effects, cost and versions."""
     at_edge: BoolArray | bool = False
-    """Whether the strip reaches an edge of either flank; nowhere in files older than it. Shape (P, N, K)."""
+    """Whether the strip reaches an edge of either flank; False in files without it. Shape (P, N, K)."""
     errors: FlankErrors = field(default_factory=FlankErrors)
     """Relative errors of the largest line load, of K_Hbeta and of the largest pressure."""
 
@@ -110,7 +114,10 @@ class LoadDistribution:
 
     @property
     def line_load(self) -> FloatArray:
-        """Force per length of contact line (P, N, K), N/m: of the whole stretch, where it ends there too."""
+        """Force per length of contact line (P, N, K), N/m.
+
+        Where a contact line ends inside a stretch, the length is still that of the whole stretch.
+        """
         return self.force * (math.cos(self.base_helix_angle) / self.slice_width)
 
     @property
@@ -244,9 +251,9 @@ def load_distribution(
     load : int
         Index of the load.
     misalignment, center_distance_change : float
-        What the solution was made for, m; kept in the scene.
+        Alignment of the solution, m; it is stored in the scene.
     metadata : Metadata, optional
-        Kept as it is.
+        Stored unchanged.
     """
     candidates = problem.candidates
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
@@ -255,9 +262,11 @@ def load_distribution(
     pressure, edge = contact_pressure(problem, force[:, None])
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
+    # roll lengths of gear 1 on the line of action: off mid-face they are displaced by the helix
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
     nominal = nominal - candidates.face_position * math.tan(candidates.base_helix_angle)
     path = pair.path_of_contact
+    # half of the roll lengths that a contact line covers within a stretch
     reach = 0.5 * candidates.point_width * abs(math.tan(candidates.base_helix_angle))
     roll_1, roll_2 = rolls_at(pair, candidates.touch.s_1, candidates.touch.s_2)
     return LoadDistribution(
@@ -281,7 +290,10 @@ def load_distribution(
 
 
 def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArray) -> FloatArray:
-    """Gap (P, n) left along the normal: bending apart, less the approach of the rigid flanks."""
+    """Return the gap of the candidates under load (P, m) along the normal, m; 0 where they carry force.
+
+    Elastic displacements open the gap, and the rigid approach closes it.
+    """
     candidates = problem.candidates
     bent = problem.displacement(force[:, None])[:, 0]
     approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
@@ -303,7 +315,10 @@ def _largest_over_mean(values: FloatArray) -> FloatArray:
 
 
 def _over_mean_of(values: FloatArray, among: BoolArray) -> FloatArray:
-    """Largest over mean of the last axis, the mean taken among some; NaN where all are zero."""
+    """Return the largest over the mean of the last axis; the mean is over the entries `among` alone.
+
+    NaN where all values are zero.
+    """
     total = values.sum(axis=-1)
     scale = np.where(total > 0.0, total, np.nan)
     return np.asarray(values.max(axis=-1) * among.sum(axis=-1) / scale)

@@ -28,8 +28,8 @@ class RippleCurve:
     error: FloatArray = field(metadata=in_unit("m", "deviation"))
     """`peak_to_peak`, `error`: Peak-to-peak STE and the half-width of its error band, m. Shape (N,) each."""
     carrying: FloatArray = field(metadata=in_unit("1", "deviation"))
-    """Mean number of pairs that carry over the positions: the contact ratio under load. It is known to one
-    position in all. Shape (N,).
+    """Mean number of pairs that carry load over a period: the contact ratio under load. The ends of contact
+    are known to the distance of the positions. Shape (N,).
     """
 
     @property
@@ -50,7 +50,7 @@ class Sensitivity:
 
     @staticmethod
     def request(pair: ParallelAxes | Checked, axes: TableAxes | None, options: AnalysisOptions) -> Checked:
-        """Check the request over both deviations, once: each table decides what it neglects."""
+        """Check the request over both deviations. No effect is neglected: each table decides that itself."""
         model = "3d" if options.model == "auto" else options.model
         return as_checked(pair, axes, replace(options, model=model), neglect=False)
 
@@ -84,20 +84,27 @@ def study_sensitivity(
         Without and with corner contact.
     """
     checked = Sensitivity.request(pair, axes, options)
-    return Sensitivity(False, *_curves(checked, "off", run)), Sensitivity(True, *_curves(checked, "on", run))
+    return _sensitivity(checked, run, corner_contact=False), _sensitivity(checked, run, corner_contact=True)
 
 
-def _curves(checked: Checked, corner_contact: str, run: Run) -> tuple[RippleCurve, RippleCurve]:
-    """Return both curves; every table neglects what it does not need itself."""
-    base, none = checked.request, np.zeros(1)
-    effects = {**base.options.effects, named(EFFECTS, "corner_contact"): corner_contact}
+def _sensitivity(checked: Checked, run: Run, *, corner_contact: bool) -> Sensitivity:
+    """Compute a table over each deviation, the other deviation zero."""
+    base, zero = checked.request, np.zeros(1)
+    effects = {**base.options.effects, named(EFFECTS, "corner_contact"): "on" if corner_contact else "off"}
+    # the curves are read at the requested deviations alone, so none is inserted between them for a tolerance
     request = replace(base, options=replace(base.options, effects=effects), nodes_alone=True)
-    skews, changes = (np.union1d(none, axis) for axis in (base.misalignment, base.center_distance_change))
-    skewed, shifted = (
-        analyze(checked_request(replace(request, misalignment=skew, center_distance_change=change)), run=run)
-        for skew, change in ((skews, none), (none, changes))
+
+    misalignments = np.union1d(zero, base.misalignment)
+    changes = np.union1d(zero, base.center_distance_change)
+    misaligned = replace(request, misalignment=misalignments, center_distance_change=zero)
+    displaced = replace(request, misalignment=zero, center_distance_change=changes)
+    return Sensitivity(
+        corner_contact=corner_contact,
+        misalignment=_ripple(analyze(checked_request(misaligned), run=run), "misalignment"),
+        center_distance_change=_ripple(
+            analyze(checked_request(displaced), run=run), "center_distance_change"
+        ),
     )
-    return _ripple(skewed, "misalignment"), _ripple(shifted, "center_distance_change")
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
@@ -110,7 +117,7 @@ def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
 def _carrying(table: SteDatabase) -> FloatArray:
     """Return the mean number of pairs that carry at each deviation of a table over one of them, (N,)."""
     share = table.load_share[:, 0]  # (P, M, D, pairs) at the one load
-    pairs = np.sum(share > 0.0, axis=-1).reshape(share.shape[0], -1)
+    pairs = np.sum(share > 0.0, axis=-1).reshape(share.shape[0], -1)  # (P, N): M or D is 1
     ahead = np.append(table.position[1:], table.position[0] + table.period) - table.position
-    reach = 0.5 * (ahead + np.roll(ahead, 1))  # of the position, half of the way to either side
-    return np.asarray(reach @ pairs / table.period)
+    weight = 0.5 * (ahead + np.roll(ahead, 1))  # trapezoidal rule over the period
+    return np.asarray(weight @ pairs / table.period)

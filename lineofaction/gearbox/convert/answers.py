@@ -7,9 +7,10 @@ from dataclasses import asdict
 
 import numpy as np
 
-from bounds import engineering
+from bounds.error_digits import with_error
 from bounds.types import Json
 from fe_contact.ste import Curve, SteDatabase, ToothLoads
+from fe_contact.ste.curve_errors import source_words
 from fe_contact.ste.curve_quantities import BY_SOURCE
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.ste.operating_point import OperatingPoint
@@ -222,7 +223,7 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
     """Return the errors of mean, peak-to-peak and first harmonic at a load by source, m."""
     rows = [
-        (name.replace("_", " "), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
+        (source_words(name), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
         for name, parts in receipt.get("curve_error", {}).items()
     ]
     return [row for row in rows if max(row[1:]) > _NOTHING]
@@ -236,4 +237,4 @@ def draft_line(table: SteDatabase, refining: str) -> str:
 
 
 def _figure(estimate: Estimate) -> str:
-    return f"{estimate.value / UM:.4g} ± {engineering(estimate.error / UM, 1)}"
+    return with_error(estimate.value / UM, estimate.error / UM)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds.error_digits import error_text, to_error, with_error
 from fe_contact.types import Estimate
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.drawing import palette
@@ -91,8 +92,7 @@ class Difference:
         """The same without the unit."""
         if math.isnan(self.error):
             return number(self.value, 3)
-        digits = _decimals(self.error or self.value)
-        return f"{self.value:+.{digits}f} ± {self.error:.{digits}f}"
+        return f"{to_error(self.value, self.error, '+')} ± {error_text(self.value, self.error)}"
 
 
 def differences_table(differences: Sequence[Difference], names: Sequence[str]) -> Table:
@@ -140,14 +140,7 @@ def _text(value: Any) -> str:
 def _estimate(value: Estimate) -> str:
     if math.isnan(value.error):
         return f"{number(value.value, 4)} {value.unit}"
-    digits = _decimals(value.error or value.value)
-    return f"{value.value:.{digits}f} ± {value.error:.{digits}f} {value.unit}"
-
-
-def _decimals(error: float) -> int:
-    if error == 0.0 or not math.isfinite(error):
-        return 3
-    return max(1 - math.floor(math.log10(abs(error))), 0)
+    return with_error(value.value, value.error, value.unit)
 
 
 @dataclass(frozen=True)

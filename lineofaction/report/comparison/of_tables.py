@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from bounds.error_digits import with_error
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate, FloatArray
 from lineofaction.gearbox.problems import BadInput
@@ -187,8 +188,8 @@ def _twice(ripple: FloatArray) -> FloatArray:
 def _agreement(name: str, curve: Curve, match: Aligned) -> str:
     computed, ripple_measured = _um(curve.peak_to_peak), float(np.ptp(match.ripple))
     return (
-        f"Measured {number(ripple_measured, 3)} µm peak to peak, {name} {number(computed.value, 3)} ± "
-        f"{number(computed.error, 2)} µm; {number(match.rms, 2)} µm rms between them, "
+        f"Measured {number(ripple_measured, 3)} µm peak to peak, {name} "
+        f"{with_error(computed.value, computed.error, 'µm')}; {number(match.rms, 2)} µm rms between them, "
         f"correlation {match.correlation:.2f}."
     )
 
@@ -227,9 +228,7 @@ def _harmonics(curves: dict[str, Curve], torque: float, measured: MeasuredOrders
         value = np.array([amplitude.value for amplitude in amplitudes])
         abscissa = order + _MARKER_OFFSET * index - 0.5 * _MARKER_OFFSET
         lines.append(Line(name, abscissa, value, COLORS[index], width=0.0, markers=True))
-        columns[f"{name}, µm"] = [
-            f"{amplitude.value:.3f} ± {amplitude.error:.3f}" for amplitude in amplitudes
-        ]
+        columns[f"{name}, µm"] = [with_error(amplitude.value, amplitude.error) for amplitude in amplitudes]
     caption = "Amplitudes of the mesh harmonics of STE."
     if measured is not None:
         measured.require("µm")

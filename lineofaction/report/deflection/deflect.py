@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from bounds import leftover
+from bounds.error_digits import with_error
 from bounds.types import BoolArray, Json
 from dynamics.deflection import CAUSES, CaseDeflection, MeshAlignment
 from lineofaction.gearbox.studies.deflect.figures import mesh_names
@@ -87,9 +88,7 @@ def _row(name: str, case: CaseDeflection, flanks: MeshFlanks | None, acting: Boo
     parts = tuple("0" if part == 0.0 else number(float(part) / UM, 3) for part in mesh.causes[acting])
     if flanks is None:
         return (*columns, *parts, "none", "none", "none")
-    ripple = number(flanks.peak_to_peak / UM, 3)
-    if np.isfinite(flanks.peak_to_peak_error):
-        ripple += f" ± {number(flanks.peak_to_peak_error / UM, 1)}"
+    ripple = with_error(flanks.peak_to_peak / UM, flanks.peak_to_peak_error / UM)
     pressure = number(1e-6 * flanks.largest_pressure, 4)
     return (*columns, *parts, number(flanks.face_load_factor, 3), ripple, pressure)
 

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import error_text, to_error
 from lineofaction.gearbox.convert.boundary_names import boundary_name
-from lineofaction.gearbox.studies.optimize.result import HeardOptimization
+from lineofaction.gearbox.studies.optimize.result import HeardDesign, HeardOptimization
 from lineofaction.gearbox.units import UM, factor
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
@@ -75,30 +76,29 @@ def _flank_table(result: HeardOptimization) -> Table:
         "pressure before, MPa", "± MPa", "after, MPa", "± MPa", "K_Hbeta before", "±", "after", "±",
     )  # fmt: skip
     before, after = result.start, result.optimum
-    followed = bool(np.all(np.isfinite(after.root_stress)))
-    head += ("root stress before, MPa", "± MPa", "after, MPa", "± MPa") if followed else ()
+    units = {"peak_to_peak": UM, "pressure": 1e6, "face_load_factor": 1.0}
+    if np.all(np.isfinite(after.root_stress)):
+        head += ("root stress before, MPa", "± MPa", "after, MPa", "± MPa")
+        units["root_stress"] = 1e6
     rows = tuple(
         (
             torque,
             number(result.misalignment[k] / UM, 3),
-            number(before.peak_to_peak[k] / UM, 3),
-            number(before.peak_to_peak_error[k] / UM, 2),
-            number(after.peak_to_peak[k] / UM, 3),
-            number(after.peak_to_peak_error[k] / UM, 2),
             *(
                 text
-                for name, unit in {"pressure": 1e6, "face_load_factor": 1.0, "root_stress": 1e6}.items()
-                if followed or name != "root_stress"
+                for name, unit in units.items()
                 for design in (before, after)
-                for text in (
-                    number(getattr(design, name)[k] / unit, 4),
-                    number(getattr(design, f"{name}_error")[k] / unit, 2),
-                )
+                for text in _value_and_error(design, name, k, unit)
             ),
         )
         for k, torque in enumerate(_loads(result))
     )
     return Table("Peak to peak of the transmission error, pressure and K_Hbeta", head, rows)
+
+
+def _value_and_error(design: HeardDesign, name: str, load: int, unit: float) -> tuple[str, str]:
+    value, error = (float(getattr(design, field)[load]) / unit for field in (name, f"{name}_error"))
+    return to_error(value, error), error_text(value, error)
 
 
 def _design_table(result: HeardOptimization) -> Table:

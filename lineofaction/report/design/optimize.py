@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import error_text, to_error
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.optimization import Optimization
+from fe_contact.types import Estimate
 from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.studies.optimize.result import HeardOptimization
 from lineofaction.gearbox.units import UM, factor
@@ -123,7 +125,7 @@ def _ripple_table(result: Optimization) -> Table:
 
 
 def _value(value: float, error: float) -> tuple[str, str]:
-    return number(value / UM, 3), number(error / UM, 2)
+    return to_error(value / UM, error / UM), error_text(value / UM, error / UM)
 
 
 def _optimum_table(result: Optimization) -> Table:
@@ -174,8 +176,8 @@ def _run_table(result: Optimization) -> Table:
 def _optimization_page(result: Optimization) -> Page:
     before, after = result.start.objective, result.optimum.objective
     heads = (
-        Headline("before", f"{number(before.value / UM, 3)} µm", f"± {number(before.error / UM, 2)} µm"),
-        Headline("after", f"{number(after.value / UM, 3)} µm", f"± {number(after.error / UM, 2)} µm"),
+        _headline("before", before),
+        _headline("after", after),
         Headline("gain", f"{number(result.gain.value / UM, 3)} µm", result.outcome.replace("_", " ")),
     )
     lead = f"{result.reason}; {result.evaluations} designs of {len(result.variables)} variables"
@@ -187,6 +189,11 @@ def _optimization_page(result: Optimization) -> Page:
     search = Section("Search", tried, tables=(_run_table(result), Table("Cost", ("stage", "CPU s"), rows)))
     robust = Section("Scatter", "", tables=(_node_table(result),))
     return Page("Microgeometry of least transmission error", lead, heads, (figure, design, robust, search))
+
+
+def _headline(name: str, objective: Estimate) -> Headline:
+    value, error = _value(objective.value, objective.error)
+    return Headline(name, f"{value} µm", f"± {error} µm")
 
 
 def _text(result: Optimization) -> Iterator[Table | str]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds.error_digits import error_text, to_error
 from fe_contact.microgeometry.order_limit import PairsAbove
 from fe_contact.microgeometry.tolerance_study import Quantile, ToleranceStudy
 from fe_contact.types import FloatArray
@@ -85,10 +86,9 @@ def _quantile_table(study: ToleranceStudy) -> Table:
     rows = []
     for k, name in enumerate(thousands(study.torque.tolist())):
         row = [name]
-        for values, digits in (
-            (study.nominal, 3), (study.error, 2), (study.mean, 3), (study.mean_error, 2),
-        ):  # fmt: skip
-            row.append(number(float(values[k]) / UM, digits))
+        for values, errors in ((study.nominal, study.error), (study.mean, study.mean_error)):
+            value, error = float(values[k]) / UM, float(errors[k]) / UM
+            row += [to_error(value, error), error_text(value, error)]
         for quantile in study.quantiles:
             at_once = float(quantiles(study.first_order[:, k], quantile.fraction))
             row += [number(float(quantile.value[k]) / UM, 3), _bounds(quantile, k), number(at_once / UM, 3)]
@@ -128,7 +128,7 @@ def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
     """Return sentences on pairs above the limit, decisive deviations, cures, and the model's error."""
     lines = () if study.above is None else tuple(_above_limit(study, study.above))
     if study.solved < len(study.peak_to_peak) or study.above is not None:
-        error_text = ", ".join(
+        misses = ", ".join(
             f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(maximum / UM, 2)})"
             for rms, maximum, torque in zip(
                 study.missed, study.missed_largest, thousands(study.torque.tolist()), strict=True
@@ -137,7 +137,7 @@ def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
         pairs, solved, compared = (f"{n:,}" for n in (len(study.peak_to_peak), study.solved, study.held))
         lines += (
             f"{solved} of {pairs} pairs are analyzed whole; the model of the others misses the peak to peak "
-            f"of {compared} that it does not know by {error_text}, root of the mean square.",
+            f"of {compared} that it does not know by {misses}, root of the mean square.",
         )
     return lines
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from itertools import chain
 
+from bounds.error_digits import error_text, to_error
 from fe_contact.analysis.studies.sensitivity import RippleCurve, Sensitivity
 from lineofaction.gearbox.studies.sensitivity.run import PairStudy
 from lineofaction.report.drawing import palette
@@ -152,10 +153,11 @@ def _largest(
     named = [(study.name, *curve_of(study, curves)) for study in studies for curves in study.curves]
     name, at, curve = max(named, key=lambda entry: float(entry[2].peak_to_peak.max()))
     k = int(curve.peak_to_peak.argmax())
-    error, change = number(1e6 * float(curve.error[k]), 2), 100.0 * float(curve.relative_change[k])
+    ripple, error = 1e6 * float(curve.peak_to_peak[k]), 1e6 * float(curve.error[k])
+    change = 100.0 * float(curve.relative_change[k])
     where = f"{round(float(at[k]), 9):g} {unit}, {name}: {change:+.0f} % of the undeviated pair's"
-    value = f"{number(1e6 * float(curve.peak_to_peak[k]), 3)} µm"
-    return Headline(f"largest peak-to-peak STE over {over}", value, f"± {error} µm at {where}")
+    band = f"± {error_text(ripple, error)} µm at {where}"
+    return Headline(f"largest peak-to-peak STE over {over}", f"{to_error(ripple, error)} µm", band)
 
 
 PAGE = Presentation(

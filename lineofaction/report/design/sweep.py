@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bounds import engineering
+from bounds.error_digits import error_text, to_error, with_error
 from fe_contact.microgeometry.sweep import SweptQuantity
 from fe_contact.microgeometry.sweep_request import TORQUE
 from lineofaction.gearbox.studies.sweep.run import QUANTITIES, SweepResult
@@ -19,7 +19,6 @@ from lineofaction.report.drawing.figure import (
     Line,
     Panel,
     Table,
-    number,
     ordered_lines,
 )
 from lineofaction.report.drawing.page import Headline, Page, Section
@@ -107,7 +106,7 @@ def _table(result: SweepResult, quantity: SweptQuantity) -> Table:
     """Return a quantity with its errors: over two axes a row for each value of the one that runs down."""
     kind, across = QUANTITIES[quantity.name], result.across
     texts = [
-        f"{number(value / kind.one, 3)} ±{engineering(error / kind.one, 1)}" if np.isfinite(value) else "none"
+        with_error(value / kind.one, error / kind.one) if np.isfinite(value) else "none"
         for value, error in zip(quantity.value, quantity.error, strict=True)
     ]
     x = result.axes[across]
@@ -154,9 +153,9 @@ def _figure(result: SweepResult, quantity: SweptQuantity, point: int) -> tuple[s
         f"{axis.description} {result.sweep.point[point, k] / axis.factor:.6g} {axis.unit}"
         for k, axis in enumerate(result.axes)
     )
-    error = engineering(float(quantity.error[point]) / kind.one, 2)
-    value = f"{number(float(quantity.value[point]) / kind.one, 3)} {kind.unit}".strip()
-    return value, f"± {error} {kind.unit}".strip() + f" at {where}"
+    value, error = (float(values[point]) / kind.one for values in (quantity.value, quantity.error))
+    band = f"± {error_text(value, error)} {kind.unit}".strip()
+    return f"{to_error(value, error)} {kind.unit}".strip(), f"{band} at {where}"
 
 
 def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
@@ -170,8 +169,8 @@ def _best_level(result: SweepResult, quantity: SweptQuantity) -> Headline:
     alike[best] = False
     others = ", ".join(f"{level:.6g}" for level in levels[alike])
     also = f"as low within the errors: {others} {axis.unit}" if others else f"below all others {BEYOND}"
-    text = f"{number(value[best], 3)} {kind.unit}".strip()
-    band = f"± {engineering(float(error[best]), 2)} {kind.unit}".strip()
+    text = f"{to_error(value[best], error[best])} {kind.unit}".strip()
+    band = f"± {error_text(value[best], error[best])} {kind.unit}".strip()
     where = f"at {axis.description} {levels[best]:.6g} {axis.unit}"
     return Headline(f"least mean {kind.description} over the torques", text, f"{band} {where}; {also}")
 

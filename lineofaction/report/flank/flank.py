@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import error_text, to_error
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.analysis.flanks.pressure_map import pressure_map
 from fe_contact.ste import SteDatabase
@@ -346,11 +347,15 @@ def _face_table(flanks: LoadDistribution, mean: FloatArray) -> Table:
     return Table.of("Load over the face", range(mean.size), columns)
 
 
-def error_text(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
+def error_or_reason(estimate: Estimate, unit: str, scale: float, reason: str) -> str:
     """Return the error of a figure in a unit of `scale` SI units, or that it has none, and why."""
     if math.isnan(estimate.error):
         return f"error not estimated: {reason}"
-    return f"± {engineering(estimate.error / scale, 2)} {unit}".rstrip()
+    return f"± {error_text(estimate.value / scale, estimate.error / scale)} {unit}".rstrip()
+
+
+def _to_error(estimate: Estimate, scale: float = 1.0) -> str:
+    return to_error(estimate.value / scale, estimate.error / scale)
 
 
 def _page(flanks: LoadDistribution, database: SteDatabase | None = None) -> Page:
@@ -366,16 +371,16 @@ def _headlines(flanks: LoadDistribution) -> Iterator[Headline]:
     """Yield the largest pressure and line load, and K_Hbeta, each with its error or why it has none."""
     at, reason = _operating_point(flanks), flanks.errors.reason
     pressure, load = flanks.largest_pressure, flanks.largest_line_load
-    band = error_text(pressure, "MPa", MPA, reason)
+    band = error_or_reason(pressure, "MPa", MPA, reason)
     remark = f"{band}{_kink_text(flanks)}; {at}{edge_text(flanks.edge_pressure)}"
-    yield Headline("largest flank pressure", f"{number(pressure.value / MPA)} MPa", remark)
-    band = error_text(load, "N/mm", N_PER_MM, reason)
+    yield Headline("largest flank pressure", f"{_to_error(pressure, MPA)} MPa", remark)
+    band = error_or_reason(load, "N/mm", N_PER_MM, reason)
     remark = f"{band}{_length_text(flanks)}; {at}{_edge_load(flanks)}"
-    yield Headline("largest line load", f"{number(load.value / N_PER_MM)} N/mm", remark)
+    yield Headline("largest line load", f"{_to_error(load, N_PER_MM)} N/mm", remark)
     if flanks.face_position.size > 1:
         factor = flanks.cycle_face_load_factor
-        remark = f"{error_text(factor, '', 1.0, reason)}{_length_text(flanks)}; {at}"
-        yield Headline("K_Hbeta over the cycle", number(factor.value, 3), remark)
+        remark = f"{error_or_reason(factor, '', 1.0, reason)}{_length_text(flanks)}; {at}"
+        yield Headline("K_Hbeta over the cycle", _to_error(factor), remark)
 
 
 def _kink_text(flanks: LoadDistribution) -> str:
@@ -392,9 +397,9 @@ def _edge_load(flanks: LoadDistribution) -> str:
     load = flanks.edge_line_load
     if load.value <= 0.0:
         return ""
-    band = error_text(load, "N/mm", N_PER_MM, flanks.errors.reason)
+    band = error_or_reason(load, "N/mm", N_PER_MM, flanks.errors.reason)
     over = f", mean over {number(1e3 * flanks.edge_length, 2)} mm" if flanks.face_position.size > 1 else ""
-    return f"; {number(load.value / N_PER_MM, 3)} N/mm at the edges, {band}{over}"
+    return f"; {_to_error(load, N_PER_MM)} N/mm at the edges, {band}{over}"
 
 
 def _length_text(flanks: LoadDistribution) -> str:
@@ -463,15 +468,15 @@ def _text(flanks: LoadDistribution) -> Iterator[str]:
         f"misalignment {scene.misalignment / UM:.4g} µm"
     )
     load, reason = flanks.largest_line_load, flanks.errors.reason
-    band = error_text(load, "N/mm", N_PER_MM, reason)
+    band = error_or_reason(load, "N/mm", N_PER_MM, reason)
     remark = f"{band}{_length_text(flanks)}{_edge_load(flanks)}"
-    yield f"largest line load {load.value / N_PER_MM:.4g} N/mm, {remark}"
+    yield f"largest line load {_to_error(load, N_PER_MM)} N/mm, {remark}"
     if flanks.face_position.size > 1:
         ends = (engineering(1e3 * end, 3) for end in (flanks.load_centroid.min(), flanks.load_centroid.max()))
         largest = flanks.largest_face_load_factor
         yield (
-            f"K_Hbeta at most {engineering(largest.value, 3)} at one position, "
-            f"{error_text(largest, '', 1.0, reason)}{_length_text(flanks)}; "
+            f"K_Hbeta at most {_to_error(largest)} at one position, "
+            f"{error_or_reason(largest, '', 1.0, reason)}{_length_text(flanks)}; "
             f"load centroid {' to '.join(dict.fromkeys(ends))} mm from mid-face"
         )
     yield from assumption_lines(receipt)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bounds import engineering
+from bounds.error_digits import error_text, to_error, with_error
 from bounds.types import Json
 from lineofaction.gearbox.convert.effects import assumption_lines
 from lineofaction.gearbox.studies.root_stress.run import GEARS, RUN, Roots
@@ -67,7 +67,7 @@ def _peak_table(stresses: Json) -> Table:
     columns = {
         "gear": lambda peak: peak["gear"],
         "root": lambda peak: peak["root"],
-        "stress MPa": lambda peak: f"{peak['stress_mpa']:.4g} ±{engineering(peak['error_mpa'], 1)}",
+        "stress MPa": lambda peak: with_error(peak["stress_mpa"], peak["error_mpa"]),
         "position": lambda peak: f"{peak['position']:.3f}",
         "tangent °": lambda peak: f"{peak['tangent_angle_deg']:.1f}",
         "face mm": lambda peak: f"{peak['face_position_mm']:.2f}",
@@ -96,8 +96,9 @@ def _page(stresses: Json) -> Page:
 
 
 def _headline(gear: str, peak: Json) -> Headline:
-    value, error = f"{number(peak['stress_mpa'])} MPa", f"± {engineering(peak['error_mpa'], 1)} MPa"
-    return Headline(f"largest root stress, {gear}", value, error)
+    value, error = peak["stress_mpa"], peak["error_mpa"]
+    name = f"largest root stress, {gear}"
+    return Headline(name, f"{to_error(value, error)} MPa", f"± {error_text(value, error)} MPa")
 
 
 def _point(stresses: Json) -> str:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bounds import engineering
+from bounds.error_digits import with_error
 from lineofaction.gearbox.studies.excitation import Excitation, stored_excitations
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import Axis, Bars, Figure, Panel, Table, number
@@ -28,8 +29,8 @@ class _Quantity(NamedTuple):
 
     def cell(self, row: Excitation) -> str:
         value, error = self.amplitude(row)
-        text = number(self.scale * value, 3)
-        return text if error is None else f"{text} ± {number(self.scale * error, 2)}"
+        value *= self.scale
+        return number(value, 3) if error is None else with_error(value, self.scale * error)
 
 
 _QUANTITIES = (

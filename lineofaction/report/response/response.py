@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from bounds import engineering, leftover
+from bounds.error_digits import with_error
 from dynamics.linearize import ForcedResponse, peaks
 from lineofaction.gearbox.units import RPM
 from lineofaction.report.drawing import palette
@@ -221,9 +222,9 @@ def _omission_text(response: ForcedResponse) -> Iterator[str]:
         at = np.unravel_index(int(np.argmax(square)), square.shape)
         rms = float(np.sqrt(square[at]))
         remark = f"{number(float(np.sqrt(floor[at])), 3)} N of it in the orders not listed"
-        error = engineering(rms - float(np.sqrt(max(square[at] - response.bearing_floor_error[at], 0.0))), 2)
+        error = rms - float(np.sqrt(max(square[at] - response.bearing_floor_error[at], 0.0)))
         where = f"{response.bearing[at[0]]} at {number(float(response.speed[at[1]]) / RPM, 4)} rpm"
-        yield f"largest rms force of all orders: {number(rms, 4)} ± {error} N on {where}, {remark}"
+        yield f"largest rms force of all orders: {with_error(rms, error, 'N')} on {where}, {remark}"
 
 
 PAGE = dynamics_presentation("Forced response", _figures, _headlines, _text)

@@ -1,4 +1,7 @@
-"""Periodic steady states over speed: transmission error, forces and contact of sweeps and branch."""
+"""Periodic steady states over speed: transmission error, forces and contact of sweeps and branch.
+
+A status of 0 says that the search for a motion converged; an instability of 0 that the motion is stable.
+"""
 
 from __future__ import annotations
 
@@ -80,7 +83,7 @@ def _quantities(states: SteadyStates, mesh: int) -> list[tuple[str, FloatArray]]
 
 
 def _folds(states: SteadyStates, ends: tuple[float, float]) -> list[float]:
-    """Return the distinct folds in rpm: of a cluster of corners the outermost counts."""
+    """Return the speeds of folds to be labelled, rpm: of folds close together the outermost alone."""
     folds = states.bifurcation_speed[states.bifurcation_kind == KINDS.index("fold")] / RPM
     separate: list[float] = []
     if folds.size:
@@ -95,6 +98,7 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
     """Yield the branch in its stable and unstable parts, and the sweeps."""
     on = np.flatnonzero(states.curve == BRANCH)
     stable = states.instability[on] == 0
+    # stable motions beside unstable ones: the dashed line begins and ends at them, so that no gap is left
     boundary = np.append(~stable[1:], False) | np.append(False, ~stable[:-1])
     looks: tuple[tuple[str, Dash], ...] = (("branch, stable", "solid"), ("branch, unstable", "dash"))
     for (name, dash), in_part, joined in zip(looks, (stable, ~stable), (False, boundary), strict=True):
@@ -142,7 +146,8 @@ def _mesh_cells(states: SteadyStates, index: int, mesh: int) -> tuple[str, ...]:
     """Describe a motion; of one that was not found say how far the search came."""
     if states.status[index]:
         left = leftover(1e6 * float(states.residual[index]), 2)
-        return (f"{status_name(int(states.status[index]))}, {left} µm left", *("none",) * 7)
+        empty = ("none",) * (len(_MESH_HEAD) - 2)  # all columns but mesh and state
+        return (f"{status_name(int(states.status[index]))}, {left} µm left", *empty)
     return (
         KINDS[int(states.instability[index])],
         number(np.abs(states.multiplier[index, 0]), 4),
@@ -195,7 +200,10 @@ def _headlines(states: SteadyStates) -> tuple[Headline, ...]:
 def _largest(
     states: SteadyStates, what: str, values: FloatArray, unit: str, names: tuple[str, ...] = ()
 ) -> Headline:
-    """Name the largest of values (motion, mesh) with mesh, or other part, speed and stability."""
+    """Return a headline: the largest of values (motion, part) with its part, speed and stability.
+
+    Parts are the meshes unless `names` are given.
+    """
     index, mesh = np.unravel_index(int(np.nanargmax(values)), values.shape)
     at = f"{number(float(states.speed[index]) / RPM, 4)} rpm, {KINDS[int(states.instability[index])]}"
     value = f"{number(values[index, mesh], 3)} {unit}"

@@ -9,9 +9,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from bounds.error_digits import with_error
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.types import Estimate, IntArray
+from lineofaction.gearbox.units import UM
 from lineofaction.report.drawing.figure import (
     Axis,
     Figure,
@@ -331,7 +333,7 @@ def _alternative(database: SteDatabase, curves: list[Curve]) -> str:
     labels, loads = load_labels(database), drawn_loads(database)
     ends = {labels[k]: curves[k] for k in (loads[-1], loads[0])}
     parts = [
-        f"{_band(curve.peak_to_peak, 3)} µm at {label}, about a mean of {um(curve.mean.value, 3)} µm"
+        f"{_band(curve.peak_to_peak)} µm at {label}, about a mean of {um(curve.mean.value, 3)} µm"
         for label, curve in ends.items()
     ]
     return f"Peak to peak is {'; '.join(parts)}."
@@ -349,7 +351,6 @@ def _table(database: SteDatabase, curves: list[Curve]) -> Table:
     return Table("Static transmission error by load", head + orders, tuple(rows))
 
 
-def _band(estimate: Estimate, digits: int = 4) -> str:
+def _band(estimate: Estimate) -> str:
     """Write a number in micrometers, with its error if that was estimated."""
-    value = um(estimate.value, digits)
-    return value if np.isnan(estimate.error) else f"{value} ± {um(estimate.error, 2)}"
+    return with_error(estimate.value / UM, estimate.error / UM)

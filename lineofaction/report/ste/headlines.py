@@ -6,9 +6,11 @@ import math
 
 import numpy as np
 
+from bounds.error_digits import error_text, to_error
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
-from lineofaction.report.drawing.figure import number, um
+from lineofaction.gearbox.units import UM
+from lineofaction.report.drawing.figure import number
 from lineofaction.report.drawing.page import Headline
 from lineofaction.report.ste.curves import (
     aligned_index,
@@ -31,7 +33,7 @@ def static_headlines(database: SteDatabase, force: float | None = None) -> tuple
     biases = _over_face(curve)
     return (
         *(
-            Headline(f"{name} STE at {label}", f"{um(one.value)} µm", f"{_band(one)}{bias}")
+            Headline(f"{name} STE at {label}", f"{_to_error(one)} µm", f"{_band(one)}{bias}")
             for (name, one), bias in zip(figures.items(), biases, strict=True)
         ),
         Headline(f"largest pressure at {label}", f"{number(1e-6 * pressure, 4)} MPa", remark),
@@ -44,7 +46,7 @@ def _over_face(curve: Curve) -> tuple[str, str]:
     if curve.over_face is None:
         return "", ""
     figures = curve.over_face.mean, curve.over_face.peak_to_peak
-    mean, ripple = (f"; gears of this width {um(one.value)} µm {_band(one)}" for one in figures)
+    mean, ripple = (f"; gears of this width {_to_error(one)} µm {_band(one)}" for one in figures)
     return mean, ripple
 
 
@@ -56,4 +58,10 @@ def edge_text(pressure: float) -> str:
 
 
 def _band(estimate: Estimate) -> str:
-    return "not estimated" if math.isnan(estimate.error) else f"± {um(estimate.error, 2)} µm"
+    if math.isnan(estimate.error):
+        return "not estimated"
+    return f"± {error_text(estimate.value / UM, estimate.error / UM)} µm"
+
+
+def _to_error(estimate: Estimate) -> str:
+    return to_error(estimate.value / UM, estimate.error / UM)

@@ -1,6 +1,7 @@
 // @ts-check
 /** What came of a job, small: the ripple of its transmission error with its figures, and what it took. */
 
+import { plusMinus, toError } from "./digits.js";
 import { draw, duration, figures, make, number } from "./elements.js";
 import { minus } from "./live_numbers.js";
 
@@ -29,7 +30,7 @@ export function headline(found) {
 function entries({ cpu_seconds: cpu, torque_n_m: torque, peak_to_peak_um: ripple, peak_to_peak_error_um: error, first_harmonic_um: tone }) {
   const level = tone ? minus(20 * Math.log10(tone)) : null;
   return [
-    ripple !== null && [`p-p at ${Number(number(torque, 4))} N m`, `${number(ripple, 3)} µm`, error === null ? "" : `± ${number(error, 2)}`],
+    ripple !== null && [`p-p at ${Number(number(torque, 4))} N m`, `${toError(ripple, error)} µm`, plusMinus(error, ripple)],
     level !== null && ["harmonic 1", `${level} dB`, "re 1 µm"],
     cpu !== null && ["CPU time", cpu < 90 ? `${number(cpu, 2)} s` : duration(cpu)],
   ].filter(Boolean);

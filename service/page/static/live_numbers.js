@@ -1,22 +1,15 @@
 /** The numbers of the live curves: main figures with error and change, and all of them as a table. */
 
+import { bandOf, change, levelChange, plusMinus, toError } from "./digits.js";
 import { number, signed } from "./elements.js";
 import { strongestOrders } from "./live_figures.js";
-
-const plusMinus = (error, coming) => (Number.isFinite(error) ? `± ${number(error, 2)}` : coming ? "± …" : "");
-
-/** A value with as many decimals as its error, or three digits where that is none (yet). */
-const toError = (value, error) => (error > 0 ? value.toFixed(number(error, 2).split(".")[1]?.length ?? 0) : number(value, 3));
-
-const change = (value, from) => (from && value !== from ? `${signed(100 * (value / from - 1), 3)} %` : "");
-const decibels = (value, from) => (from && value && value !== from ? `${signed(20 * Math.log10(value / from), 2)} dB` : "");
 
 /** Pressure at edges, where the true one is singular, apart from that of the flank; nothing where no contact reaches one. */
 export const edgeWords = ({ edge_pressure_mpa: edge }) => (edge ? `${number(edge, 3)} MPa` : "");
 
 /** What each source states of the errors of a curve. */
 export function sourcesOf({ error_by_source_um: errors }) {
-  const row = ([name, of]) => [name.replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
+  const row = ([name, of]) => [name.replace("discretisation", "discretization").replaceAll("_", " "), ...["peak_to_peak", "mean", "first_harmonic"].map((figure) => number(of[figure], 2))];
   return { caption: "Errors by source, µm", head: ["source", "peak to peak", "mean", "harmonic 1"], rows: Object.entries(errors).map(row) };
 }
 
@@ -25,8 +18,9 @@ function levelOf({ harmonics_um: amplitudes, harmonics_error_um: errors, preview
   const [amplitude, error] = [amplitudes[harmonic - 1], errors?.[harmonic - 1]];
   const level = (size) => 20 * Math.log10(size);
   if (error >= amplitude) return { level: level(amplitude), band: Infinity, words: `below ${minus(level(error))} dB`, remark: "its error" };
-  const band = error === undefined ? NaN : -level(1 - error / amplitude);
-  return { level: level(amplitude), band, words: `${minus(level(amplitude))} dB`, remark: [plusMinus(band, preview), "re 1 µm"].filter(Boolean).join(" ") };
+  const band = bandOf(amplitude, error);
+  const words = `${toError(level(amplitude), band).replace("-", "−")} dB`;
+  return { level: level(amplitude), band, words, remark: [plusMinus(band, level(amplitude), preview), "re 1 µm"].filter(Boolean).join(" ") };
 }
 
 export const minus = (value) => value.toFixed(1).replace("-", "−");
@@ -35,7 +29,7 @@ export const minus = (value) => value.toFixed(1).replace("-", "−");
 function levelsOf({ harmonic, curves }) {
   const [first, ...others] = curves.map(({ name, curve }) => ({ name, coming: curve.preview, ...levelOf(curve, harmonic) }));
   const changed = ({ level, band, coming }) => (
-    level === first.level ? "" : band + first.band === Infinity ? "within the errors" : `${signed(level - first.level, 2)} ${plusMinus(band + first.band, coming)}`.trim());
+    levelChange(level - first.level, band + first.band, coming));
   return [{ ...first, change: "" }, ...others.map((own) => ({ ...own, change: changed(own) }))];
 }
 
@@ -54,20 +48,26 @@ export function heardFigures(heard) {
   return [[heardWords(heard), words, [remark, from].filter(Boolean).join("; ")]];
 }
 
+/** Change of the level of the first harmonic, with the band of both. @param {any} now @param {any} from */
+function firstHarmonicChange(now, from) {
+  const [level, first] = [now, from].map((curve) => levelOf(curve, 1));
+  const words = levelChange(level.level - first.level, level.band + first.band, now.preview);
+  return words && !words.startsWith("within") ? `${words} dB` : words;
+}
+
 /** Remark on figures of the flanks: a live answer solves one discretization of them. */
 const UNSTATED = "error not estimated";
 
 /** Main figures of a curve, each with its error and its change from another. */
 export function mainFigures(now, from) {
   const remarks = (...words) => words.filter(Boolean).join("; ");
-  const entry = (name, value, error, other, changed = change) => (
-    [name, `${toError(value, error)} µm`, remarks(plusMinus(error, now.preview), changed(value, other))]);
+  const entry = (name, value, error, changed) => [name, `${toError(value, error)} µm`, remarks(plusMinus(error, value, now.preview), changed)];
   const edges = edgeWords(now.flanks);
   const { k_h_beta: factor, largest_pressure_mpa: pressure } = now.flanks;
   const entries = [
-    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, from.peak_to_peak_um),
-    entry("mean", now.mean_um, now.mean_error_um, from.mean_um),
-    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], from.harmonics_um[0], decibels),
+    entry("peak to peak", now.peak_to_peak_um, now.peak_to_peak_error_um, change(now.peak_to_peak_um, from.peak_to_peak_um)),
+    entry("mean", now.mean_um, now.mean_error_um, change(now.mean_um, from.mean_um)),
+    entry("first harmonic", now.harmonics_um[0], now.harmonics_error_um?.[0], firstHarmonicChange(now, from)),
     ["largest pressure", `${number(pressure, 3)} MPa`, remarks(edges && "on the flank", UNSTATED, change(pressure, from.flanks.largest_pressure_mpa))],
     ...(edges ? [["at the edges", edges, "indicative"]] : []),
   ];
@@ -76,8 +76,11 @@ export function mainFigures(now, from) {
   return [
     ...entries,
     ["bias of the mean", `${signed(100 * now.bias.mean, 2)} %`, now.bias.words],
-    entry("mean over the face", now.mean_over_face_um, now.mean_over_face_error_um, from.mean_over_face_um),
-    entry("peak to peak over the face", now.peak_to_peak_over_face_um, now.peak_to_peak_over_face_error_um, from.peak_to_peak_over_face_um),
+    entry("mean over the face", now.mean_over_face_um, now.mean_over_face_error_um, change(now.mean_over_face_um, from.mean_over_face_um)),
+    entry(
+      "peak to peak over the face", now.peak_to_peak_over_face_um, now.peak_to_peak_over_face_error_um,
+      change(now.peak_to_peak_over_face_um, from.peak_to_peak_over_face_um),
+    ),
   ];
 }
 
@@ -88,12 +91,12 @@ export function besideFigures(variants, heard) {
   const [{ name: first, curve: from }] = shown;
   const row = (name, of) => [name, ...shown.map(({ curve }) => of(curve))];
   const measured = (name, value, error) => row(name, (curve) => (
-    `${toError(value(curve), error(curve))} ${plusMinus(error(curve), curve.preview)}`.trim()));
+    `${toError(value(curve), error(curve))} ${plusMinus(error(curve), value(curve), curve.preview)}`.trim()));
   const levels = heard?.curves.length ? levelsOf({ ...heard, curves: [...heard.curves].sort(named) }) : [];
   const heardOf = (name, of) => [name, ...shown.map((own) => levels.filter((level) => level.name === own.name).map(of)[0] ?? "none")];
   const complaint = heard ? [
-    heardOf(`${heardWords(heard)}${levels.length ? ", dB re 1 µm" : ""}`, ({ words, band, coming }) => (
-      band === Infinity ? `${words.replace(" dB", "")} (its error)` : `${words.replace(" dB", "")} ${plusMinus(band, coming)}`.trim())),
+    heardOf(`${heardWords(heard)}${levels.length ? ", dB re 1 µm" : ""}`, ({ words, level, band, coming }) => (
+      band === Infinity ? `${words.replace(" dB", "")} (its error)` : `${words.replace(" dB", "")} ${plusMinus(band, level, coming)}`.trim())),
     ...(levels.length ? [heardOf(`the same, dB from ${levels[0].name}`, ({ change }) => change)] : []),
   ] : [];
   return {
@@ -103,7 +106,7 @@ export function besideFigures(variants, heard) {
       ...complaint,
       measured("peak to peak, µm", (curve) => curve.peak_to_peak_um, (curve) => curve.peak_to_peak_error_um),
       measured("first harmonic, µm", (curve) => curve.harmonics_um[0], (curve) => curve.harmonics_error_um?.[0]),
-      row(`first harmonic, dB from ${first}`, (curve) => (curve === from ? "" : decibels(curve.harmonics_um[0], from.harmonics_um[0]).replace(" dB", ""))),
+      row(`first harmonic, dB from ${first}`, (curve) => (curve === from ? "" : firstHarmonicChange(curve, from).replace(" dB", ""))),
       measured("mean, µm", (curve) => curve.mean_um, (curve) => curve.mean_error_um),
       row("largest pressure, MPa", ({ flanks }) => number(flanks.largest_pressure_mpa, 3)),
       ...(from.flanks.k_h_beta === null ? [] : [row("K_Hbeta", ({ flanks }) => (flanks.k_h_beta === null ? "none" : number(flanks.k_h_beta, 4)))]),

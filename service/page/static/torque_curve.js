@@ -1,6 +1,7 @@
 /** Peak-to-peak transmission error over torque, under the torque slider: where a pair is quiet. */
 
 import { Problem, ask } from "./api.js";
+import { withError } from "./digits.js";
 import { make, number } from "./elements.js";
 import { band } from "./lines.js";
 import { layout } from "./live_figures.js";
@@ -110,8 +111,7 @@ export class TorqueCurve {
   words(pairs) {
     const said = pairs.map(({ name, rows }) => {
       const least = rows.reduce((one, other) => (other.ripple < one.ripple ? other : one));
-      const error = Number.isFinite(least.error) ? ` ± ${number(least.error, 2)}` : "";
-      return `${name} least ${number(least.ripple, 3)}${error} µm at ${number(least.torque, 3)} N m, ${number(rows.at(-1).ripple, 3)} µm at ${number(rows.at(-1).torque, 3)} N m`;
+      return `${name} least ${withError(least.ripple, least.error, "µm")} at ${number(least.torque, 3)} N m, ${number(rows.at(-1).ripple, 3)} µm at ${number(rows.at(-1).torque, 3)} N m`;
     });
     this.node.setAttribute("aria-label", `Peak to peak over torque: ${said.join("; ")}.`);
   }

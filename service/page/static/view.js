@@ -34,7 +34,8 @@ export class View {
     if (target.hidden) return;
     this.pair = new RollingPair();
     this.stage = new Stage(target, this.pair);
-    this.scale = make("span", { class: "view-scale", hidden: true });
+    this.scaleEnd = make("span", {});
+    this.scale = make("span", { class: "view-scale", hidden: true }, make("span", { class: "view-scale-zero" }, "flank pressure 0"), this.scaleEnd);
     this.pair.told = (words, map) => this.words.replaceChildren(...(map ? [map] : []), words);
     const roll = button("", () => this.stage.roll(!this.stage.rolls), { class: "small" });
     const say = () => { roll.textContent = this.stage.rolls ? "Stop" : "Roll"; };
@@ -178,7 +179,7 @@ export class View {
     const shown = this.curve && outlined(this.pair.outline) === outlined(this.of) ? this.curve : null;
     if (shown !== this.pair.curve) this.pair.press(this.stage.gl, shown);
     this.scale.hidden = !shown;
-    this.scale.textContent = `${this.pair.top} MPa`;
+    this.scaleEnd.textContent = `${this.pair.top} MPa`;
     this.stage.canvas.dataset.pressed = String(shown ? most(shown.passage.pressure_mpa) : 0);
     this.stage.wake();
   }

@@ -18,12 +18,13 @@ export class Camera {
   }
 
   /**
-   * Stand so that a ball fills the picture.
-   * @param {Point} center @param {number} radius @param {number} [yaw] about y, from +z to +x @param {number} [pitch] upwards
+   * Stand so that a ball fills the picture, or what is wider than high.
+   * @param {Point} center @param {number} radius half of what is seen upright @param {number} [yaw] about y, from +z to +x @param {number} [pitch] upwards
    * @param {number} [closer] part of the distance to the whole ball
+   * @param {{reach?: number, lying?: boolean}} [size] half of what is seen across; whether y lies across the picture, to the left
    */
-  look(center, radius, yaw = 0.7, pitch = 0.3, closer = 1) {
-    Object.assign(this, { center, radius, yaw, pitch, distance: closer * 1.1 * FIELD * radius });
+  look(center, radius, yaw = 0.7, pitch = 0.3, closer = 1, { reach = radius, lying = false } = {}) {
+    Object.assign(this, { center, radius, reach, lying, yaw, pitch, distance: closer * 1.1 * FIELD * radius });
     this.home = { center, yaw, pitch, distance: this.distance };
   }
 
@@ -35,21 +36,24 @@ export class Camera {
 
   /** The matrix (16, by columns) from the world to clip coordinates. @param {number} aspect width over height */
   matrix(aspect) {
-    const { back, center, distance, radius } = this;
-    const right = [Math.cos(this.yaw), 0, -Math.sin(this.yaw)];
-    const up = [back[1] * right[2] - back[2] * right[1], back[2] * right[0] - back[0] * right[2], back[0] * right[1] - back[1] * right[0]];
+    const { back, center, distance, radius, reach } = this;
+    const level = [Math.cos(this.yaw), 0, -Math.sin(this.yaw)];
+    const steep = [back[1] * level[2] - back[2] * level[1], back[2] * level[0] - back[0] * level[2], back[0] * level[1] - back[1] * level[0]];
+    const [right, up] = this.lying ? [steep.map((value) => -value), level] : [level, steep];
     const eye = center.map((value, k) => value + distance * back[k]);
-    const [far, near] = [distance + 3 * radius, Math.max(0.01 * distance, distance - 3 * radius)];
+    const [far, near] = [distance + 3 * reach, Math.max(0.01 * distance, distance - 3 * reach)];
     const [depth, shift] = [(far + near) / (near - far), (2 * far * near) / (near - far)];
     const row = (axis, scale, more = 0) => [...axis.map((value) => scale * value), -scale * dot(axis, eye) + more];
-    const field = FIELD * Math.min(1, aspect); // a narrow picture shows as much
+    const field = FIELD * Math.min(1, (aspect * radius) / reach); // a narrow picture shows as much
     const rows = [row(right, field / aspect), row(up, field), row(back, depth, shift), row(back, -1)];
     return new Float32Array([0, 1, 2, 3].flatMap((column) => rows.map((values) => values[column])));
   }
 
-  turn(across, upwards) {
-    this.yaw -= across;
-    this.pitch = clamped(this.pitch + upwards, -STEEPEST, STEEPEST);
+  /** Turn with the pointer. @param {number} across rad to the right of the picture @param {number} down rad */
+  turn(across, down) {
+    const [about, over] = this.lying ? [down, -across] : [across, down];
+    this.yaw -= about * (this.lying ? -1 : 1);
+    this.pitch = clamped(this.pitch + over, -STEEPEST, STEEPEST);
   }
 
   zoom(factor) {

@@ -8,7 +8,7 @@ import { BENT as BENDING, FLANK, HULL, LEVELS, MOVED, PICK, STEEL, TOOTH } from 
 import { toothMesh } from "./view_teeth.js";
 
 const SPEED = 0.4; // base pitches a second
-export const COLORS = { pinion: [0.58, 0.70, 0.82], wheel: [0.82, 0.66, 0.52] };
+export const COLORS = { pinion: [0.60, 0.64, 0.69], wheel: [0.79, 0.80, 0.80] }; // two steels: blue and orange are designs
 const SEEN_THROUGH = 0.35; // opacity of the wheel
 export const GEARS = ["pinion", "wheel"];
 const LINE = 0.05; // half width of a contact line as drawn, base pitches
@@ -91,9 +91,13 @@ export class RollingPair {
   /** @param {import("./view_camera.js").Camera} camera */
   frame(camera) {
     if (!this.outline) return;
-    const { pinion, path_of_contact: { points_mm: { C } } } = this.outline;
-    const [low, high] = pinion.face_mm;
-    camera.look([C[0], C[1], 0.5 * (low + high)], Math.max(1.1 * pinion.radius_mm.tip, 0.7 * (high - low)), 0.95, 0.3);
+    const gears = GEARS.map((name) => this.outline[name]);
+    const outer = ({ radius_mm: { tip, held } }) => Math.max(tip, held);
+    const [left, right] = [1, -1].map((side) => side * Math.max(...gears.map((gear) => side * gear.centre_mm[1] + outer(gear))));
+    const [low, high] = [Math.min(...gears.map(({ face_mm: ends }) => ends[0])), Math.max(...gears.map(({ face_mm: ends }) => ends[1]))];
+    const radius = Math.max(Math.max(...gears.map(outer)), 0.7 * (high - low));
+    const reach = Math.max(radius, 0.5 * (left - right));
+    camera.look([gears[1].centre_mm[0] / 2, 0.5 * (left + right), 0.5 * (low + high)], radius, 0.75, -0.3, 0.9, { reach, lying: true });
   }
 
   advance(seconds) {
@@ -117,10 +121,28 @@ export class RollingPair {
       gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
       gl.depthMask(false);
     }
+    if (this.through) this.inFront(gl, frame);
     this.gear(gl, "wheel", [flank, "STEEL"], frame, this.through ? SEEN_THROUGH : 1);
     gl.depthMask(true);
     gl.disable(gl.BLEND);
+    if (this.through) this.alone(gl, frame);
     this.gear(gl, "pinion", [flank], frame, 1); // last: not behind what is seen through
+  }
+
+  /** Let only what is in front of the wheel be drawn of it: seen through, it is one body. */
+  inFront(gl, frame) {
+    gl.depthMask(true);
+    gl.colorMask(false, false, false, false);
+    this.gear(gl, "wheel", ["SMOOTH", "STEEL"], frame, 1);
+    gl.colorMask(true, true, true, true);
+  }
+
+  /** Leave the depth of the pinion alone, which the wheel is seen through to. */
+  alone(gl, frame) {
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.colorMask(false, false, false, false);
+    this.gear(gl, "pinion", ["STEEL"], frame, 1);
+    gl.colorMask(true, true, true, true);
   }
 
   /** A tooth of a gear, coarse where it moves. */

@@ -6,9 +6,10 @@ import { context } from "./view_gl.js";
 import { programsOf } from "./view_pair.js";
 
 const SLOW = 40; // ms a frame, beyond which fewer pixels are drawn while it moves
-const LEAST = 0.5; // of the pixels across
-const QUICK = 20; // ms a frame, below which a still picture may be fine
+const LEAST = 0.75; // of the pixels across
+const QUICK = 150; // ms a frame, below which a still picture is fine
 const FINE = 2; // pixels drawn a pixel shown where nothing moves: edges are smooth
+const SETTLED = 250; // ms after which a picture at rest becomes fine: answers to sliders do not wait for it
 const SLIDES = { ArrowLeft: -1, ArrowRight: 1 }; // mm
 const FINEST = 0.1; // mm of a drag
 const SAID = 250; // ms between two sayings of where it rolls
@@ -131,6 +132,8 @@ export class Stage {
     if (this.rolls) this.subject.advance(Math.min(passed, 100) / 1000);
     this.adapt(passed);
     this.paint(false);
+    clearTimeout(this.settling);
+    if (!this.rolls && !this.moving) this.settling = setTimeout(() => this.paint(false, true), SETTLED);
     this.canvas.dataset.frames = String(Number(this.canvas.dataset.frames ?? 0) + 1);
     if (!this.rolls) return;
     this.wake();
@@ -147,11 +150,10 @@ export class Stage {
     else if (this.took < 0.5 * SLOW) this.part = Math.min(1, 1.01 * this.part);
   }
 
-  /** @param {boolean | "marked"} picking which parts are drawn to be picked */
-  paint(picking) {
+  /** @param {boolean | "marked"} picking which parts are drawn to be picked @param {boolean} [settled] whether nothing moves any more */
+  paint(picking, settled = false) {
     const { gl, canvas, camera } = this;
-    const still = !this.rolls && !this.moving && !picking;
-    const scale = still ? Math.max(devicePixelRatio, this.took < QUICK ? FINE : 1) : Math.min(devicePixelRatio, 2) * (picking ? 1 : Math.round(8 * this.part) / 8);
+    const scale = settled ? Math.max(devicePixelRatio, this.took > QUICK ? 1 : FINE) : Math.min(devicePixelRatio, 2) * (picking ? 1 : Math.round(8 * this.part) / 8);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map((size) => Math.max(1, Math.round(scale * size)));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     gl.viewport(0, 0, width, height);

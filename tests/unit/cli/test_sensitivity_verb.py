@@ -280,6 +280,6 @@ def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
 
 def test_its_headlines_are_the_largest_ripples() -> None:
     skew, distance = PAGE.page((study(), study("pair b", 2.0))).headlines
-    assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.0 µm")
+    assert (skew.name, skew.value) == ("largest peak-to-peak STE over misalignment", "10.00 µm")
     assert skew.remark == "± 0.20 µm at 30 µm, pair b: +150 % of the undeviated pair's"
     assert (distance.value, distance.remark[:15]) == ("4.00 µm", "± 0.40 µm at 0 ")

@@ -10,6 +10,7 @@ import pytest
 from command_line import loa, printed
 from spur_case import spur_case
 
+from bounds.error_digits import to_error
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.problems import BadInput
@@ -92,7 +93,8 @@ def test_files_and_terminal_say_the_same(file: Path, tmp_path: Path) -> None:
     for name, value in (entry for point in told["points"] for entry in point.items()):
         assert name.endswith(("n_m", "tip_relief_um")) or "_error" in name or value > 0.0
     largest_point = max(told["points"], key=lambda point: point["peak_to_peak_um"])
-    assert f"{largest_point['peak_to_peak_um']:.3g}" in largest
+    errors = largest_point["peak_to_peak_um"], largest_point["peak_to_peak_error_um"]
+    assert largest.startswith(f"largest peak-to-peak STE: {to_error(*errors)} µm")
 
 
 def test_what_is_said_to_be_as_low_is(file: Path) -> None:

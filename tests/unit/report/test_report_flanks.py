@@ -194,11 +194,14 @@ def test_every_figure_is_drawn_both_ways(flanks: LoadDistribution) -> None:
 def test_load_and_alignment_are_said(flanks: LoadDistribution) -> None:
     torque = flanks.scene.torque
     assert PAGE.figure(flanks).title == f"Contact pattern, 19/26, {torque:.2f} N m, misalignment 30.0 µm"
-    assert [h.value for h in PAGE.page(flanks).headlines] == [
-        f"{1e-6 * flanks.pressure.max():.1f} MPa",
-        f"{1e-3 * flanks.line_load.max():.2f} N/mm",
-        f"{flanks.mean_face_load_factor:.2f}",
-    ]
+    headlines = PAGE.page(flanks).headlines
+    values = 1e-6 * flanks.pressure.max(), 1e-3 * flanks.line_load.max(), flanks.mean_face_load_factor
+    for headline, value, unit in zip(headlines, values, (" MPa", " N/mm", ""), strict=True):
+        stated = re.match(r"± ([\d.]+)", headline.remark)
+        shown = headline.value.removesuffix(unit)
+        assert float(shown) == pytest.approx(value, rel=1e-3)
+        if stated:
+            assert len(shown.partition(".")[2]) == len(stated[1].partition(".")[2]), "as the error leaves"
 
 
 def test_every_headline_has_its_error_or_says_why_there_is_none(flanks: LoadDistribution) -> None:

@@ -293,8 +293,8 @@ def test_orders_beside_the_mesh_are_listed_by_name_and_not_drawn_among_harmonics
     table = excitation_table(facts)
     assert table is not None
     assert [cells[2:5] for cells in table.rows] == [
-        ("1", "1", "200 ± 1.0"),
-        ("", "0.5789 (pinion 11)", "200 ± 1.0"),
+        ("1", "1", "200.0 ± 1.0"),
+        ("", "0.5789 (pinion 11)", "200.0 ± 1.0"),
     ]
     (figure,) = excitation_figures(facts)
     assert [bars.x.size for bars in figure.content[0].bars] == [1, 1]

@@ -1,4 +1,8 @@
-"""Study of a complaint: the likely mesh and harmonic, other excitations near it, modes within reach."""
+"""Study of a complaint: the likely mesh and harmonic, other excitations near it, modes within reach.
+
+The parting of a linear response is the share of the mean mesh force by which flanks would have to pull:
+above 0 they lift off, and the response does not hold.
+"""
 
 from __future__ import annotations
 
@@ -52,8 +56,14 @@ RESOLVED = 1.5
 """Frequency up to which flexible shafts are resolved, over that of the complaint. A mode above it amplifies
 less than `REACH`."""
 MAX_ORDERS = 100
-_OF_PAIR, _ASSEMBLED = 1e-3, 3
-"""CPU seconds of the answer about a case, and number of assemblies of a scene."""
+_CASE_SECONDS, _ASSEMBLIES = 1e-3, 3
+"""`_CASE_SECONDS`, `_ASSEMBLIES`: CPU seconds of the answer about a case, and number of times that a study
+assembles a scene.
+"""
+ROUNDING = 1e-6
+"""Rounding error of an order that is a whole number."""
+NEAREST = 5
+"""Number of excitations nearest to the complaint that are listed."""
 PAIR_ALONE: Json = {"equilibrium": None, "effect_ledger": None, "parting": 0.0}
 """Facts of the answer about a case: it has no equilibrium, no effects and no parting."""
 
@@ -71,7 +81,7 @@ class NearMode:
 
 @dataclass(frozen=True)
 class OrderForce:
-    """The amplitude of an order of the linear response on a bearing; NaN: not known, as of no mesh."""
+    """The amplitude of an order of the linear response on a bearing; NaN where it is not known."""
 
     bearing: str
     force: float = field(metadata=in_unit("n"))
@@ -118,16 +128,16 @@ class _ComplaintStudy(
         return {}
 
     def check(self, subject: CheckedCase | SceneInput, _inputs: Inputs) -> None:
-        """Refuse a case whose complaint nothing passes; a scene is, where it is checked."""
+        """Refuse a case without any excitation at the complaint; the check of a scene refuses a scene."""
         if isinstance(subject, CheckedCase):
             complaint_of_case(subject.case)
 
     def predicted(
         self, subject: CheckedCase | SceneInput, _inputs: Inputs, _cache: Path | None
     ) -> StudyCost | None:
-        """Return the cost of the modes and the lines at one speed; for a case it is a count of teeth."""
+        """Return the cost of the modes and of the response at one speed; a case has neither."""
         if isinstance(subject, CheckedCase):
-            return StudyCost((Work("orders", _OF_PAIR),))
+            return StudyCost((Work("orders", _CASE_SECONDS),))
         with boundary_errors():
             before = scene_before_tables(subject)
         if before is None:
@@ -138,7 +148,7 @@ class _ComplaintStudy(
             system = sized(subject, _reach(complaint))
             began = cpu_seconds()
             assemble(before)
-            assembly = Work("assembly", cpu_seconds() - began, _ASSEMBLED)
+            assembly = Work("assembly", cpu_seconds() - began, _ASSEMBLIES)
             cost = StudyCost((assembly,)) + modes_cost(system, len(speed))
         if speed and highest <= MAX_ORDERS:
             with suppress(InputError, SolveError):  # nothing excites: the orders are named all the same
@@ -165,6 +175,7 @@ class _ComplaintStudy(
 
     def figures(self, result: AnsweredComplaint) -> Json:
         complaint = result.complaint
+        unknown_force = OrderForce("", np.nan)
         within = zip(complaint.within, result.forces, strict=True)
         return figures_of(
             ComplaintFigures,
@@ -175,9 +186,7 @@ class _ComplaintStudy(
             torque=complaint.torques,
             parting_percent=100.0 * result.metadata.get("parting", 0.0),
             passing=[(force, _figures_of(line, complaint)) for line, force in within],
-            nearest=[
-                (OrderForce("", np.nan), _figures_of(line, complaint)) for line in complaint.passing[:5]
-            ],
+            nearest=[(unknown_force, _figures_of(line, complaint)) for line in complaint.passing[:NEAREST]],
             modes=[(mode, {"distance_percent": 100.0 * mode.distance}) for mode in result.modes],
         )
 
@@ -191,8 +200,8 @@ def _of_pair(case: Case, means: Means) -> AnsweredComplaint:
 
 
 def _figures_of(line: Passing, complaint: Complaint) -> Json:
-    of = line.excitation
-    named = {"kind": of.kind, "name": of.name, "part": of.part}
+    excitation = line.excitation
+    named = {"kind": excitation.kind, "name": excitation.name, "part": excitation.part}
     return named | {
         "harmonic": line.harmonic,
         "order": line.order,
@@ -208,7 +217,7 @@ def _reach(complaint: Complaint) -> float | None:
 
 
 def _leading_speed(complaint: Complaint, scene: Scene) -> list[float]:
-    """Return the speed of the shaft that speeds of studies are of, rad/s; none without, or from rest."""
+    """Return the speed of the leading shaft at the complaint, rad/s; empty without a speed, or at rest."""
     if complaint.speed is None or not any(part.speed.extreme for part in scene.references):
         return []
     return [complaint.turns[leading_shaft(scene)] * complaint.speed]
@@ -233,12 +242,12 @@ def _near_modes(modes: ModalAnalysis, complaint: Complaint) -> tuple[NearMode, .
 
 
 def _orders(complaint: Complaint) -> list[float]:
-    """Return the orders that pass, as results count them."""
+    """Return the orders of the excitations within the tolerance, in orders of the linear response."""
     return [line.order * complaint.per_pitch for line in complaint.within]
 
 
 def _highest_order(complaint: Complaint) -> int:
-    return max(int(np.ceil(max(_orders(complaint)) - 1e-6)), 1)
+    return max(int(np.ceil(max(_orders(complaint)) - ROUNDING)), 1)
 
 
 def _response(system: System, complaint: Complaint, speed: Sequence[float]) -> ForcedResponse | None:
@@ -267,7 +276,8 @@ def _force(response: ForcedResponse | None, order: float, bearing: str | None) -
     (at,) = np.nonzero(np.isclose(response.order, order, rtol=1e-6))
     if not at.size:
         return unknown
-    size = np.sqrt(np.sum(np.abs(response.bearing_force[:, :3, 0, at[0]]) ** 2, axis=1))
+    force = response.bearing_force[:, :3, 0, at[0]]  # three forces of each bearing at the only speed
+    size = np.sqrt(np.sum(np.abs(force) ** 2, axis=1))
     b = int(np.argmax(size)) if bearing is None else response.bearing.index(bearing)
     return OrderForce(response.bearing[b], float(size[b]))
 

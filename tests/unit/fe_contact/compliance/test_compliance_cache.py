@@ -23,6 +23,7 @@ from fe_contact.compliance import (
     FlankCompliance3D,
     PlaneHypothesis,
     cache,
+    condensation_cost,
     default_cache_directory,
     flank_compliance,
     flank_compliance_3d,
@@ -334,12 +335,22 @@ def test_cost_is_known_before_the_run(gear: Gear) -> None:
 
 
 @pytest.mark.law
-def test_gears_of_one_shape_cost_the_same_and_are_predicted_once() -> None:
-    """Reliefs and deviations change no body; another tip diameter does."""
-    recipe = SectorRecipe.draft(SPUR)
-    plain = predict_cost(SPUR, recipe)
+def test_gears_of_one_shape_cost_the_same_and_are_predicted_once(monkeypatch, tmp_path) -> None:
+    """Reliefs and deviations change no body; another tip diameter does.
+
+    One elimination tree serves the plan, which knows the host, and the progress, which does not.
+    """
+    built: list[int] = []
+    genuine = condensation_cost.sector_tree
+    monkeypatch.setattr(condensation_cost, "sector_tree", lambda sector: built.append(1) or genuine(sector))
+    gear = replace(SPUR, face_width=1.07 * SPUR.face_width)  # of no other test
+    recipe = SectorRecipe.draft(gear)
+    plain = predict_cost(gear, recipe)
+    assert predict_cost(gear, recipe, cache=tmp_path).bytes == plain.bytes
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
-    relieved = replace(SPUR, modification=relief, run_out=RunOut(10e-6))
-    assert predict_cost(relieved, recipe) is plain
-    shorter = replace(relieved, tip_diameter=2.0 * SPUR.tip_radius - 0.2 * SPUR.normal_module)
+    relieved = replace(gear, modification=relief, run_out=RunOut(10e-6))
+    assert predict_cost(relieved, recipe) == plain
+    assert len(built) == 1
+    shorter = replace(relieved, tip_diameter=2.0 * gear.tip_radius - 0.2 * gear.normal_module)
     assert predict_cost(shorter, recipe).bytes != plain.bytes
+    assert len(built) == 2

@@ -78,7 +78,7 @@ def test_a_tight_one_refines_until_it_is_met(from_draft, tmp_path):
     assert receipt(table)["tolerance"]["met"] is True
     assert [one["level"] for one in passes] == ["draft", "standard"]
     assert passes[1]["refined"] == ["mesh draft -> standard"]
-    assert "discretisation takes" in passes[1]["because"]
+    assert "discretization takes" in passes[1]["because"]
     assert [one["kept"] for one in passes] == [False, True]
     ((draft, words),) = drafts
     assert words == "mesh draft -> standard"
