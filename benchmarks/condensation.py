@@ -9,7 +9,7 @@ from benchmarks.fresh_process import measure
 
 SUBJECT = "condensation"
 SYSTEM_SHARE = 4.0
-"""Of the CPU time of a run by default, that of the system at most, %."""
+"""Largest share of system time in the CPU time of a run by default, %."""
 OVER_OPERATIONS = 1.25
 """CPU time of a tooth over that of its operations at the rate of a symmetric update, at most: 80 % of it."""
 _REPEATS = 3

@@ -28,7 +28,7 @@ class QuietDrive:
     pairs: tuple[GearPair, ...]
     """The same bodies with other flanks."""
     misalignments: tuple[float, ...]
-    """Of each, m."""
+    """Misalignment of each pair, m."""
     loads: FloatArray
     """Normal forces up to the rated one, N. Shape (3,)."""
 

@@ -1,4 +1,4 @@
-"""What meshes leave in quiet helical pairs: drawn pairs on two levels against finer solutions."""
+"""Errors of meshes in quiet helical pairs: drawn pairs on two levels against finer solutions."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class MeshRow:
     slices: int
     mean: float
     added: float
-    """What the load adds to the mean."""
+    """Share of the mean that the load adds."""
     ripple: float
     by_mesh: float
     by_patches: float
-    """`by_mesh`, `by_patches`: What second order leaves of the mean of the changes by mesh and patches."""
+    """`by_mesh`, `by_patches`: Remainder at second order of the mean change by mesh and by patches."""
     half_ripple: float
-    """What it leaves of half the peak-to-peak of the change by the mesh."""
+    """Remainder at second order of half the peak-to-peak of the change by the mesh."""
     patch_ripple: float
     slice_ripple: float
     """`patch_ripple`, `slice_ripple`: Errors of peak-to-peak by patches and by slices, as stated."""
@@ -173,7 +173,7 @@ class _Curves:
 
     @property
     def left(self) -> tuple[FloatArray, FloatArray]:
-        """What second order leaves of the changes by the mesh and by the patches."""
+        """Remainder at second order of the changes by the mesh and by the patches."""
         made = self.plan.discretization
         by_mesh = made.remaining * (self.patched - self.coarse)
         return by_mesh, self.plan.remaining_patches * (self.table - self.patched)

@@ -149,10 +149,9 @@ class Checklist:
 
 def finding_of(content: Json) -> Finding:
     """Return the finding that `to_json` wrote."""
-    values = {
-        name: content[name] for name in ("check", "field", "value", "unit", "reason", "source", "whole")
-    }
-    return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **values)
+    values = {name: content[name] for name in ("check", "field", "value", "unit", "reason", "source")}
+    low, high = content["low"] or 0.0, content["high"] or math.inf
+    return Finding(low=low, high=high, unit_note=content["whole"], **values)
 
 
 def warn_of(findings: Sequence[Finding]) -> None:

@@ -76,7 +76,7 @@ class WorkMeter:
     cache: Path | None
     workers: Workers
     predicted: Cost
-    """On this host."""
+    """Predicted cost on this host."""
     began: float
     """CPU seconds that were spent before."""
     memory: int | None

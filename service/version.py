@@ -31,8 +31,8 @@ def program_tag() -> str:
 def modules_digest(root: Path) -> str:
     """Return a digest of the modules of the packages in a folder, 16 hexadecimal digits."""
     digest = hashlib.sha256()
-    for package in _PACKAGES:
-        for path in sorted(_modules(str(root / package))):
+    for package in filter(Path.is_dir, (root / name for name in _PACKAGES)):
+        for path in sorted(_modules(str(package))):
             with open(path, "rb", buffering=0) as file:  # noqa: PTH123 (a third of the time)
                 digest.update(file.read())
     return digest.hexdigest()[:16]

@@ -19,11 +19,11 @@ class FrontBlocks(NamedTuple):
     """Lower triangle of a front by blocks, flat and column by column; at first they hold anything."""
 
     within: FloatArray
-    """Of its i inner freedoms, i * i numbers."""
+    """Block of the i inner freedoms of a front, i * i numbers."""
     below: FloatArray
-    """Of its b border freedoms by the inner ones, b * i numbers."""
+    """Block of the b border freedoms by the inner ones, b * i numbers."""
     rest: FloatArray
-    """Of its border freedoms, b * b numbers: what is left of it goes up."""
+    """Block of the border freedoms, b * b numbers: its Schur complement goes up to the parent front."""
 
 
 class FrontMemory:

@@ -86,7 +86,7 @@ def condense(
 
 
 class _Work(NamedTuple):
-    """What the elimination of every front needs; parameters of `condense`."""
+    """Arrays that the elimination of every front reads; parameters of `condense`."""
 
     order: IntArray
     freedoms: IntArray

@@ -1,4 +1,4 @@
-"""What verbs are predicted to cost, before they compute."""
+"""Predicted costs of verbs, before they compute."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which work goes to workers: what costs more than the start of a process."""
+"""The choice which work goes to workers: what costs more than the start of a process."""
 
 from __future__ import annotations
 

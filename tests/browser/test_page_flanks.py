@@ -20,7 +20,7 @@ from lineofaction.gearbox.schemas.reading import validated
 
 SIZE, ACROSS, UP = 300, 1.6, 4.5  # pixels; mm from the middle of a picture to its edges
 TOP = 200.0  # MPa, end of the scale
-STEEL = {"pinion": (0.58, 0.70, 0.82), "wheel": (0.82, 0.66, 0.52)}
+STEEL = {"pinion": (0.60, 0.64, 0.69), "wheel": (0.79, 0.80, 0.80)}
 PAINTED = """async ({ outline, name, position, pressure, size, top, view }) => {
   const { RollingPair, programsOf } = await import("/page/view_pair.js");
   const canvas = Object.assign(document.createElement("canvas"), { width: size, height: size });

@@ -20,6 +20,27 @@ LONGEST = 600
 WRITTEN = (".js", ".css", ".html")
 MAX_PRIVATE = 60
 """Imports of names with an underscore by tests, at most: the number may only fall."""
+WITHOUT_SUBJECT = {
+    *(
+        "Of",
+        "That",
+        "Those",
+        "Where",
+        "What",
+        "How",
+        "By",
+        "At",
+        "On",
+        "In",
+        "With",
+        "For",
+        "From",
+        "To",
+        "As",
+    ),
+    *("If", "Which", "And", "Its", "Their", "It"),
+}
+"""First words of texts that leave out what they describe."""
 DEFINITIONS = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
@@ -70,6 +91,29 @@ def described_twice(file: Path) -> list[str]:
 def test_the_description_of_a_field_stands_below_it() -> None:
     files = (file for house in structure.HOUSES for file in structure.files_of(house))
     assert [name for file in files for name in described_twice(file)] == []
+
+
+def fragments(code: str) -> list[str]:
+    """Return texts of modules, classes, functions and fields that begin with no noun or verb of their own."""
+    bodies = (getattr(node, "body", None) for node in ast.walk(ast.parse(code)))
+    statements = (node for body in bodies if isinstance(body, list) for node in body)
+    texts = (
+        node.value.value.strip()
+        for node in statements
+        if isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+    return [text.partition("\n")[0] for text in texts if text.partition(" ")[0] in WITHOUT_SUBJECT]
+
+
+def test_a_text_begins_with_its_subject() -> None:
+    """What is described stands first: a text below a field is read without the field beside it."""
+    assert fragments('WIDTH = 3\n"""Of the face, mm."""\n') == ["Of the face, mm."]
+    assert fragments('WIDTH = 3\n"""Width of the face, mm."""\n') == []
+    files = (file for house in structure.HOUSES for file in structure.files_of(house))
+    found = {str(file.relative_to(ROOT)): fragments(file.read_text("utf-8")) for file in files}
+    assert {file: texts for file, texts in found.items() if texts} == {}
 
 
 def second_heads(code: str) -> list[str]:

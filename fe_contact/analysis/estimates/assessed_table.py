@@ -87,7 +87,7 @@ class AssessedTable:
     bias: PlaneBias | None
     """Bias of the plane by the finite width where the width is not corrected. No error contains it."""
     mesh_bias: FloatArray | None = None
-    """How much higher the mean lies on exact meshes, where its sign is known; in the errors, m. (F,)"""
+    """Correction of the mean to exact meshes, where its sign is known; part of the errors, m. Shape (F,)."""
 
     def with_errors(self, table: SteDatabase, metadata: Metadata) -> SteDatabase:
         """Return the table with these errors and with the metadata that state them."""

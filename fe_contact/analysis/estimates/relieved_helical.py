@@ -24,17 +24,17 @@ from fe_contact.types import FloatArray
 
 
 class MeshRemainder(NamedTuple):
-    """What a mesh leaves of its changes, over what second order leaves of them."""
+    """Remainder of the changes between meshes, over their remainder at second order."""
 
     mesh: float
     patches: float
-    """`mesh`, `patches`: Of the mean, by its sign, of the change by the mesh and of that by the patches."""
+    """`mesh`, `patches`: Remainder of the mean with its sign: of the change by mesh and by patches."""
     doubt: float
-    """Of the mean without a sign, over the change by the mesh."""
+    """Error of the remainder of the mean, without a sign, over the change by the mesh."""
     ripple: float
-    """Of peak-to-peak, over half the peak-to-peak of the difference of the curves of many loads."""
+    """Error of peak-to-peak, over half the peak-to-peak of the difference of the curves of many loads."""
     harmonics: float
-    """Over the change of a phasor."""
+    """Error of a harmonic, over the change of its phasor."""
 
 
 REMAINDER = {

@@ -32,10 +32,11 @@ def test_a_table_begins_with_mean_and_ripple_and_ends_with_its_file(tmp_path: Pa
     file = tmp_path / "ste.nc"
     (mean, ripple), written = ends("analyze", SPUR, "-o", file, "--torque", 100, *COARSE)
     figure = r"([\d.]+) µm ± [\d.]+ µm"
-    for name, line, excess in (("mean", mean, 1.028), ("peak-to-peak", ripple, 1.033)):
+    # Figures end with the second digit of their errors: ratios of those written are as fine.
+    for name, line, excess, digits in (("mean", mean, 1.028, 2e-3), ("peak-to-peak", ripple, 1.033, 4e-3)):
         found = re.fullmatch(rf"{name} STE at 100 N m: {figure}; gears of this width {figure}", line)
         assert found is not None, line
-        assert float(found[2]) / float(found[1]) == pytest.approx(excess, abs=1e-3)
+        assert float(found[2]) / float(found[1]) == pytest.approx(excess, abs=digits)
     assert written == f"written to {file}"
 
 
