@@ -123,7 +123,10 @@ class Watcher(Generic[T]):
                     self._jobs[job.id].updated = job.updated
                 self._tell([job.id], state)
         with self._lock:
-            self._tell(known.keys() - updated.keys(), None)
+            gone = known.keys() - updated.keys()
+            self._tell(gone, None)
+            for identifier in gone:  # its followers hear of the end once, not with every look
+                self._jobs.pop(identifier, None)
 
     def _tell(self, identifiers: Collection[str], state: T | None) -> None:
         """Tell the followers of jobs; the lock is held."""
