@@ -222,10 +222,10 @@ def _tooth_loads_by_load(database: SteDatabase) -> list[Json]:
 
 def source_rows(receipt: Json, load: int) -> list[tuple[str, float, float, float]]:
     """Return the errors of mean, peak-to-peak and first harmonic at a load by source, m."""
-    rows = [
-        (source_words(name), *(float(parts[quantity][load]) for quantity in BY_SOURCE))
-        for name, parts in receipt.get("curve_error", {}).items()
-    ]
+    rows = []
+    for name, parts in receipt.get("curve_error", {}).items():
+        mean, ripple, harmonic = (float(parts[quantity][load]) for quantity in BY_SOURCE)
+        rows.append((source_words(name), mean, ripple, harmonic))
     return [row for row in rows if max(row[1:]) > _NOTHING]
 
 
