@@ -220,7 +220,7 @@ def test_a_pdf_without_a_browser_is_refused_and_leaves_nothing(
 
 
 @pytest.mark.law
-def test_without_scripts_the_images_fake(browser: Browser, report: Path) -> None:
+def test_without_scripts_images_take_the_place_of_figures(browser: Browser, report: Path) -> None:
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(report.as_uri())

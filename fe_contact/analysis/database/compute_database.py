@@ -101,8 +101,7 @@ def compute_pass(
     contact = _contact(result, clock)
     # the cost model learns from runs alone that went as predicted, in this process
     if not (repeated or inserted or result.derived or run.workers.cost.since(initial_cost).tasks):
-        cost = {log_name(result.prediction.kind, name): time for name, time in clock.seconds.items()}
-        record(run.cache, result.prediction.logged, cost)
+        _log_cost(result, clock, run)
     with clock.stage("effect ledger"):
         ledger = effect_ledger(
             result.checked,
@@ -115,12 +114,21 @@ def compute_pass(
     receipt = clock.to_json() | assessed.to_json() | contact | _planned(result)
     receipt |= {"assumptions": [assumption.to_json() for assumption in assumptions], "repeated": repeated}
     receipt["laws"] = [law.to_json() for law in laws]
-    remote = run.workers.cost.since(initial_cost)
-    if remote.tasks or remote.lost:
-        receipt["elsewhere"] = asdict(remote)
+    receipt |= _remote_cost(run.workers.cost.since(initial_cost))
     table = assessed.with_errors(result.table, _metadata(case, result, receipt, ledger))
     _enter_tolerance(table, result.checked.request)
     return _Computed(table, result.decision)
+
+
+def _log_cost(result: SolvedTable, clock: StageClock, run: Run) -> None:
+    """Enter the cost of the stages of a run into the log from which predictions learn."""
+    cost = {log_name(result.prediction.kind, name): time for name, time in clock.seconds.items()}
+    record(run.cache, result.prediction.logged, cost)
+
+
+def _remote_cost(remote: RunCost) -> Json:
+    """Return the entry of the receipt about work of other processes; none without such work."""
+    return {"elsewhere": asdict(remote)} if remote.tasks or remote.lost else {}
 
 
 def _enter_tolerance(table: SteDatabase, request: Request) -> None:

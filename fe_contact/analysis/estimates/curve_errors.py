@@ -89,12 +89,12 @@ def curve_errors(
     """
     made, sample, pair = plan.discretization, nested.sample, points.nominal.pair
     solutions = [solution for _, solution in solved]
-    if has_signed_errors(pair, made):
-        deflection, *changes, by_slices, free_ends = _measured(points, nested, plan, second_order=True)
-        added = _added_by_load(solutions, sample)
-        by_mesh, by_patches = with_signed_errors(np.stack(changes), nested, added, plan)
-    else:
-        deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan)
+    signed = has_signed_errors(pair, made)
+    left = np.full(QUANTITIES, made.remaining) if signed else _left_by_mesh(pair, plan)
+    deflection, by_mesh, by_patches, by_slices, free_ends = _measured(points, nested, plan, left)
+    if signed:
+        added, changes = _added_by_load(solutions, sample), np.stack([by_mesh, by_patches])
+        by_mesh, by_patches = with_signed_errors(changes, nested, added, plan)
     if points.period > 1:
         deflection[OFF_MESH] = _off_mesh_by_load(points, solutions, sample)
     by_source = {
@@ -117,7 +117,8 @@ def load_arm_errors(points: OperatingPoints, table: SteDatabase, nested: Nested,
     As those of the transmission error (`curve_errors`), of a mesh with more left of the change
     (`LEFT_OF_ARM`); between the positions half of them are held against all. `nested` are load arms.
     """
-    _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, BALANCE)
+    left = _left_by_mesh(points.nominal.pair, plan)
+    _, by_mesh, by_patches, by_slices, _ = _measured(points, nested, plan, left, BALANCE)
     mean, ripple, harmonics = LEFT_OF_ARM
     part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - OFF_MESH)])
     by_mesh = part[:, None, None, None] * by_mesh
@@ -135,30 +136,25 @@ def _measured(
     points: OperatingPoints,
     nested: Nested,
     plan: Plan,
+    left_by_mesh: FloatArray,
     balance: float = 0.0,
-    *,
-    second_order: bool = False,
 ) -> FloatArray:
     """Return quantities, and errors left by meshes, patches, slices and free ends, (5, 23, F, M, D) in m.
 
-    `balance` is the least change of a mean over the mean size of the change about it. With `second_order`
-    meshes leave what second order does of their change over the face, without the constants of pairs.
+    `left_by_mesh` (23,) is the error left over the change to the coarse mesh; `balance` the least change of a
+    mean over the mean size of the change about it.
     """
-    made, pair = plan.discretization, points.nominal.pair
-    helical = helical_share(pair) if isinstance(made, FaceDiscretization) else 0.0
+    made = plan.discretization
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
-    by_mesh = _left_by_mesh(pair, plan, helical)
-    if second_order:
-        by_mesh = np.full(QUANTITIES, made.remaining)
-    parts = 1.0, by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
+    parts = 1.0, left_by_mesh, plan.remaining_patches, 1.0, CORRECTION_ERROR
     return _changes(
         nested.sample,
         (nested.table, nested.patched, nested.plane, nested.table, nested.table),
         (np.zeros_like(nested.table), nested.coarse, nested.patched, many_slices, nested.plane),
         np.stack(np.broadcast_arrays(*parts)),
         balance,
-        helical,
+        _helical(points.nominal.pair, plan),
     )
 
 
@@ -217,9 +213,14 @@ def _by_solver(points: OperatingPoints, solutions: list[ContactSolution], sample
     )
 
 
-def _left_by_mesh(pair: ParallelAxes, plan: Plan, helical: float) -> FloatArray:
-    """Error left over the change to the coarse mesh, (23,); `helical`: the part of helical constants."""
-    made = plan.discretization
+def _helical(pair: ParallelAxes, plan: Plan) -> float:
+    """Return the part of the constants of helical pairs; none in the plane."""
+    return helical_share(pair) if isinstance(plan.discretization, FaceDiscretization) else 0.0
+
+
+def _left_by_mesh(pair: ParallelAxes, plan: Plan) -> FloatArray:
+    """Return the error left over the change to the coarse mesh, (23,)."""
+    made, helical = plan.discretization, _helical(pair, plan)
     straight = "spur" if all(gear.web is None for gear in plan.bodies(pair)) else "thin"
     level = "draft" if plan.level in COARSER_THAN_STANDARD else "standard"
     if isinstance(made, FaceDiscretization):

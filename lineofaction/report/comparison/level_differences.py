@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds.error_digits import error_text, to_error
 from dynamics.orders import OrderPower, Waterfall, order_power, shared_frequencies
 from lineofaction.report.drawing.figure import Table
 
@@ -63,8 +64,7 @@ class LevelDifference:
         """The difference with its error, both to the last digit that counts; empty of an order in noise."""
         if not self.is_seen:
             return "no more than the noise"
-        digits = max(1 - math.floor(math.log10(max(self.error, 1e-3))), 1)
-        return f"{self.value:+.{digits}f} ± {self.error:.{digits}f}"
+        return f"{to_error(self.value, self.error, '+')} ± {error_text(self.value, self.error)}"
 
 
 def level_differences(
