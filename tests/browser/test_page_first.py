@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from first_result import first_result
 from page_visit import (
     CASE,
     Visit,
@@ -96,29 +95,6 @@ def test_a_design_that_is_opened_leaves_the_result_of_another_behind(browser: Br
         page.go_back()
         expect(figures).to_contain_text("peak to peak")
     page.close()
-
-
-@pytest.mark.nightly
-def test_the_result_that_came_with_the_program_is_that_of_a_service(address: str) -> None:
-    known = json.loads((STATIC / "first.json").read_text(encoding="utf-8"))
-    computed(address, case=known["case"])
-    assert_alike(first_result(address)["curve"], known["curve"])
-
-
-def assert_alike(found: Any, known: Any) -> None:
-    """Compare answers number by number."""
-    if isinstance(known, dict):
-        assert found.keys() == known.keys()
-        for key, value in known.items():
-            assert_alike(found[key], value)
-    elif isinstance(known, list) and known and isinstance(known[0], (dict, list)):
-        assert len(found) == len(known)
-        for one, other in zip(found, known, strict=True):
-            assert_alike(one, other)
-    elif (isinstance(known, list) and None in known) or not isinstance(known, (int, float, list)):
-        assert found == known
-    else:
-        assert found == pytest.approx(known, rel=1e-4, abs=1e-9)
 
 
 UNIT = Path(__file__).parents[2] / "examples" / "two_stage_gearbox.rexs"
