@@ -6,6 +6,7 @@ table: the force by position and deflection, or the secant stiffness at the nomi
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,9 @@ from dynamics.meshes.mesh_table import DERIVATIVES, LEVERS, MeshTable
 from dynamics.meshes.packed_tables import pack_tables
 from dynamics.meshes.table_lookup import deflection_slope, table_deflection
 from dynamics.types import FloatArray
+
+ROUNDING = 1e-9
+"""Relative distance from the end of an axis that unit conversions and digits of files make."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,11 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
 
 
 def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
+    """Return the weights of the knots at a value; beyond an end by no more than rounding it is that end."""
     knots = np.atleast_1d(np.asarray(knots, dtype=float))
+    inside = float(np.clip(value, knots[0], knots[-1]))
+    if math.isclose(value, inside, rel_tol=ROUNDING):
+        value = inside
     if not knots[0] <= value <= knots[-1]:
         bound = from_to(float(knots[0]), float(knots[-1]), "m", note=", the table's")
         raise InputError(field, value, bound, "Compute the table for this operating point.")

@@ -148,7 +148,11 @@ def over_face(browser: Browser, address: str) -> Visit:
 
 
 def figure(page: Page, name: str) -> float:
-    node = page.locator("#live-figures > div").filter(has=page.locator("dt", has_text=name)).locator("dd")
+    node = (
+        page.locator("#live-figures > div")
+        .filter(has=page.locator("dt", has_text=re.compile(f"^{name}$")))
+        .locator("dd")
+    )
     return float((node.text_content() or "nan").split()[0])
 
 

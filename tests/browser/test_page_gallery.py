@@ -12,6 +12,7 @@ import pytest
 from page_visit import CASE, Visit, found_inaccessible, opened, served, tab
 from playwright.sync_api import Browser, expect
 
+from bounds.error_digits import error_text, to_error
 from fe_contact.ste import SteDatabase
 from lineofaction.client import LineOfActionClient
 
@@ -49,8 +50,9 @@ def test_a_card_has_the_ripple_and_the_figures_of_its_table(
     table = gallery[1]
     curve = table.curve(torque=float(table.torque[1]))
     ripple, tone = curve.peak_to_peak, curve.harmonics[0].value
-    expect(card).to_contain_text(f"{1e6 * ripple.value:.3g} µm")
-    expect(card).to_contain_text(f"± {1e6 * ripple.error:.2g}")
+    value, error = 1e6 * ripple.value, 1e6 * ripple.error
+    expect(card).to_contain_text(f"{to_error(value, error)} µm")
+    expect(card).to_contain_text(f"± {error_text(value, error)}")
     level = f"{20.0 * math.log10(1e6 * tone):.1f}".replace("-", "−")
     expect(card).to_contain_text(f"{level} dB re 1 µm")
     expect(card).to_contain_text(re.compile(r"CPU time[\d.]+ s"))

@@ -70,7 +70,7 @@ def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureF
     table, followed, waited, many, batched, awaited, study, arrays, live, before, made, lists = printed[:12]
     labeled, _, shown, run_up = printed[12:]
     assert re.search(r"^(pinion|wheel) \d+ [\d.]+ µm$", made, re.MULTILINE) and "mesh 1 " in made
-    assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", table)
+    assert re.fullmatch(r"2\.\d+ ± [\d.]+ µm", table.splitlines()[-1])
     assert followed.splitlines()[-1] == "analyze: done"
     assert names["table"].identical(names["ste"])
     assert waited == "" and names["file"].is_file()  # nothing failed

@@ -11,6 +11,7 @@ from command_line import loa, printed
 from geared_scenes import gear_pair_scene
 from spur_case import spur_case
 
+from bounds.error_digits import with_error
 from dynamics.ablation import ablate
 from lineofaction.gearbox.studies.ablate.run import RUN
 from lineofaction.gearbox.studies.root_stress.run import RUN as ROOT_STRESS
@@ -87,7 +88,7 @@ def test_roots_are_stressed_by_the_load_and_drawn_with_their_peaks(tmp_path: Pat
         assert min(panel.lines[2].y) == pytest.approx(found[gear]["compression"]["stress_mpa"], rel=1e-9)
         assert panel.references[0].value == tension["position"]
         (row,) = [line for line in shown.splitlines() if line.split()[:2] == [gear, "tension"]]
-        assert f"{tension['stress_mpa']:.4g} ±" in row
+        assert with_error(tension["stress_mpa"], tension["error_mpa"]) in row
 
 
 # ``loa scatter``.

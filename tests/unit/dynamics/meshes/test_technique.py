@@ -50,6 +50,10 @@ def test_tables_with_axes_are_used_at_one_operating_point():
     )
     np.testing.assert_array_equal(table_at(wide, 0.0, 0.0).deflection, TABLE.deflection)
     np.testing.assert_allclose(table_at(wide, 5e-6, 0.0).deflection, 1.5 * TABLE.deflection)
+    at_end = table_at(wide, 20e-6, 0.0).deflection
+    np.testing.assert_array_equal(table_at(wide, 20e-6 * (1.0 + 1e-12), 0.0).deflection, at_end)  # rounded
+    with pytest.raises(InputError, match="misalignment"):
+        table_at(wide, 20e-6 * (1.0 + 1e-6), 0.0)
     with pytest.raises(InputError, match="misalignment"):
         table_at(wide, 21e-6, 0.0)
     with pytest.raises(InputError, match="center_distance_change"):
