@@ -126,6 +126,28 @@ def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
     assert run.returncode == 0, run.stderr
 
 
+def test_the_worker_finds_its_modules_where_a_hook_alone_finds_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = [path for path in sys.path if path and Path(path).resolve() != WORKER.parents[2]]
+    monkeypatch.setattr(sys, "path", paths)
+    (mesh,) = triangulate([SQUARE], 1.0)
+    assert len(mesh.triangles)
+
+
+def test_the_worker_looks_for_a_library_of_the_system_as_python_does() -> None:
+    code = (
+        "import runpy, sys\n"
+        f"worker = runpy.run_path({str(WORKER)!r})\n"
+        "sys.modules['ctypes.util'] = worker['_LibrarySearch']('ctypes.util')\n"
+        "from ctypes.util import find_library\n"
+        "names = [find_library(name) for name in ('c', 'no library of this name')]\n"
+        "import ctypes.util\n"
+        "assert ctypes.util.__file__\n"
+        "assert names == [ctypes.util.find_library('c'), None], names\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+
+
 U, V = np.linspace(0.0, 1.0, 6) ** 1.3, np.linspace(0.0, 1.0, 4)
 
 
