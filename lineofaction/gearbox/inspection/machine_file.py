@@ -80,7 +80,7 @@ class PitchTable:
 
 @dataclass(frozen=True)
 class MachineFile:
-    """What a curve file holds, and the number of its lines by what they were taken for."""
+    """Content of a curve file, and the number of its lines by what they were taken for."""
 
     conventions: Conventions
     traces: tuple[Trace, ...]

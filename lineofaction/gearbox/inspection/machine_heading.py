@@ -26,7 +26,7 @@ _KINDS = {"profile": ("da", "d1", "d2", "de", "dk2"), "helix": ("ba", "b1", "b2"
 
 
 class Statement(NamedTuple):
-    """What a heading may state of its values, and what is known of it."""
+    """Convention that a heading must state, and the meanings of its known values."""
 
     line: str
     """Number of the line in the heading, or empty: a line of the preamble."""
@@ -58,7 +58,7 @@ STATEMENTS = {
 
 @dataclass(frozen=True)
 class TraceRange:
-    """Where the probe measures a trace, and where the machine evaluates it: diameters or heights, mm."""
+    """Measured and evaluated range of a trace: diameters or heights, mm."""
 
     begin: float
     first: float
@@ -70,7 +70,7 @@ class TraceRange:
 
 @dataclass(frozen=True)
 class Conventions:
-    """What a heading states of the values of its file."""
+    """Conventions and ranges that a heading states for the values of its file."""
 
     meanings: Mapping[str, str]
     """Meaning of each statement by its name."""

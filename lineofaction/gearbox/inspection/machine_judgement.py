@@ -40,7 +40,7 @@ Key = tuple[str, Flank | None, int]
 
 @dataclass(frozen=True)
 class Judgement:
-    """How many printed values are recomputed, and what differs."""
+    """Number of printed values that are recomputed, and those that differ."""
 
     recomputed: int
     differences: tuple[str, ...]

@@ -45,7 +45,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Interval:
-    """Where a trace is evaluated: roll lengths, or distances from mid-face, m."""
+    """Evaluated part of a trace: roll lengths, or distances from mid-face, m."""
 
     first: float
     last: float
