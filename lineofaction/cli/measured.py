@@ -7,6 +7,7 @@ from pathlib import Path
 
 from bounds import engineering
 from bounds.types import Json
+from lineofaction.cli.measured_folder import run_folder
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.cli.verb_warnings import STRICT, warn
 from lineofaction.gearbox.convert.case import case_json
@@ -15,6 +16,7 @@ from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
 from lineofaction.gearbox.inspection.machine_judgement import LIMIT_UM
 from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
+from lineofaction.gearbox.inspection.population import values_beside
 from lineofaction.gearbox.inspection.reading import FIELD
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
@@ -35,6 +37,8 @@ def run_measured(
 ) -> None:
     """Write the case with the measured deviations, or without a sheet the sheet of the case.
 
+    Of a folder of sheets it writes the population.
+
     `mounted` are the fields of `Inspected`.
     """
     case, of = read_model(Case, file), Inspected(*mounted)
@@ -43,8 +47,11 @@ def run_measured(
     if sheet is None:
         _write(output, sheet_text(inspected(of.chart(case))))
         return
+    if sheet.is_dir():
+        run_folder(case, sheet, of, output, as_json=as_json)
+        return
     try:
-        text, values = read_text(sheet, str(sheet)), _values_beside(sheet)
+        text, values = read_text(sheet, str(sheet)), values_beside(sheet)
     except BadInput as error:
         raise error.within(FIELD) from None
     changed, gear = measured_case(case, text, str(sheet), of, values)
@@ -58,14 +65,6 @@ def run_measured(
         return
     _show(gear)
     print_written(written)
-
-
-def _values_beside(sheet: Path) -> str | None:
-    """Return the text of the value file of the same name beside a curve file, or None."""
-    if sheet.suffix.lower() != ".mka":
-        return None
-    path = next((path for path in map(sheet.with_suffix, (".mew", ".MEW")) if path.is_file()), None)
-    return None if path is None else read_text(path, str(path))
 
 
 def machine_warnings(differences: Iterable[str]) -> list[Json]:

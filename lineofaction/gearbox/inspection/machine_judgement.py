@@ -27,7 +27,7 @@ from lineofaction.gearbox.inspection.sheet import Flank
 
 LIMIT_UM = 0.1
 """Largest difference between a printed value and the recomputed one."""
-_HELIX_SIGN: dict[Flank, int] = {"left": 1, "right": -1}
+HELIX_SIGN: dict[Flank, int] = {"left": 1, "right": -1}
 """Sign of f_Hbeta of a lead whose material rises upwards: a right-hand helix is positive (line 165, DIN)."""
 _FIGURES = {"profile": ("fHa", "ffa", "Fa"), "helix": ("fHb", "ffb", "Fb")}
 _SYMBOLS = {"fHa": "f_Halpha", "ffa": "f_falpha", "Fa": "F_alpha", "fHb": "f_Hbeta", "ffb": "f_fbeta"}
@@ -82,7 +82,7 @@ def evaluated(trace: Trace, conventions: Conventions, gear: Toothing) -> tuple[f
     rest = values - mean - slope * (coordinate[inside] - first)
     length, sign = last - first, MATERIAL[trace.flank]
     if trace.kind == "helix":
-        length, sign = coordinate[-1] - coordinate[0], sign * _HELIX_SIGN[trace.flank]
+        length, sign = coordinate[-1] - coordinate[0], sign * HELIX_SIGN[trace.flank]
     return float(sign * slope * length), float(np.ptp(rest)), float(np.ptp(values))
 
 
