@@ -88,8 +88,10 @@ class ByDask:
         try:
             earlier_keys = {key for _, key in self._published()} if keep else set()
             while count < len(futures):
-                for done in self._results(futures, count):
-                    yield done.result if futures[count].key in earlier_keys else self.cost.add(done)
+                for task in self._results(futures, count):
+                    if futures[count].key not in earlier_keys:  # a stored result costs nothing again
+                        self.cost.add(task)
+                    yield task.result
                     count += 1
             if keep:
                 self._publish({future.key: future for future in futures})
