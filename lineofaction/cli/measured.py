@@ -31,21 +31,21 @@ def run_measured(
     *,
     as_json: bool,
 ) -> None:
-    """Write the case with the measured deviations, or without a sheet the sheet of the case.
+    """Write the case with the measured deviations; without a sheet, write the sheet that the case would give.
 
-    `mounted` are the fields of `Inspected`.
+    `mounted`: name of the inspected gear, its loaded flanks and the cut-off in mm, the fields of `Inspected`.
     """
-    case, of = read_model(Case, file), Inspected(*mounted)
+    case, inspected_gear = read_model(Case, file), Inspected(*mounted)
     if output is not None:
         check_writable(output)
     if sheet is None:
-        _write(output, sheet_text(inspected(of.chart(case))))
+        _write(output, sheet_text(inspected(inspected_gear.chart(case))))
         return
     try:
         text = read_text(sheet, str(sheet))
     except BadInput as error:
         raise error.within(FIELD) from None
-    changed, gear = measured_case(case, text, str(sheet), of)
+    changed, gear = measured_case(case, text, str(sheet), inspected_gear)
     warn(omission_warnings(gear.omitted, "case"))
     written = [] if output is None else [output]
     if output is not None:
