@@ -196,7 +196,7 @@ class ParallelAxes:
 
     @property
     def tip_clearances(self) -> tuple[float, float]:
-        """Distances in m of the pinion's tip from the wheel's root, and of the wheel's tip from the pinion's."""
+        """Distances in m from tip to root: of the pinion's tip and the wheel's root, then the reverse."""
         pinion, wheel, a = self.pinion, self.wheel, self.center_distance
         # distances of the wheel's circles from the pinion's axis, on the line between the axes
         root, tip = (wheel.sign * (a - radius) for radius in (wheel.root_radius, wheel.tip_radius))
