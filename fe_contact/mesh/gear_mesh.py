@@ -49,8 +49,8 @@ class GearMesh:
     (m, 6).
     """
     bore_nodes: IntArray
-    """Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim. Shape
-    (b,).
+    """Nodes that the gear is held by: on its bore, or on the outside of a ring gear's rim, and of a sector on
+    its cut planes. Shape (b,).
     """
     flanks: tuple[_FlankNodes, ...]
     """Right flanks of the real teeth, in the order of `teeth`."""
@@ -77,7 +77,10 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 def _assemble(
     sector: ToothSector, hub: Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
-    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame."""
+    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame.
+
+    Teeth that are neither all nor joined by a hub end at cut planes, which are held like the bore.
+    """
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
     sector_nodes = _number_sectors(sector, len(teeth), closed)
     hub_nodes = _number_hub(sector, sector_nodes, hub)
@@ -90,6 +93,10 @@ def _assemble(
     if hub is not None:
         triangles = np.concatenate([triangles, hub_nodes[hub.triangles]])
     bore = hub_nodes[hub.bore] if hub is not None else np.unique(sector_nodes[:, sector.bottom])
+    if hub is None and not closed:
+        bore = np.unique(
+            np.concatenate([bore, sector_nodes[0, sector.right_side], sector_nodes[-1, sector.left_side]])
+        )
     flanks = tuple(
         _FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
         for i, j in enumerate(teeth)
@@ -146,7 +153,7 @@ def mesh_gear(
     """
     recipe, limits = recipe or MeshRecipe.standard(gear), limits or QualityLimits()
     profile = tooth_profile(gear)
-    teeth = real_teeth(gear.teeth, recipe.real_teeth)
+    teeth = real_teeth(gear.teeth, gear.sector_teeth or recipe.real_teeth)
     bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
     outline = tooth_outline(profile, bottom_radius, recipe)
     outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
@@ -159,6 +166,8 @@ def mesh_gear(
 
 def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
     """Return the radius to which a tooth sector reaches, m."""
+    if gear.sector_teeth is not None:
+        return gear.seat_radius
     depth = gear.rim_thickness
     slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
     if gear.web is None and all_real and not slender and gear.seat_radius >= TAPER * gear.root_radius:
