@@ -114,10 +114,15 @@ def section_keys(
 
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
     """Return the number of condensed teeth, checked against the real ones."""
-    real = min(gear.teeth, recipe.real_teeth or gear.teeth)
+    whole = gear.teeth if gear.sector_teeth is None else gear.sector_teeth - 2  # cut planes carry no load
+    real = min(whole, recipe.real_teeth or whole)
     limit = real - 1 + real % 2
     if teeth is None:
         return min(USUAL_TEETH, limit)
+    if gear.sector_teeth is not None and teeth > limit:
+        bound = f"{teeth + 2} or more, or left out"
+        remedy = f"{teeth} teeth can touch, and one beside each cut plane carries no load."
+        raise InputError("sector_teeth", gear.sector_teeth, bound, remedy)
     count = integer("teeth", teeth, 1, limit, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
     if count % 2 == 0:
         raise InputError("teeth", teeth, "odd", "The teeth are centered on tooth 0.")

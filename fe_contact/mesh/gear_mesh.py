@@ -55,8 +55,8 @@ class GearMesh:
     (m, 6).
     """
     bore_nodes: IntArray
-    """Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim. Shape
-    (b,).
+    """Nodes that the gear is held by: on its bore, or on the outside of a ring gear's rim, and of a sector on
+    its cut planes. Shape (b,).
     """
     flanks: tuple[_FlankNodes, ...]
     """Right flanks of the real teeth, in the order of `teeth`."""
@@ -83,7 +83,10 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 def _assemble(
     sector: ToothSector, hub: Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
-    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame."""
+    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame.
+
+    Teeth that are neither all nor joined by a hub end at cut planes, which are held like the bore.
+    """
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
     sector_nodes = _number_sectors(sector, len(teeth), closed)
     hub_nodes = _number_hub(sector, sector_nodes, hub)
@@ -96,6 +99,10 @@ def _assemble(
     if hub is not None:
         triangles = np.concatenate([triangles, hub_nodes[hub.triangles]])
     bore = hub_nodes[hub.bore] if hub is not None else np.unique(sector_nodes[:, sector.bottom])
+    if hub is None and not closed:
+        bore = np.unique(
+            np.concatenate([bore, sector_nodes[0, sector.right_side], sector_nodes[-1, sector.left_side]])
+        )
     flanks = tuple(
         _FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
         for i, j in enumerate(teeth)
@@ -152,7 +159,7 @@ def mesh_gear(
     """
     recipe, limits = recipe or MeshRecipe.standard(gear), limits or QualityLimits()
     profile = tooth_profile(gear)
-    teeth = real_teeth(gear.teeth, recipe.real_teeth)
+    teeth = _modeled_teeth(gear, recipe)
     sector = _ahead.pop((gear, recipe), None) if limits == QualityLimits() else None
     if sector is None:
         (sector,) = _sectors([(gear, recipe)], limits)
@@ -190,9 +197,16 @@ def _sectors(sections: Sequence[tuple[Toothing, MeshRecipe]], limits: QualityLim
     return [tooth_sector(mesh, outline) for mesh, outline in zip(meshes, outlines, strict=True)]
 
 
+def _modeled_teeth(gear: Toothing, recipe: MeshRecipe) -> IntArray:
+    """Return the teeth of a section: all of them, those of a toothed sector, or those of the recipe."""
+    return real_teeth(gear.teeth, gear.sector_teeth or recipe.real_teeth)
+
+
 def _sector_bottom(gear: Toothing, recipe: MeshRecipe) -> float:
     """Return the radius to which a tooth sector reaches, m."""
-    all_real = len(real_teeth(gear.teeth, recipe.real_teeth)) == gear.teeth
+    if gear.sector_teeth is not None:
+        return gear.seat_radius
+    all_real = len(_modeled_teeth(gear, recipe)) == gear.teeth
     depth = gear.rim_thickness
     slender = depth > SLENDER * gear.root_radius * tooth_profile(gear).pitch_angle
     if gear.web is None and all_real and not slender and gear.seat_radius >= TAPER * gear.root_radius:
