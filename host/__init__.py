@@ -10,11 +10,8 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from importlib.util import find_spec
-from typing import TYPE_CHECKING
 
-from host.directories import default_cache_directory
-from host.extras import MissingExtra, Unavailable, missing_extra, require
+TYPE_CHECKING = False  # typing is not imported: a child of one request uses little else
 
 if TYPE_CHECKING:
     from host.children.environment import ONE_THREAD as ONE_THREAD
@@ -29,13 +26,17 @@ if TYPE_CHECKING:
     from host.confinement import limit_memory as limit_memory
     from host.confinement import missing_protections as missing_protections
     from host.confinement import prepare_confinement as prepare_confinement
+    from host.directories import default_cache_directory as default_cache_directory
+    from host.extras import MissingExtra as MissingExtra
+    from host.extras import Unavailable as Unavailable
+    from host.extras import missing_extra as missing_extra
+    from host.extras import require as require
     from host.reading_limits import LOOK_S as LOOK_S
     from host.reading_limits import READING as READING
     from host.reading_limits import Limits as Limits
     from host.sessions import Ended as Ended
     from host.sessions import ending_signal as ending_signal
     from host.sessions import family_cpu_seconds as family_cpu_seconds
-    from host.sessions import handlers_restored as handlers_restored
     from host.sessions import has_exited as has_exited
     from host.sessions import kill as kill
     from host.sessions import kill_group as kill_group
@@ -47,31 +48,27 @@ if TYPE_CHECKING:
     from host.sessions import processes_in as processes_in
     from host.sessions import reap as reap
     from host.sessions import require_sessions as require_sessions
+    from host.signals import end_after as end_after
+    from host.signals import handlers_restored as handlers_restored
 
-if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
-    from host.windows import (
-        children_cpu_seconds,
-        children_peak_memory,
-        cpu_seconds,
-        end_after,
-        keep_freed_memory,
-        lock,
-        max_open_files,
-        peak_memory,
-        physical_memory,
-    )
-else:
-    from host.posix import (
-        children_cpu_seconds,
-        children_peak_memory,
-        cpu_seconds,
-        end_after,
-        keep_freed_memory,
-        lock,
-        max_open_files,
-        peak_memory,
-        physical_memory,
-    )
+    if sys.platform == "win32":
+        from host.windows import children_cpu_seconds as children_cpu_seconds
+        from host.windows import children_peak_memory as children_peak_memory
+        from host.windows import cpu_seconds as cpu_seconds
+        from host.windows import keep_freed_memory as keep_freed_memory
+        from host.windows import lock as lock
+        from host.windows import max_open_files as max_open_files
+        from host.windows import peak_memory as peak_memory
+        from host.windows import physical_memory as physical_memory
+    else:
+        from host.posix import children_cpu_seconds as children_cpu_seconds
+        from host.posix import children_peak_memory as children_peak_memory
+        from host.posix import cpu_seconds as cpu_seconds
+        from host.posix import keep_freed_memory as keep_freed_memory
+        from host.posix import lock as lock
+        from host.posix import max_open_files as max_open_files
+        from host.posix import peak_memory as peak_memory
+        from host.posix import physical_memory as physical_memory
 
 HOMES = {
     "ChildFailed": "children.json_child",
@@ -79,15 +76,19 @@ HOMES = {
     "Ended": "sessions",
     "LOOK_S": "reading_limits",
     "Limits": "reading_limits",
+    "MissingExtra": "extras",
     "ONE_THREAD": "children.environment",
     "READING": "reading_limits",
+    "Unavailable": "extras",
     "ask_child": "children.json_child",
     "child_environment": "children.environment",
     "confine": "confinement",
+    "default_cache_directory": "directories",
+    "end_after": "signals",
     "ending_signal": "sessions",
     "excess": "confinement",
     "family_cpu_seconds": "sessions",
-    "handlers_restored": "sessions",
+    "handlers_restored": "signals",
     "has_exited": "sessions",
     "keep_to_one_thread": "children.environment",
     "kill": "sessions",
@@ -98,14 +99,28 @@ HOMES = {
     "limit_memory": "confinement",
     "lower_priority": "sessions",
     "memory_figure": "sessions",
+    "missing_extra": "extras",
     "missing_protections": "confinement",
     "never_wait_at": "sessions",
     "prepare_confinement": "confinement",
     "processes_in": "sessions",
     "reap": "sessions",
+    "require": "extras",
     "require_sessions": "sessions",
 }
-"""The module of each name that is imported on first use: most processes start no other."""
+"""The module of each name, which is imported on first use: most processes use few."""
+
+OF_SYSTEM = (
+    "children_cpu_seconds",
+    "children_peak_memory",
+    "cpu_seconds",
+    "keep_freed_memory",
+    "lock",
+    "max_open_files",
+    "peak_memory",
+    "physical_memory",
+)
+"""Names that `host.posix` and `host.windows` both have."""
 
 __all__ = [
     "LOOK_S",
@@ -157,6 +172,16 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Import a name on first use."""
-    if name not in HOMES:
+    home = _system() if name in OF_SYSTEM else HOMES.get(name)
+    if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{HOMES[name]}"), name)
+    return getattr(import_module(f"{__name__}.{home}"), name)
+
+
+def _system() -> str:
+    """Return the module of this operating system: that of POSIX needs `fcntl` and `resource`."""
+    from importlib.util import find_spec  # noqa: PLC0415 (few processes get here, and it brings a lot)
+
+    if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
+        return "windows"
+    return "posix"

@@ -20,11 +20,12 @@ import pickle
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 import llvmlite
+import llvmlite.binding as llvm
 import numba
 import numpy as np
 from numba.core import config
@@ -36,6 +37,7 @@ from numba.core.caching import (
     UserProvidedCacheLocator,
     UserWideCacheLocator,
 )
+from numba.core.runtime import _nrt_python
 
 from host.loop_sources import PACKAGES, PROJECT, Sources, sources
 
@@ -102,6 +104,16 @@ class LoopCache(FunctionCache):
         self._cache_file = entries(str(folder))
         self._shipped = entries(str(_folder(SHIPPED, function)))
 
+    def load_overload(self, signature: Any, context: Any) -> Any:
+        """Return the overload of a signature, None if there is none.
+
+        numba first loads all that a compilation may need, and compiles its runtime: 0.25 CPU s. An entry is
+        machine code, and calls functions by their addresses alone. What is compiled loads the rest itself.
+        """
+        _name_runtime_functions()
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(signature, context)
+
     def _load_overload(self, signature: Any, context: Any) -> Any:
         entry = super()._load_overload(signature, context)
         if entry is not None or not self._enabled:
@@ -123,6 +135,13 @@ class LoopCache(FunctionCache):
         for index in indices[MAX_VERSIONS:]:
             for file in [index, *index.parent.glob(f"{index.stem}.*.nbc")]:
                 file.unlink(missing_ok=True)
+
+
+@lru_cache(maxsize=1)
+def _name_runtime_functions() -> None:
+    """Tell LLVM the addresses of the functions of numba's runtime, by the names that compiled code calls."""
+    for name, address in _nrt_python.c_helpers.items():
+        llvm.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
 def _folder(folder: Path, function: Callable[..., Any]) -> Path:

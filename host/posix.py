@@ -7,7 +7,6 @@ import fcntl
 import math
 import os
 import resource
-import signal
 import sys
 import time
 
@@ -73,8 +72,3 @@ def lock(file: int, *, wait: bool = False) -> None:
     Raises `BlockingIOError`: another process has the lock, and we do not `wait`.
     """
     fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-def end_after(seconds: int) -> None:
-    """End this process after so many seconds, whatever it does then."""
-    signal.alarm(seconds)

@@ -9,8 +9,8 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -105,15 +105,6 @@ def reap(child: int) -> Ended:
     _, status, usage = os.wait4(child, 0)
     cpu_seconds, code = usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
     return Ended(code, cpu_seconds, RESIDENT_UNIT * usage.ru_maxrss)
-
-
-@contextmanager
-def handlers_restored(names: Sequence[str]) -> Iterator[None]:
-    """Restore the handlers of signals afterwards, by their names; a system may lack some of them."""
-    handlers = {name: signal.getsignal(getattr(signal, name)) for name in names if hasattr(signal, name)}
-    yield
-    for name, handler in handlers.items():
-        signal.signal(getattr(signal, name), handler)
 
 
 def processes_in(directory: Path, command: str = "", proc: Path = _PROC) -> list[int]:

@@ -11,6 +11,8 @@ from fe_contact.types import Json
 from host import ChildFailed, ChildOutOfMemory, ask_child
 
 WORKER = Path(__file__).with_name("gmsh_worker.py")
+COMMAND = (sys.executable, "-S", "-P", str(WORKER))
+"""Command of the worker, without `site`: it gets the paths of this process, and reads none of their files."""
 
 
 def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None) -> Json:
@@ -29,7 +31,7 @@ def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None
         Program to run in place of the gmsh worker.
     """
     try:
-        return ask_child(request, seconds, command or (sys.executable, "-P", str(WORKER)))
+        return ask_child(request, seconds, command or COMMAND)
     except ChildOutOfMemory as error:
         remedy = "Select a coarser level, or raise the memory limit."
         raise MeshError(f"gmsh worker: {error}. {remedy}") from error

@@ -15,6 +15,8 @@ from host.children.watch import Watch
 from host.reading_limits import Limits
 from host.sessions import ending_signal
 
+HOUSES = Path(__file__).parents[2]
+"""Folder of the houses: of an editable installation it is in no path, but found by a hook."""
 _NO_MEMORY = ("MemoryError", "bad_alloc")
 """Texts by which Python and C++ report that an allocation failed."""
 
@@ -75,7 +77,8 @@ def ask_child(
 
 def _ask(request: str, watch: Watch, command: Sequence[str]) -> dict[str, Any]:
     # The child may find a module only where this process does, e.g. in a path added at run time.
-    environment = child_environment(PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+    paths = [*filter(None, sys.path), str(HOUSES)]
+    environment = child_environment(PYTHONPATH=os.pathsep.join(paths))
     pipes: Any = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE) | {"text": True}
     try:
         child = subprocess.Popen(command, env=environment, cwd=watch.folder, **pipes)

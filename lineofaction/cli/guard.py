@@ -13,7 +13,7 @@ from typing import Annotated, Any, NoReturn, ParamSpec
 import typer
 
 from lineofaction.cli.verb_parameters import R, keyword, parameters_of, with_parameters
-from lineofaction.cli.verb_warnings import begin_warnings, in_lines, warnings_so_far
+from lineofaction.cli.verb_warnings import STRICT, begin_warnings, in_lines, warnings_so_far
 from lineofaction.gearbox.loading import load, on_demand
 from lineofaction.gearbox.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
@@ -40,6 +40,7 @@ def computing(verb: Callable[..., R]) -> Callable[..., R]:
 
     @functools.wraps(verb)
     def run(*args: Any, strict: bool = False, **kwargs: Any) -> R:
+        STRICT.set(strict)
         answer = guard(*args, **kwargs)
         count = len(warnings_so_far())
         if strict and count:

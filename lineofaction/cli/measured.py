@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from bounds import engineering
 from bounds.types import Json
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
-from lineofaction.cli.verb_warnings import warn
+from lineofaction.cli.verb_warnings import STRICT, warn
 from lineofaction.gearbox.convert.case import case_json
 from lineofaction.gearbox.input_file import InputFile
 from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
+from lineofaction.gearbox.inspection.machine_judgement import LIMIT_UM
 from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
 from lineofaction.gearbox.inspection.reading import FIELD
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
@@ -42,19 +44,42 @@ def run_measured(
         _write(output, sheet_text(inspected(inspected_gear.chart(case))))
         return
     try:
-        text = read_text(sheet, str(sheet))
+        text, values = read_text(sheet, str(sheet)), _values_beside(sheet)
     except BadInput as error:
         raise error.within(FIELD) from None
-    changed, gear = measured_case(case, text, str(sheet), inspected_gear)
+    changed, gear = measured_case(case, text, str(sheet), inspected_gear, values)
+    warn(machine_warnings(gear.differences))
     warn(omission_warnings(gear.omitted, "case"))
-    written = [] if output is None else [output]
-    if output is not None:
-        output.write_text(toml_text(case_json(changed)), encoding="utf-8")
+    written = [] if output is None or (gear.differences and STRICT.get()) else [output]
+    for path in written:
+        path.write_text(toml_text(case_json(changed)), encoding="utf-8")
     if as_json:
         print_json(_as_json(gear, written))
         return
     _show(gear)
     print_written(written)
+
+
+def _values_beside(sheet: Path) -> str | None:
+    """Return the text of the value file of the same name beside a curve file, or None."""
+    if sheet.suffix.lower() != ".mka":
+        return None
+    path = next((path for path in map(sheet.with_suffix, (".mew", ".MEW")) if path.is_file()), None)
+    return None if path is None else read_text(path, str(path))
+
+
+def machine_warnings(differences: Iterable[str]) -> list[Json]:
+    """Return the values that a machine printed otherwise than they are recomputed as warnings."""
+    nothing = {
+        "field": FIELD,
+        "value": None,
+        "unit": "",
+        "low": None,
+        "high": None,
+        "reason": "",
+        "source": "",
+    }
+    return [{"check": "machine_value", **nothing, "whole": "", "message": text} for text in differences]
 
 
 def _write(output: Path | None, text: str) -> None:
@@ -67,12 +92,18 @@ def _write(output: Path | None, text: str) -> None:
 
 def _show(gear: MeasuredGear) -> None:
     out = console()
+    if gear.recomputed:
+        equal = gear.recomputed - sum("recomputed" in text for text in gear.differences)
+        out.print(
+            f"Values printed by the machine: {equal} of {gear.recomputed} recomputed within {LIMIT_UM:g} µm."
+        )
     if gear.splits:
         head = ("tooth", "trace", "f_H, µm", "f_f, µm", "over, mm", "cut-off, mm")
         rows = [
             (str(tooth), trace, *_figures(split)) for (tooth, trace), split in sorted(gear.splits.items())
         ]
-        out.print(table(head, rows, "Slope and form, Gaussian filter (ISO 16610-21)", ("trace",)))
+        title = "Slope and form" if gear.ranged else "Slope and form, Gaussian filter (ISO 16610-21)"
+        out.print(table(head, rows, title, ("trace",)))
     lines = [(fate, str(count)) for fate, count in gear.account.items() if count]
     out.print(table(("lines", "number"), lines, "Every line of the sheet", ("lines",)))
 
@@ -81,7 +112,7 @@ def _figures(split: Split) -> tuple[str, ...]:
     values = (
         split.slope / UM,
         split.form / UM,
-        (split.coordinate[-1] - split.coordinate[0]) / MM,
+        split.length / MM,
         split.cutoff / MM,
     )
     return tuple(engineering(float(value), 3) for value in values)
@@ -94,10 +125,17 @@ def _as_json(gear: MeasuredGear, written: list[Path]) -> Json:
             "trace": trace,
             "slope_um": split.slope / UM,
             "form_um": split.form / UM,
-            "length_mm": float(split.coordinate[-1] - split.coordinate[0]) / MM,
+            "length_mm": split.length / MM,
             "cutoff_mm": split.cutoff / MM,
         }
         for (tooth, trace), split in sorted(gear.splits.items())
     ]
     files = [str(path) for path in written]
-    return {"lines": dict(gear.account), "traces": traces, "fields": dict(gear.fields), "written": files}
+    machine = {"recomputed": gear.recomputed, "differences": list(gear.differences)}
+    return {
+        "machine": machine,
+        "lines": dict(gear.account),
+        "traces": traces,
+        "fields": dict(gear.fields),
+        "written": files,
+    }

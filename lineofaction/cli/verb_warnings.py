@@ -13,6 +13,8 @@ from typing import IO, Any
 
 Json = dict[str, Any]
 
+STRICT: ContextVar[bool] = ContextVar("strict", default=False)
+"""Whether warnings decide the exit code of the verb."""
 _current: ContextVar[_VerbWarnings] = ContextVar("warned")
 
 _UNIT = re.compile(r"(?: |\b)(?:N|kg|CPU) [ms](?![a-z])")

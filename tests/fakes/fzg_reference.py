@@ -12,9 +12,9 @@ import pytest
 
 SETTING = "LOA_FZG_REFERENCE"
 
-_folder = Path(os.environ.get(SETTING) or "/nonexistent")
+FOLDER = Path(os.environ.get(SETTING) or "/nonexistent")
 needs_fzg_reference = pytest.mark.skipif(
-    not (_folder / "stplus_geometry.csv").is_file(), reason=f"{SETTING} names no folder of FZG figures"
+    not (FOLDER / "stplus_geometry.csv").is_file(), reason=f"{SETTING} names no folder of FZG figures"
 )
 
 Row = dict[str, str]
@@ -22,7 +22,7 @@ Row = dict[str, str]
 
 def geometry_listing(pair: str, kind: str) -> list[Row]:
     """Return the rows of a pair, its inputs or what is printed of it; none without the folder."""
-    path = _folder / "stplus_geometry.csv"
+    path = FOLDER / "stplus_geometry.csv"
     if not path.is_file():
         return []
     with path.open(encoding="utf-8", newline="") as lines:
@@ -35,7 +35,7 @@ _PROFILE = re.compile(r"Zahn-Nr\.: (\d+) (links|rechts) / (\d+)  Werte  z=")
 def profile_traces() -> dict[str, np.ndarray]:
     """Return material removed (k,) in m along the profiles of the curve files, evenly in roll length."""
     traces = {}
-    for path in sorted(_folder.glob("*.mka")):
+    for path in sorted(FOLDER.glob("*.mka")):
         lines = path.read_text(encoding="utf-8").splitlines()
         for number, line in enumerate(lines):
             if match := _PROFILE.match(line):

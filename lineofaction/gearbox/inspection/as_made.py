@@ -45,14 +45,17 @@ class Inspected:
         return Chart(_gear(case, self.gear), self.loaded, self.gear == "pinion")
 
 
-def measured_case(case: Case, text: str, name: str, of: Inspected) -> tuple[Case, MeasuredGear]:
+def measured_case(
+    case: Case, text: str, name: str, of: Inspected, values: str | None = None
+) -> tuple[Case, MeasuredGear]:
     """Return a case with the measured deviations of one gear by a sheet, and the account of its lines.
 
+    `values` is the text of the value file that a machine wrote of the same gear.
     Raises `BadInput`: a line that is none, a trace that cannot be evaluated, or a gear that cannot be.
     """
     chart = of.chart(case)
     cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
-    gear = measured_gear(read_sheet(text, chart.gear, name), chart, name, cutoff)
+    gear = measured_gear(read_sheet(text, chart.gear, name, values), chart, name, cutoff)
     return _with_fields(case, {of.gear: gear.fields}), gear
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.types import FloatArray
+from lineofaction.gearbox.inspection.sheet import Interval
 
 ALPHA = math.sqrt(math.log(2.0) / math.pi)
 """A wave as long as the cut-off keeps half its amplitude (ISO 16610-21)."""
@@ -24,21 +25,24 @@ class Split:
 
     coordinate: FloatArray
     """Stations, even over the length of the trace."""
+    length: float
     slope: float
-    """Rise of the mean line from the first station to the last."""
+    """`length`, `slope`: Length over which the slope is stated, and rise of the mean line over it."""
+    form: float
+    """Form deviation: the range of the evaluated trace less its mean line."""
     rest: FloatArray
     """Filtered trace less its mean line, at the stations."""
     cutoff: float
     """Wavelength of which the filter keeps half the amplitude."""
 
-    @property
-    def form(self) -> float:
-        """Form deviation: the range of `rest`."""
-        return float(np.ptp(self.rest))
 
-
-def split(coordinate: FloatArray, values: FloatArray, cutoff: float | None = None) -> Split:
+def split(
+    coordinate: FloatArray, values: FloatArray, cutoff: float | None = None, interval: Interval | None = None
+) -> Split:
     """Filter a trace and split it.
+
+    Where the machine states an interval, its trace is filtered before it is stored: slope and form are those
+    of the points in the interval, and the filter thins the rest.
 
     Raises `ValueError`: too few or too many points, points further apart than the cut-off, or one that is too
     short.
@@ -49,6 +53,8 @@ def split(coordinate: FloatArray, values: FloatArray, cutoff: float | None = Non
         Places in order and deviations, m.
     cutoff : float, optional
         m; left out: a thirtieth of the length.
+    interval : Interval, optional
+        Evaluated part; left out: the whole trace.
     """
     if not 3 <= coordinate.size <= _MAX_POINTS:
         raise ValueError(f"a trace of 3 to {_MAX_POINTS} points; it has {coordinate.size}")
@@ -64,9 +70,23 @@ def split(coordinate: FloatArray, values: FloatArray, cutoff: float | None = Non
         )
     stations = np.linspace(coordinate[0], coordinate[-1], math.ceil(_PER_CUTOFF * length / cutoff) + 1)
     filtered = gaussian(coordinate, values, stations, cutoff)
-    slope, mean = np.polyfit((stations - stations[0]) / length, filtered, 1)
-    rest = filtered - mean - slope * (stations - stations[0]) / length
-    return Split(stations, float(slope), rest, cutoff)
+    if interval is None:
+        slope, mean = np.polyfit((stations - stations[0]) / length, filtered, 1)
+        rest = filtered - mean - slope * (stations - stations[0]) / length
+        return Split(stations, length, float(slope), float(np.ptp(rest)), rest, cutoff)
+    slope, mean, form = _mean_line(coordinate, values, interval)
+    rest = filtered - mean - slope * (stations - interval.first) / interval.length
+    return Split(stations, interval.length, slope, form, rest, cutoff)
+
+
+def _mean_line(coordinate: FloatArray, values: FloatArray, interval: Interval) -> tuple[float, float, float]:
+    """Return slope and value at the beginning of the mean line of an interval, and the form there."""
+    inside = (coordinate >= interval.first - 1e-9) & (coordinate <= interval.last + 1e-9)
+    if inside.sum() < 3:
+        raise ValueError(f"a trace of 3 points where it is evaluated; it has {inside.sum()}")
+    way = (coordinate[inside] - interval.first) / interval.length
+    slope, mean = np.polyfit(way, values[inside], 1)
+    return float(slope), float(mean), float(np.ptp(values[inside] - mean - slope * way))
 
 
 def gaussian(coordinate: FloatArray, values: FloatArray, at: FloatArray, cutoff: float) -> FloatArray:

@@ -13,7 +13,7 @@ from fe_contact.geometry import Toothing
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.evaluation import Split, split
 from lineofaction.gearbox.inspection.reading import FIELD, REMEDY
-from lineofaction.gearbox.inspection.sheet import OMITTED, PITCHES, Flank, Point, Sheet
+from lineofaction.gearbox.inspection.sheet import OMITTED, PITCHES, Flank, Interval, Point, Sheet
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
@@ -60,6 +60,12 @@ class MeasuredGear:
     """Number of lines by what became of them."""
     splits: Mapping[tuple[int, str], Split]
     """Evaluated traces by tooth of the sheet and trace."""
+    recomputed: int = 0
+    differences: tuple[str, ...] = ()
+    ranged: bool = False
+    """`recomputed`, `differences`, `ranged`: Number of values printed by the machine that are recomputed;
+    those that differ; and whether the file states where traces are evaluated.
+    """
 
     @property
     def omitted(self) -> list[str]:
@@ -89,7 +95,7 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
             traces[point.tooth, point.trace].append(point)
     try:
         pitches = _pitches(traces, chart)
-        splits = dict(_splits(traces, cutoff))
+        splits = dict(_splits(traces, sheet.intervals, chart.loaded, cutoff))
         surfaces = {tooth: _surface(traces[tooth, "topography"]) for tooth in over_flank}
     except ValueError as fault:
         raise BadInput.of(FIELD, name, str(fault), REMEDY) from None
@@ -98,7 +104,8 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
         for tooth in sorted({tooth for tooth, _ in splits} | over_flank)
     ]
     fields = {"tooth_flanks": sorted(flanks, key=lambda flank: int(flank["tooth"]))} if flanks else {}
-    return MeasuredGear(fields | pitches, dict(account), splits)
+    judgement = sheet.recomputed, sheet.differences, bool(sheet.intervals)
+    return MeasuredGear(fields | pitches, dict(account), splits, *judgement)
 
 
 def _taken(point: Point, chart: Chart) -> str:
@@ -134,14 +141,17 @@ def _pitches(traces: Mapping[tuple[int, str], list[Point]], chart: Chart) -> dic
 
 
 def _splits(
-    traces: Mapping[tuple[int, str], list[Point]], cutoff: float | None
+    traces: Mapping[tuple[int, str], list[Point]],
+    intervals: Mapping[tuple[str, Flank], Interval],
+    flank: Flank,
+    cutoff: float | None,
 ) -> Iterator[tuple[tuple[int, str], Split]]:
     for (tooth, name), points in sorted(traces.items()):
         if name not in ("profile", "helix"):
             continue
         rows = np.array(sorted((_coordinate(point), point.deviation) for point in points))
         try:
-            yield (tooth, name), split(rows[:, 0], rows[:, 1], cutoff)
+            yield (tooth, name), split(rows[:, 0], rows[:, 1], cutoff, intervals.get((name, flank)))
         except ValueError as fault:
             raise ValueError(f"{fault} ({name} of tooth {tooth})") from None
 
@@ -178,8 +188,7 @@ def _flank(
         places.append(ends if trace is None else trace.coordinate)
         rests.append(np.zeros(2) if trace is None else trace.rest)
         if trace is not None:
-            rise = trace.slope / (trace.coordinate[-1] - trace.coordinate[0])
-            (entry[f"{name}_slope_um"],) = _um(np.array([rise * length]))
+            (entry[f"{name}_slope_um"],) = _um(np.array([trace.slope / trace.length * length]))
     return entry | {"flank_grid": _grid(places[0], places[1], np.add.outer(rests[0], rests[1]))}
 
 

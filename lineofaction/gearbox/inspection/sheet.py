@@ -7,7 +7,7 @@ import io
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from fe_contact.geometry import Toothing
@@ -44,11 +44,27 @@ class Point:
 
 
 @dataclass(frozen=True)
+class Interval:
+    """Evaluated part of a trace: roll lengths, or distances from mid-face, m."""
+
+    first: float
+    last: float
+    length: float
+    """Length over which the rise of the mean line is the slope."""
+
+
+@dataclass(frozen=True)
 class Sheet:
     """Points of a file, and the numbers of its other lines or points by what they were taken for."""
 
     points: tuple[Point, ...]
     account: Mapping[str, int]
+    intervals: Mapping[tuple[str, Flank], Interval] = field(default_factory=dict)
+    """Evaluated part of profiles and helices of a flank, where the file states it."""
+    recomputed: int = 0
+    """Number of values that the machine printed and that are recomputed."""
+    differences: tuple[str, ...] = ()
+    """Values that the machine printed otherwise than they are recomputed."""
 
 
 def csv_sheet(text: str, gear: Toothing) -> Sheet:

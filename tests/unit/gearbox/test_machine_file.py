@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from command_line import printed
 from damaged_text import fates_of_a_hundred
 from machine_texts import CHART, GEAR, TEETH, machine_text
 from spur_case import spur_case
 
-from lineofaction.gearbox.inspection.machine_file import OTHER_TRACE, UNKNOWN, UNMEASURED
+from lineofaction.gearbox.inspection.machine_file import OTHER_TRACE, OUTSIDE, UNKNOWN, UNMEASURED
+from lineofaction.gearbox.inspection.machine_heading import STATEMENTS
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
@@ -24,38 +26,49 @@ def taken(text: str, chart: Chart) -> MeasuredGear:
 @pytest.mark.law
 @pytest.mark.parametrize("loaded", ["left", "right"])
 @pytest.mark.parametrize("separate", [True, False], ids=["titles above", "titles beside"])
-def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate: bool) -> None:
+@pytest.mark.parametrize("counting", [0, 1], ids=["clockwise", "counterclockwise"])
+def test_a_machine_says_the_same_of_a_gear_as_its_sheet(loaded: Flank, separate: bool, counting: int) -> None:
     chart = Chart(GEAR, loaded, True)
-    of_sheet = taken(sheet_text(inspected(chart)), chart)
-    text = machine_text(chart, separate).replace("\n", "\r\n")
+    points = list(inspected(chart))
+    of_sheet = taken(sheet_text(points), chart)
+    text = machine_text(chart, separate, counting).replace("\n", "\r\n")
     of_machine = taken(f"\ufeff{text}", chart)
     assert of_machine.fields["pitch_deviation_um"] == pytest.approx(
         of_sheet.fields["pitch_deviation_um"], abs=2e-5
     )
     assert of_machine.splits.keys() == of_sheet.splits.keys()
-    for key, one in of_sheet.splits.items():
-        other = of_machine.splits[key]
-        assert other.coordinate == pytest.approx(one.coordinate, abs=1e-8)
-        assert (other.slope, other.form) == pytest.approx((one.slope, one.form), abs=1e-10)
+    for (tooth, name), of_machine_trace in of_machine.splits.items():
+        of_sheet_trace = of_sheet.splits[tooth, name]
+        places = of_sheet_trace.coordinate
+        assert of_machine_trace.coordinate == pytest.approx(places, abs=1e-8)
+        surfaces = [
+            trace.rest + trace.slope * (places - places.mean()) / trace.length
+            for trace in (of_machine_trace, of_sheet_trace)
+        ]
+        first, second = (surface - surface.mean() for surface in surfaces)
+        assert first == pytest.approx(second, abs=1e-10)
+        values = [point.deviation for point in points if (point.tooth, point.trace) == (tooth, name)]
+        slope = np.polyfit(np.linspace(0.0, 1.0, len(values)), values, 1)[0]
+        length = of_machine_trace.length / (places[-1] - places[0])
+        assert of_machine_trace.slope == pytest.approx(slope * length, abs=1e-10)
     assert of_machine.omitted == []
 
 
 def test_what_else_a_machine_writes_is_accounted_for() -> None:
     text = machine_text(CHART)
     before = taken(text, CHART).account
-    text = text.replace(
-        "Zahn-Nr.: 19 rechts / 61  Werte  z= 7.5\n", "Zahn-Nr.: 19 rechts / 61  Werte  z= 7.5\n-2147483.648 "
-    )
-    first = text.index("-2147483.648 ", text.index("z= 7.5")) + len("-2147483.648 ")
-    text = text[:first] + text[text.index(" ", first) + 1 :]
+    # tooth 19 clockwise is the third that a machine meets
+    head = "Zahn-Nr.: 3 rechts / 61  Werte  z= 7.5\n"
+    start = text.index(head) + len(head)
+    text = text[:start] + "-2147483.648" + text[text.index(" ", start) :]
     text += (
         "Verschränkung: Zahn-Nr.: 1k /Flankenlinie:3 links / 2  Werte  x= 10.263\n 1.0 2.0\n"
         "Fußkreisdurchmesser / Höhe :     7.500\n   49.5 49.6\n"
         "Teilung:\nZ-Nr. Seite PHI X Y Z\n  1   R  0.0000  .1198  25.5249  87.2302\n"
         "ein Satz\n"
     )
-    found = taken(text, CHART)
-    gained = {fate: count - before.get(fate, 0) for fate, count in found.account.items()}
+    done = taken(text, CHART)
+    gained = {fate: count - before.get(fate, 0) for fate, count in done.account.items()}
     gained = {fate: count for fate, count in gained.items() if count}
     assert gained == {
         OTHER_TRACE: 2,
@@ -65,7 +78,19 @@ def test_what_else_a_machine_writes_is_accounted_for() -> None:
         "other table or heading": 4,
         "profile": -1,
     }
-    assert len(found.omitted) == 3
+    assert len(done.omitted) == 3
+
+
+def test_points_beyond_the_evaluated_range_are_left_to_the_probe() -> None:
+    """A tenth of 61 points at either end of two profiles and two helices; slopes stay whole-width."""
+    whole, part = (taken(machine_text(CHART, part=part), CHART) for part in (0.0, 0.1))
+    assert part.account[OUTSIDE] == 4 * 2 * 6
+    assert part.omitted == []
+    for key, split in part.splits.items():
+        if key[1] == "helix":
+            assert split.length == pytest.approx(25e-3)
+        else:
+            assert split.length == pytest.approx(0.8 * whole.splits[key].length, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -74,28 +99,34 @@ def test_what_else_a_machine_writes_is_accounted_for() -> None:
         (
             "22 :Zähnezahl z.........: 20",
             "22 :Zähnezahl z.........: 21",
-            "of a gear of 20 teeth; line 6 has 21",
+            "of a gear of 20 teeth; line 13 has 21",
         ),
-        ("mn [mm]..:  4.000", "mn [mm]..:  3.000", "of module 4 mm; line 7 has 3"),
-        ("...da  [mm]", "...d1  [mm]", "whose heading has da [mm]"),
+        ("mn [mm]..:  4.000", "mn [mm]..:  3.000", "of module 4 mm; line 14 has 3"),
+        ("...da  [mm]", "...dx  [mm]", "whose heading has da, d1, d2, de [mm]"),
         (
             "Start Messbereich......da  [mm]..:  ",
             "Start Messbereich......da  [mm]..:  1e-9  1e-9 ",
-            "of diameters from 75.1754 mm on",
+            "with da [mm] of one or both flanks; line 15 has",
         ),
-        ("Zahn-Nr.: 19 rechts / 61  Werte  z", "Zahn-Nr.: 33 rechts / 61  Werte  z", "of teeth from 1 to 20"),
+        ("Zahn-Nr.: 3 rechts / 61  Werte  z", "Zahn-Nr.: 33 rechts / 61  Werte  z", "of teeth from 1 to 20"),
         (
-            "Zahn-Nr.: 19 rechts / 61  Werte  z",
-            "Zahn-Nr.: 19 rechts / 62  Werte  z",
+            "Zahn-Nr.: 3 rechts / 61  Werte  z",
+            "Zahn-Nr.: 3 rechts / 62  Werte  z",
             "of 62 values in the trace of line",
         ),
         (
-            "Zahn-Nr.: 19 rechts / 61  Werte  z",
-            "Zahn-Nr.: 19 rechts / 999999  Werte  z",
+            "Zahn-Nr.: 3 rechts / 61  Werte  z",
+            "Zahn-Nr.: 3 rechts / 999999  Werte  z",
             "values in the trace of line",
         ),
-        ("  2  0.1  ", "  3  0.1  ", "the pitches of teeth 1 to 20 in turn"),
-        ("  20  0.1  ", "  21  0.1  ", "the pitches of teeth 1 to 20 in turn"),
+        ("\n  2  ", "\n  3  ", "the pitches of teeth 1 to 20 in turn"),
+        ("\n  20  ", "\n  21  ", "the pitches of teeth 1 to 20 in turn"),
+        ("ZRICH: 1", "ZRICH: 2", "direction of counting, line 161 of the heading) is 0 (clockwise) or 1"),
+        ("ZRICH: 1", "ZRICH: 2", "(counterclockwise); line 24 has '2'"),
+        ("UNITS mm", "UNITS inch", "is mm (millimeters); line 3 has 'inch'"),
+        ("LVORZ: 1: DIN", "LVORZ: 0: VDI", "line 29 has '0:VDI'"),
+        (" 161 :", " 161 :again :ZRICH: 0\n 161 :", "lines 24 and 25 differ"),
+        ("UNDEFINED -2147483.648", "UNDEFINED -", "a file with UNDEFINED and a number"),
     ],
 )
 def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None:
@@ -106,8 +137,20 @@ def test_a_file_is_refused_by_what_is_wrong(of: str, by: str, said: str) -> None
     assert said in str(caught.value)
 
 
-def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    fates = fates_of_a_hundred(machine_text(CHART), lambda text: taken(text, CHART), monkeypatch)
+@pytest.mark.parametrize("name", STATEMENTS)
+def test_a_heading_without_one_of_its_conventions_is_refused_by_its_name(name: str) -> None:
+    """Nothing is assumed: each convention that decides how values are read must stand in the file."""
+    lines = [line for line in machine_text(CHART).splitlines() if f":{name}:" not in line]
+    lines = [line for line in lines if not line.startswith((f"{name} ", f"{name}:"))]
+    with pytest.raises(BadInput, match=f"whose {name} .*it has none"):
+        taken("\n".join(lines), CHART)
+
+
+@pytest.mark.parametrize("separate", [True, False], ids=["titles above", "titles beside"])
+def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(
+    separate: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    fates = fates_of_a_hundred(machine_text(CHART, separate), lambda text: taken(text, CHART), monkeypatch)
     assert min(fates["taken"], fates["refused"]) >= 10, fates
 
 
@@ -119,9 +162,11 @@ def test_a_hundred_damaged_files_are_refused_once_or_accounted_for(monkeypatch: 
         "HEADER KS.MK.FILE\n" + " " * 1_000_000 + "x",
         "HEADER KS.MK.FILE\n" + " 1 :" + "a" * 1_000_000 + ":",
         "HEADER KS.MK.FILE\n" + " 1 :da [mm]: " + "9" * 1_000_000,
+        "HEADER KS.MK.FILE\n" + " 1 :" + "da [mm]." * 100_000,
+        "HEADER KS.MK.FILE\n" + " 1 :" + ": ABC " * 100_000,
         "HEADER KS.MK.FILE\n" + "linke Zahnflanke\n" + "1 1 1 1\n" * 100_000,
     ],
-    ids=["titles", "traces", "blanks", "label", "digits", "rows"],
+    ids=["titles", "traces", "blanks", "label", "digits", "symbols", "names", "rows"],
 )
 def test_a_hostile_file_is_one_error(attack: str) -> None:
     with pytest.raises(BadInput):

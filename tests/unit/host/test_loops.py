@@ -34,6 +34,42 @@ if __name__ == "__main__":
     print(sum(middle_of.stats.cache_misses.values()), flush=True)
 """
 
+READ = """
+import numpy as np
+from host.loops import njit
+from numba.core.runtime.nrt import rtsys
+
+@njit(cache=True)
+def spectrum(x):
+    return np.sin(np.outer(x, x)) @ np.sort(x)[::-1].copy()
+
+@njit
+def length(x):
+    return np.sqrt(np.sum(x**2))
+
+if __name__ == "__main__":
+    x = np.arange(1.0, 4.0)
+    result = spectrum(x)
+    print(sum(spectrum.stats.cache_hits.values()), rtsys._init, result.tobytes().hex())
+    print(length(x) == 14.0**0.5, rtsys._init)
+"""
+
+
+def test_a_loop_that_is_read_loads_nothing_of_the_compiler_which_later_ones_get(tmp_path: Path) -> None:
+    file = tmp_path / "loop.py"
+    file.write_text(READ, encoding="utf-8")
+    house = str(Path(loops.__file__).parents[1])
+    environment = {**os.environ, "PYTHONPATH": house, "NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+    compiled, read = (
+        subprocess.run(
+            [sys.executable, str(file)], env=environment, capture_output=True, text=True, check=True
+        ).stdout.split()
+        for _ in range(2)
+    )
+    assert compiled[:2] == ["0", "True"]
+    assert read[:2] == ["1", "False"]
+    assert read[2:] == [compiled[2], "True", "True"]
+
 
 def test_processes_that_need_a_loop_at_once_compile_it_once(tmp_path: Path) -> None:
     file = tmp_path / "loop.py"
