@@ -1,7 +1,8 @@
 """Bounds as data: the ends of a range in SI, or a choice of names.
 
-A bound is put into words for a reader, who decides on the names of fields and on units. A field's static
-range is declared as an `Interval`; a `Bound` is that range, or one that is computed, with its words.
+A field's static range is declared as an `Interval`. A `Bound` is that range, or a computed one, with the text
+of a message. The text is a `Text`, whose numbers stay numbers until it is written for a `Reader`: a caller
+from Python or of a file, who has names for fields and units of his own (see `bounds.text`).
 """
 
 from __future__ import annotations

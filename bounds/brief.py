@@ -109,7 +109,7 @@ def _sequence(values: list[object]) -> str:
     if values and not plain:
         kinds = {type(value).__name__ for value in values}
         return f"{len(values)} {' or '.join(sorted(kinds)[:2])}"
-    return _listed([described_value(value) for value in values[: LISTED + 1]], len(values))
+    return _listed([described_value(value) for value in values[:LISTED]], len(values))
 
 
 def _listed(texts: list[str], count: int) -> str:
@@ -124,7 +124,9 @@ _DESCRIPTIONS: tuple[tuple[tuple[type, ...], Callable[[Any], str]], ...] = (
     ((str,), lambda value: next(iter(value.splitlines()), "")),
     ((bool, int, np.bool_, np.integer), str),
     ((float, np.floating), lambda value: engineering(float(value), 6)),
-    ((Mapping,), lambda value: _listed([str(name) for name in islice(value, LISTED + 1)], len(value))),
+    ((Mapping,), lambda value: _listed([str(name) for name in islice(value, LISTED)], len(value))),
     ((tuple, list, set, frozenset), lambda value: _sequence(list(value))),
 )
-"""Words of values by their kinds; the first that fits counts (an enumeration of numbers is one of names)."""
+"""Functions that describe values, by type. The first that fits counts: `Enum` stands before int, which a
+member of an enumeration may be too.
+"""

@@ -30,7 +30,7 @@ class Kind(StrEnum):
     START = auto()
     """The place at which a modification begins."""
     EDGE = auto()
-    """The size of an edge, that ends a flank."""
+    """The size of a tip edge, where a flank ends."""
     ANGLE = auto()
     SHAPE = auto()
     """A law by its name."""
@@ -66,7 +66,7 @@ DEPTHS = (Kind.AMOUNT, Kind.DEVIATION)
 
 
 class Direction(Flag):
-    """Direction along which a figure of a flank acts."""
+    """Directions of a flank along which a modification varies."""
 
     NONE = 0
     PROFILE = auto()
@@ -89,7 +89,7 @@ class Declared:
     example: Any = None
     """A usual value, in SI."""
     along: Direction = Direction.NONE
-    """Directions along which the field acts."""
+    """Directions of a flank along which the field acts."""
     written: str = ""
     """Symbol of the unit in which the field is usually written, where that is not the usual one of its SI
     unit.
@@ -121,7 +121,10 @@ class Declared:
 
 
 def declared(default: Any, declaration: Declared) -> Any:
-    """Return the field of a dataclass with its default and its declaration; left out where that is None."""
+    """Return the field of a dataclass with its default and its declaration.
+
+    A default of None means that the field may be left out.
+    """
     return field(default=default, metadata={Declared: declaration})
 
 
@@ -147,9 +150,10 @@ def described(kind: type[Thing]) -> type[Thing]:
     """Append the descriptions of the declared fields of a dataclass to its docstring; a decorator."""
     entries = []
     for name, fact in declarations(kind).items():
-        plain = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")
-        of = fact.part.__name__ if fact.part else plain
-        entries.append(f"{name} : {of}\n    {fact.description.replace('{unit}', fact.unit)}")
+        # where numpy's style has the type of an attribute: its part, else its unit
+        unit = fact.unit or ("name" if isinstance(fact.bound, Choice) else "1")
+        type_text = fact.part.__name__ if fact.part else unit
+        entries.append(f"{name} : {type_text}\n    {fact.description.replace('{unit}', fact.unit)}")
     text = inspect.cleandoc(kind.__doc__ or "")
     kind.__doc__ = "\n".join((text, "", "Attributes", "----------", *entries, ""))
     return kind
@@ -157,11 +161,11 @@ def described(kind: type[Thing]) -> type[Thing]:
 
 def declarations(kind: type[Any]) -> Mapping[str, Declared]:
     """Return the declared fields of a dataclass by name, in its order."""
-    return _declarations(cast("Hashable", kind))
+    return _declarations(cast("Hashable", kind))  # mypy does not take a type for hashable, as a cache needs
 
 
 @cache
 def _declarations(kind: Any) -> Mapping[str, Declared]:
-    """Look through a dataclass once."""
+    """Return the declared fields by name; the cache keeps those of each dataclass."""
     entries = {entry.name: entry.metadata[Declared] for entry in fields(kind) if Declared in entry.metadata}
     return MappingProxyType(entries)

@@ -31,7 +31,7 @@ SI_UNITS = {name: Unit(name, 1.0) for name in TYPED}
 
 
 def _suspected_unit(value: float, field_unit: Unit, dimension: str, low: float, high: float) -> str:
-    """Return the unit in which a number is plausible that is not in the field's unit; empty if there is none.
+    """Return a unit, other than the field's, in which the typed number would be plausible; "" if none is.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ class Finding:
     source: str
     """Source of the limit."""
     unit_note: str = ""
-    """Other fields that must have slipped with the field, in words; empty if it slipped alone."""
+    """Text on other fields that must be in the wrong unit too; empty if this field may be so alone."""
 
     def message(self, field: str | None = None, field_unit: Unit | None = None) -> str:
         """Return the finding in one line, in the caller's name and unit of the field (default: ours, SI)."""
@@ -138,7 +138,10 @@ class Checklist:
         unit_note: str = "",
         skip_zero: bool = False,
     ) -> Iterator[Finding]:
-        """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
+        """Yield a finding if |value| is outside the bounds of a check.
+
+        `scale` is the unit of the bounds in `unit`, the unit of the value.
+        """
         rule = self.checks[check]
         low = 0.0 if rule.low is None else rule.low * scale
         high = math.inf if rule.high is None else rule.high * scale
@@ -155,13 +158,15 @@ def finding_of(content: Json) -> Finding:
 
 
 def warn_of(findings: Sequence[Finding]) -> None:
-    """Warn of findings, once of each, in the name of who called the package that found them."""
+    """Warn of findings at the line that called the package which found them."""
+    # level 2 is the function that called this one; functools calls cached properties
     library, level = _package(2), 3
-    while _package(level) in (library, "functools"):  # the latter of a property that is kept
+    while _package(level) in (library, "functools"):
         level += 1
     for finding in findings:
         warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, level)
 
 
 def _package(level: int) -> str:
+    """Return the name of the top package of the function `level` calls above this one."""
     return str(sys._getframe(level).f_globals.get("__name__", "")).partition(".")[0]

@@ -21,10 +21,11 @@ Levels = Sequence[float] | FloatArray
 OnPlan = Callable[[Mapping[str, float]], None]
 """Callback for the predicted CPU seconds of the stages of a table, in their order, before it is computed."""
 LEVELS = ("draft", "standard", "fine")
-BETWEEN = "medium"
-"""The mesh between draft and standard that a tolerance may ask for of relieved helical pairs."""
-MESHES = ("draft", BETWEEN, "standard", "fine")
-"""All of them, the coarsest first."""
+"""Meshes of every pair, the coarsest first."""
+MEDIUM = "medium"
+"""Mesh between draft and standard that a tolerance may choose for relieved helical pairs alone."""
+MESHES = ("draft", MEDIUM, "standard", "fine")
+"""All meshes, the coarsest first."""
 CHOICES = {
     "level": (None, *MESHES),
     "model": ("auto", "plane_strain", "plane_stress", "3d"),

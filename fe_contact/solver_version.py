@@ -6,7 +6,7 @@ import platform
 from functools import lru_cache
 from importlib.metadata import version
 
-SOLVER_VERSION = "24"
+SOLVER_VERSION = "25"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

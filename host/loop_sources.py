@@ -1,8 +1,9 @@
 """Keys of source files: hashes of a file and of all files of the project that it imports, directly or not.
 
-Compiled code holds what its loop calls, so it is current while none of these files has changed. To read the
-450 files of both libraries takes 0.1 s. Their keys are kept in a file beside the compiled code, with the
-state of each source file (time of change, size and inode): while all states are as they were, the keys are.
+Compiled code contains the functions that its loop calls, so it is current while none of these files has
+changed. To read the 450 files of both libraries takes 0.1 s. A manifest beside the compiled code stores their
+keys with the state of each source file (times of change, size and inode). While all states are the same, the
+keys are valid.
 """
 
 from __future__ import annotations
@@ -30,31 +31,44 @@ _IMPORT = re.compile(
     )""",
     re.MULTILINE | re.VERBOSE,
 )
-"""Statements of import on lines of their own, and lines of texts that look like one, which adds a file."""
+"""Import statements at the start of a line. A line of a text that looks like one counts too; it can only add
+a file to a key.
+"""
 
 State = tuple[int, int, int, int]
+"""State of a file: times of change of content and of entry, size, inode."""
 
 
 class Sources:
     """Files below a folder in the state of their first reading, and the files of this project.
 
-    Among foreign packages of an installation, `packages` names those that count.
+    Parameters
+    ----------
+    root : Path
+        Folder of packages, of this project or of an installation.
+    packages : frozenset of str, optional
+        Names of the packages in `root` whose files count; None: all.
     """
 
     def __init__(self, root: Path = PROJECT, packages: frozenset[str] | None = None) -> None:
         self._root = root
         self._packages = packages
-        self._roots: dict[str, Path | None] = {}
-        self._states: dict[str, State | None] = {}
-        self._hashes: dict[str, str] = {}
-        self._imports: dict[str, frozenset[str]] = {}
-        self._keys: dict[str, str] = {}
-        self._files: dict[str, tuple[str, ...]] = {}
+        self._roots: dict[str, Path | None] = {}  # folder by package
+        self._states: dict[str, State | None] = {}  # by the path of a file or folder
+        self._hashes: dict[str, str] = {}  # of the content, by file
+        self._imports: dict[str, frozenset[str]] = {}  # imported files by file
+        self._keys: dict[str, str] = {}  # by file
+        self._files: dict[str, tuple[str, ...]] = {}  # by module
 
     def key(self, file: Path, manifest: Path | None = None) -> str:
-        """Return the key of a file; keys of its package are read from `manifest`, or written there."""
+        """Return the key of a file.
+
+        The keys of all files of its package are read from `manifest`, or computed and written there.
+        """
         name = file.relative_to(self._root).as_posix()
-        if name not in self._keys and not (manifest and self._read(manifest) and name in self._keys):
+        if manifest and name not in self._keys:
+            self._read(manifest)
+        if name not in self._keys:
             if manifest:
                 package = self._root / Path(name).parts[0]
                 self._hash_all(path.relative_to(self._root).as_posix() for path in package.rglob("*.py"))
@@ -85,7 +99,8 @@ class Sources:
     def _imported(self, name: str) -> frozenset[str]:
         if name not in self._imports:
             path = f"{self._root_of(name.partition('/')[0].removesuffix('.py'))}/{name}"
-            for watched in (path, path.rpartition("/")[0]):
+            folder = path.rpartition("/")[0]  # its state changes with the list of its files
+            for watched in (path, folder):
                 self._states.setdefault(watched, _state(watched))
             content = Path(path).read_bytes()
             self._hashes[name] = hashlib.sha256(content).hexdigest()
@@ -94,36 +109,37 @@ class Sources:
         return self._imports[name]
 
     def _files_of(self, module: str) -> tuple[str, ...]:
-        """Return the files of a module, or of that which holds an imported name; none of foreign ones."""
+        """Return the files of a module or of the parent of an imported name; none of other projects."""
         if module not in self._files:
             root, path = self._root_of(module.partition(".")[0]), module.replace(".", "/")
             candidates = (f"{path}.py", f"{path}/__init__.py") if root else ()
             files = tuple(file for file in candidates if root and (root / file).is_file())
-            holder = module.rpartition(".")[0]
-            self._files[module] = files or (self._files_of(holder) if holder else ())
+            parent = module.rpartition(".")[0]
+            self._files[module] = files or (self._files_of(parent) if parent else ())
         return self._files[module]
 
     def _root_of(self, package: str) -> Path | None:
-        """Return the folder of a package or of a module, None of foreign ones."""
+        """Return the folder that has a package or a module, None for those of other projects."""
         if package not in self._roots:
-            below = (self._root / package).is_dir() or (self._root / f"{package}.py").is_file()
-            counts = below and (self._packages is None or package in self._packages)
-            self._roots[package] = self._root if counts else PROJECT if package in PACKAGES else None
+            is_below = (self._root / package).is_dir() or (self._root / f"{package}.py").is_file()
+            if is_below and (self._packages is None or package in self._packages):
+                self._roots[package] = self._root
+            else:
+                self._roots[package] = PROJECT if package in PACKAGES else None
         return self._roots[package]
 
-    def _read(self, manifest: Path) -> bool:
+    def _read(self, manifest: Path) -> None:
         """Read the keys of a manifest if all of its files are in the recorded state."""
         try:
             content = json.loads(manifest.read_bytes())
             states: dict[str, State | None] = {path: tuple(s) for path, s in content["states"].items()}
             keys = dict(content["keys"])
         except (OSError, ValueError, TypeError, KeyError, AttributeError):
-            return False
+            return
         if any(_state(path) != state for path, state in states.items()):
-            return False
+            return
         self._states = states | self._states
         self._keys = keys | self._keys
-        return True
 
     def _write(self, manifest: Path) -> None:
         content = {"states": self._states, "keys": self._keys}
@@ -134,7 +150,7 @@ class Sources:
 
 
 def _imported_names(code: str, file: str) -> Iterator[str]:
-    """Yield the modules and names that a file imports, on demand too, with their packages."""
+    """Yield the full names of modules and of their members that a file imports, also inside functions."""
     for statement in _IMPORT.finditer(code):
         if modules := statement["modules"]:
             yield from (part.split()[0] for part in modules.replace("\\\n", " ").split(",") if part.split())
@@ -147,7 +163,7 @@ def _imported_names(code: str, file: str) -> Iterator[str]:
 
 
 def _absolute(module: str, file: str) -> str:
-    """Return the full name of a module that a file may name from its own package, by leading dots."""
+    """Return the full name of a module; leading dots count from the package of the file that imports it."""
     name = module.lstrip(".")
     dots = len(module) - len(name)
     if not dots:
@@ -167,7 +183,11 @@ def _state(path: str) -> State | None:
 
 @cache
 def sources(root: Path, package: str) -> Sources:
-    """Return the files of a folder, and of a package in it, as this process found them."""
+    """Return the files that loops of a package in a folder may import, in their state at the first call.
+
+    Of an installation, only the package itself counts, or all packages of this project. Equal arguments of
+    the caches below give one object, so that files are read once.
+    """
     if root.name not in {"site-packages", "dist-packages"}:
         return _of_folder(root)
     return _of_installation(

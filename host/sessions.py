@@ -1,4 +1,7 @@
-"""Processes: sessions, ends, priorities on POSIX, others under /proc; elsewhere each raises `Unavailable`."""
+"""Processes of this machine: sessions, signals, ends and priorities on POSIX, other processes by /proc.
+
+A function that the system cannot serve raises `Unavailable`.
+"""
 
 from __future__ import annotations
 
@@ -122,7 +125,10 @@ def _numbered(proc: Path) -> Iterator[int]:
 
 
 def _works_in(process: Path, directory: Path, command: bytes) -> bool:
-    """Whether a process works there by such a command; not if it has ended or is another user's."""
+    """Whether a process works in a directory and its command line holds `command`.
+
+    It is False for a process that has ended, and for one of another user.
+    """
     with suppress(OSError):
         folder = (process / "cwd").readlink()
         return folder.is_relative_to(directory) and command in (process / "cmdline").read_bytes()
@@ -136,7 +142,9 @@ def family_cpu_seconds(pid: int, proc: Path = _PROC) -> float | None:
     """
     with suppress(OSError, ValueError, IndexError):
         stat = (proc / str(pid) / "stat").read_text(encoding="ascii", errors="replace")
-        ticks = sum(int(figure) for figure in stat.rpartition(")")[2].split()[11:15])  # own and of the dead
+        # after the name in brackets: user and system time of the process and of the children it has waited
+        # for
+        ticks = sum(int(figure) for figure in stat.rpartition(")")[2].split()[11:15])
         children = [int(c) for t in (proc / str(pid) / "task").iterdir() for c in _children(t)]
         return ticks / os.sysconf("SC_CLK_TCK") + sum(family_cpu_seconds(c, proc) or 0.0 for c in children)
     return None

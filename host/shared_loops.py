@@ -1,9 +1,12 @@
 """Compiled loops that processes share: one compiles, the others wait and read the result.
 
-Each would otherwise compile for itself what is not kept yet, and two that keep different signatures of a
-function at a time could take the same file for them. Loops are compiled for a family of processors
-(`host.processor_family`), found by the content of what they call (`host.loop_cache`), and inner loops become
-part of their callers (`host.linked_loops`).
+numba alone would let each process compile a function that is not on disk yet, and two processes that store
+different signatures of a function at the same time could write to the same file. Here a lock for each
+function prevents both.
+
+Loops are compiled for a family of processors (`host.processor_family`). A stored loop is found by the content
+of the functions that it calls (`host.loop_cache`). Inner loops become part of their callers
+(`host.linked_loops`).
 """
 
 # mypy: disable-error-code="no-untyped-call, attr-defined"
@@ -29,7 +32,9 @@ from host.processor_family import compile_for_family
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _BARE = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""numba's options of a loop that only compiled loops call: without wrappers for Python and C."""
 _locked_files: set[Path] = set()
+"""Files whose locks this process holds."""
 
 
 class Loop(CPUDispatcher):
@@ -50,7 +55,10 @@ class Loop(CPUDispatcher):
 
 
 class _Inner(CPUDispatcher):
-    """A loop of compiled loops: without machine code, wrappers for Python and an entry of its own."""
+    """A loop that compiled loops call; it has no machine code, no wrapper for Python and no entry on disk.
+
+    Where Python calls it nevertheless, it is compiled once more as a `Loop`.
+    """
 
     def __call__(self, *arguments: Any) -> Any:
         return self._outer(*arguments)
@@ -63,13 +71,13 @@ class _Inner(CPUDispatcher):
 
 @contextmanager
 def _nothing_collected() -> Iterator[None]:
-    """Keep the collector of garbage from walking all that a compilation holds, which takes a fifth of it."""
-    was = gc.isenabled()
+    """Pause the garbage collector: it takes a fifth of the time of a compilation, which drops few objects."""
+    was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if was:
+        if was_enabled:
             gc.enable()
 
 
@@ -77,8 +85,8 @@ def _nothing_collected() -> Iterator[None]:
 def _locked(file: Path) -> Iterator[None]:
     """Hold the lock of a function, by its file, where the system has locks and the folder can be written.
 
-    A function that calls itself holds it already. Locks nest as calls do: no two processes wait for each
-    other.
+    A function that calls itself finds its lock held by this process. Locks are taken in the order of calls,
+    so that no two processes wait for each other.
     """
     if file in _locked_files:
         yield
@@ -110,7 +118,7 @@ def njit(function: Callable[..., Any] | None = None, *, cache: bool = False, **o
 
 
 def inner(**options: Any) -> Callable[[Function], Function]:
-    """Compile a loop into its callers, with options of `njit`; for Python it is compiled once more."""
+    """Return a decorator that compiles a loop into its callers, with options of `njit`."""
 
     def compiled(function: Function) -> Function:
         if config.DISABLE_JIT:
@@ -121,5 +129,6 @@ def inner(**options: Any) -> Callable[[Function], Function]:
     return compiled
 
 
+# both change numba for the whole process, before any loop is compiled
 compile_for_family()
 link_what_numba_writes()

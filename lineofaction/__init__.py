@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from lineofaction.gearbox.schemas.scene import SceneInput as Scene
     from lineofaction.gearbox.workbench import InputWarning, analyze, open_unit, simulate
     from lineofaction.report.document import facts, write
+    from lineofaction.report.plots import plot
     from lineofaction.report.readers import read
 
 _HOME = {
@@ -74,6 +75,7 @@ _HOME = {
     "Outputs": ("dynamics.scene", "Outputs"),
     "PitchDeviation": ("fe_contact", "PitchDeviation"),
     "PlanetarySet": ("dynamics.scene", "PlanetarySet"),
+    "plot": ("lineofaction.report.plots", "plot"),
     "read": ("lineofaction.report.readers", "read"),
     "RingGear": ("fe_contact", "RingGear"),
     "RollingBearing": ("dynamics.bearings.rolling_bearing", "RollingBearing"),
@@ -129,6 +131,7 @@ __all__ = [
     "analyze",
     "facts",
     "open_unit",
+    "plot",
     "read",
     "simulate",
     "write",

@@ -8,6 +8,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import FloatArray, Json
 from model_studies.record import in_unit, under_key
 
@@ -90,7 +91,7 @@ A = TypeVar("A", bound=EffectAblation[Any, Any])
 
 @brief
 @dataclass(frozen=True)
-class Ablation(Generic[F, A]):
+class Ablation(Plottable, Generic[F, A]):
     """All effects of a request, each toggled by itself."""
 
     nominal: F

@@ -38,14 +38,14 @@ def write_arrays(
     Parameters
     ----------
     schema : str
-        What the file is: its attribute ``schema``.
+        Name of the kind of file, its attribute ``schema``.
     stored, arrays : mapping
-        By name. Complex arrays get a last dimension of real and imaginary part; those without entries are in
-        no variable.
+        Storage and values by name. A complex array gets a last dimension of real and imaginary part. An
+        array without entries has no variable.
     rest : dict
-        Plain JSON.
+        Further content, plain JSON.
     """
-    # of all: those without entries are in no variable
+    # the shapes of all arrays, also of those without a variable
     shapes = {name: [values.dtype.str, list(values.shape)] for name, values in arrays.items()}
     documents = json.dumps({"shapes": shapes, "fields": rest}, allow_nan=False)
     attributes = {
@@ -63,7 +63,7 @@ def write_arrays(
 
 
 def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, Any], Json]:
-    """Return the schema of a file, its arrays, bit by bit the same, and the rest.
+    """Return the schema of a file, its arrays, bit by bit as written, and the rest.
 
     Raises `UnreadableFile`: the file is missing, no netCDF-4, of none of the schemas, or damaged.
     """
@@ -88,7 +88,7 @@ def read_arrays(path: Path, schemas: tuple[str, ...]) -> tuple[str, dict[str, An
 
 
 def _variable(stored: Stored, values: Any, sizes: dict[str, int]) -> Variable:
-    """Return an array as a variable; `sizes` of dimensions grow by its own."""
+    """Return an array as a variable, and enter its dimensions into `sizes`."""
     dimensions = stored.dimensions
     if np.iscomplexobj(values):
         dimensions = (*dimensions, PARTS)
@@ -99,13 +99,14 @@ def _variable(stored: Stored, values: Any, sizes: dict[str, int]) -> Variable:
 
 
 def _dimension(sizes: dict[str, int], name: str, size: int) -> str:
-    """Return the name of a dimension; one that is there in another size gets its size into its name."""
+    """Return the name of a dimension, with its size at the end if another size has that name already."""
     if sizes.setdefault(name, size) != size:
         return _dimension(sizes, f"{name}_{size}", size)
     return name
 
 
 def _restored(values: Any, kind: list[Any]) -> Any:
+    """Return an array from its variable, None if it has none; `kind` is type and shape."""
     dtype, shape = np.dtype(kind[0]), tuple(kind[1])
     if dtype.kind not in NUMBERS:
         raise ValueError(dtype)

@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Generic, Protocol, TypeVar
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from host import cpu_seconds
 from model_studies.progress import Progress
 from model_studies.record import under_key
@@ -65,13 +66,14 @@ def run_fidelities(
     Parameters
     ----------
     fidelities : sequence of Fidelity
-        By their usual cost.
+        Fidelities in the order of their usual cost.
     warm_up : callable
-        Loads and compiles the code of these fidelities beforehand, outside of their time.
+        Function that loads and compiles the code of these fidelities, so that their times do not include it.
     compute : callable
-        Runs one.
+        Function that runs one fidelity.
     failures : tuple of exception types
-        Exceptions that omit a fidelity; the last of them is raised with fewer than two results.
+        Exceptions for which a fidelity is omitted. The last of these types is raised where fewer than two
+        results are left.
 
     Returns
     -------
@@ -84,9 +86,9 @@ def run_fidelities(
     warm_up(valid)
 
     def timed(fidelity: F) -> Outcome[F, R]:
-        began = cpu_seconds()
+        start = cpu_seconds()
         result = compute(fidelity)
-        return Outcome(fidelity, result, cpu_seconds() - began)
+        return Outcome(fidelity, result, cpu_seconds() - start)
 
     by_name = {fidelity.name: fidelity for fidelity in valid}
     outcomes, failed = run_variants("ladder", by_name, timed, failures, progress)
@@ -128,10 +130,12 @@ def front_of(points: Mapping[str, tuple[float, float]]) -> tuple[str, ...]:
 
 
 def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
-    """Return the point after which time buys least: the deepest below the line between the ends, log-log.
+    """Return the point of the front after which more time lowers the error least.
 
-    The curve is the front, and from its last point on level to the slowest point. None with fewer than three
-    points, or if it nowhere bends below the line.
+    It is the point deepest below the straight line from the first to the last point of a curve, error over
+    time in logarithmic scales. The curve is the Pareto front, continued from its last point at the same error
+    to the time of the slowest point. None with fewer than three points, or where the curve does not bend
+    below the line.
     """
     front = front_of(points)
     if len(points) < 3 or any(value <= 0.0 for point in points.values() for value in point):
@@ -141,10 +145,11 @@ def knee_of(points: Mapping[str, tuple[float, float]]) -> str | None:
     time, error = np.log(np.array([*corners, (slowest, corners[-1][1])])).T
     if time[-1] <= time[0] or error[0] <= error[-1]:
         return None
-    x, y = (time - time[0]) / (time[-1] - time[0]), (error[0] - error) / (error[0] - error[-1])
-    below = (y - x)[: len(front)]
-    deepest = int(np.argmax(below))
-    return front[deepest] if below[deepest] > 1e-12 else None
+    # from 0 at the first point to 1 at the last: time spent, and error gained; on the line both are equal
+    spent, gain = (time - time[0]) / (time[-1] - time[0]), (error[0] - error) / (error[0] - error[-1])
+    depth = (gain - spent)[: len(front)]
+    deepest = int(np.argmax(depth))
+    return front[deepest] if depth[deepest] > 1e-12 else None  # a straight curve has rounding alone
 
 
 @dataclass(frozen=True)
@@ -176,19 +181,17 @@ R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
 
 @brief
 @dataclass(frozen=True)
-class Frontier(Generic[R_co]):
+class Frontier(Plottable, Generic[R_co]):
     """An accuracy study."""
 
     results: tuple[R_co, ...]
-    """Results in the order of their usual cost. The last one is the reference: its errors are its own
-    estimates.
+    """Results in the order of their usual cost. The last one is the reference of the others; its own errors
+    are estimated.
     """
     omitted: dict[str, str] = field(metadata=under_key("left_out"))
     """Name of a fidelity to the reason why it has no result."""
     knee: str | None
-    """The fidelity after which time buys least, by the largest error; None with fewer than three fidelities,
-    or if the front does not bend.
-    """
+    """The fidelity after which more time lowers the largest error least (`knee_of`), or None."""
     chosen: str | None
     """The fidelity of the request."""
 
@@ -199,7 +202,10 @@ class Frontier(Generic[R_co]):
 
 
 def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:
-    """Return the knee; differences below the reference's own error, or below `shared` errors, are ignored."""
+    """Return the name of the fidelity at the knee, by the largest errors.
+
+    Errors below that of the reference, or below `shared` errors of all fidelities, count as equal.
+    """
     errors = [error for error in (results[-1].error, *shared) if np.isfinite(error)]
     floor = max(errors, default=0.0)
     known = [result for result in results if np.isfinite(result.error)]

@@ -1,8 +1,8 @@
 """Speeds of this host for predictions of cost, measured once and stored, so that predictions agree.
 
-A short factorisation of a sparse matrix stands for all work but dense algebra, which has a measurement of its
-own (`cyclic_compliance.dense_rate` of fe_contact). Processors are shared: measured again, either differs
-by tens of per cent.
+The benchmark is a short factorization of a sparse matrix. It represents all work except dense algebra, which
+has a benchmark of its own (`cyclic_compliance.dense_rate` of fe_contact). On shared processors, a repeated
+measurement of either differs by tens of per cent.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ FILE = "host-speed.json"
 REFERENCE_SECONDS = 0.0065
 """CPU seconds of the benchmark on the host where the constants of the cost model were measured."""
 _SIDE, _REPEATS = 60, 5
+_AGREEMENT = 1.03
+"""Ratio of the two quickest runs of the benchmark at which a further run would tell nothing new."""
 _SLOWEST = 1000.0
+"""Largest slowness that counts as a measurement, and the inverse of the smallest."""
 
 
 def host_slowness(cache: Path | None) -> float:
@@ -46,10 +49,10 @@ def cached_speed(
     Parameters
     ----------
     cache : Path, optional
-        Directory in which it is kept; a missing, damaged or foreign file is made anew. None: whoever measures
-        remembers, for this process.
+        Directory of the file that stores the speed. A file that is missing, damaged or of another host is
+        written anew. None: no file; `measure` may store its value for this process.
     bounds : (float, float)
-        A kept value outside of them is measured anew.
+        Range of plausible values; a stored value outside of it is measured anew.
     """
     if cache is None:
         return measure()
@@ -65,16 +68,16 @@ def cached_speed(
 
 @lru_cache(maxsize=1)
 def measured_slowness() -> float:
-    """Run the benchmark; the quickest of several runs counts."""
+    """Return the slowness by the quickest of several runs of the benchmark."""
     laplacian = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(_SIDE, _SIDE))
     matrix = sparse.csc_array(sparse.kronsum(laplacian, laplacian))
     load = np.ones(_SIDE**2)
-    times = []
-    for _ in range(_REPEATS):
+    times: list[float] = []
+    while len(times) < 2 or (len(times) < _REPEATS and times[1] > _AGREEMENT * times[0]):
         start = time.process_time()
         splu(matrix).solve(load)
-        times.append(time.process_time() - start)
-    return min(max(min(times) / REFERENCE_SECONDS, 1.0 / _SLOWEST), _SLOWEST)
+        times = sorted([*times, time.process_time() - start])
+    return min(max(times[0] / REFERENCE_SECONDS, 1.0 / _SLOWEST), _SLOWEST)
 
 
 def _identity() -> dict[str, object]:

@@ -53,7 +53,10 @@ class _FieldVariable:
 
 
 def write_record(record: Any, path: Path, schema: str) -> None:
-    """Write a dataclass; it appears whole or not at all. Fields with `NOT_STORED` are left out."""
+    """Write a dataclass; its file appears whole or not at all.
+
+    A field whose metadata are `model_studies.record.NOT_STORED` is left out.
+    """
     columns: dict[_FieldVariable, list[Any]] = {}
     rest = _split(type(record), record, _FieldVariable(), columns)
     arrays = {variable: np.stack(rows) if variable.row else rows[0] for variable, rows in columns.items()}

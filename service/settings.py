@@ -41,7 +41,7 @@ logger = structlog.get_logger(__name__)
 
 
 class Settings(BaseSettings):
-    """The settings of the service; every `SecretStr` may be in a file too, see `service.settings`."""
+    """The settings of the service; a `SecretStr` may also be read from a file, see `service.secret_files`."""
 
     model_config = SettingsConfigDict(env_prefix="LOA_", frozen=True, extra="forbid")
 
@@ -185,7 +185,7 @@ class Settings(BaseSettings):
 
     @property
     def results_keys(self) -> tuple[str, str] | None:
-        """The credentials of the bucket of results: workers inherit no variables that hold some."""
+        """The credentials of the bucket of results, which workers need: they do not inherit the variables."""
         key, secret = self.results_access_key_id, self.results_secret_access_key
         if key is not None and secret is not None:
             return key.get_secret_value(), secret.get_secret_value()
@@ -226,7 +226,7 @@ def secret_bytes(secret: str) -> bytes:
 
 
 def note_former_settings() -> None:
-    """Say in one line of the log which variables of the environment are settings no longer."""
+    """Log in one line the environment variables that are no settings any more."""
     former = {name: remedy for name, remedy in _FORMER.items() if os.environ.get(name)}
     if former:
         logger.warning("settings without effect", settings=former)

@@ -31,42 +31,44 @@ UNRESISTED = 1e-13  # stiffness over the largest, below which no spring resists 
 
 
 class _Rest(NamedTuple):
-    """Whether forces balance, deviation (n,) from the kinematic motion, and force left, N."""
+    """The end of the search for a rest."""
 
     settled: bool
+    """Whether the forces balance."""
     displacement: FloatArray
+    """Deviation from the kinematic motion. Shape (n,)."""
     residual: float
+    """Largest unbalanced force, N."""
 
 
 def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> _Rest:
     """Return q (n,) with matrix q + bearing forces = force, `matrix` (n, n) that of all but the bearings.
 
-    Damped Newton steps reduce energy less work of the forces, which has one lowest place: no law of a bearing
-    softens. Motions that no bearing resists, wherever it is, stay zero. Where all bearings are linear,
-    steps are whole from the first on.
+    Damped Newton steps lower the potential: the energy of the springs less the work of the forces. It has a
+    single minimum, because no law of a bearing softens. Motions that no bearing resists at any displacement
+    stay zero. Where all bearings are linear, the first step is undamped and leads to the rest.
     """
-    ways = _resisted(arrays, matrix)
-    largest = float(np.max(np.abs(ways.T @ matrix @ ways), initial=1.0))
+    motions = _resisted(arrays, matrix)
+    largest = float(np.max(np.abs(motions.T @ matrix @ motions), initial=1.0))
     q, damping = np.zeros(force.size), max(largest, float(np.max(arrays.elements.stiffness, initial=0.0)))
     bearing = among(arrays.elements.law, BEARING_LAW_KINDS)
     if np.all(arrays.elements.law[bearing] == Law.LINEAR_BEARING):
         damping = 0.0
-    now = _on_bearings(arrays, matrix, q)
+    reaction = _on_bearings(arrays, matrix, q)
     for _ in range(ITERATIONS):
-        missing = ways.T @ (force - now.force)
-        residual = float(np.max(np.abs(missing), initial=0.0))
-        scale = max(float(np.max(np.abs(ways.T @ force), initial=0.0)), now.largest)
+        unbalanced = motions.T @ (force - reaction.force)
+        residual = float(np.max(np.abs(unbalanced), initial=0.0))
+        scale = max(float(np.max(np.abs(motions.T @ force), initial=0.0)), reaction.largest)
         if residual <= SETTLED * scale:
             return _Rest(True, q, residual)
-        stiffness = ways.T @ now.stiffness @ ways
-        floor = SOFTEST * float(np.max(np.abs(stiffness)))
-        damping = max(damping, floor)
-        step = ways @ np.linalg.solve(stiffness + damping * np.eye(missing.size), missing)
-        then = _on_bearings(arrays, matrix, q + step)
-        gained = float(force @ step) - (then.energy - now.energy)
-        closer = np.max(np.abs(ways.T @ (force - then.force))) < residual
-        if gained > 0.0 or closer:
-            q, now, damping = q + step, then, damping / 10.0
+        stiffness = motions.T @ reaction.stiffness @ motions
+        damping = max(damping, SOFTEST * float(np.max(np.abs(stiffness))))
+        step = motions @ np.linalg.solve(stiffness + damping * np.eye(unbalanced.size), unbalanced)
+        trial = _on_bearings(arrays, matrix, q + step)
+        potential_drop = float(force @ step) - (trial.energy - reaction.energy)
+        is_closer = np.max(np.abs(motions.T @ (force - trial.force))) < residual
+        if potential_drop > 0.0 or is_closer:
+            q, reaction, damping = q + step, trial, damping / 10.0
         else:
             damping *= 4.0
     return _Rest(False, q, residual)
@@ -78,13 +80,17 @@ def bearing_rows(arrays: SystemArrays) -> IntArray:
     return np.flatnonzero(np.repeat(bearing, np.diff(arrays.elements.first)))
 
 
-class _Answer(NamedTuple):
-    """Force (n,) and stiffness (n, n) of all springs, the energy in them, the largest force of a bearing."""
+class _Reaction(NamedTuple):
+    """The reaction of all springs, bearings among them, to a displacement."""
 
     force: FloatArray
+    """Force on the freedoms. Shape (n,)."""
     stiffness: FloatArray
+    """Derivative of the force. Shape (n, n)."""
     energy: float
+    """Energy in the springs, J."""
     largest: float
+    """Largest force, of a bearing or of the other springs, N."""
 
 
 def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
@@ -96,9 +102,10 @@ def _resisted(arrays: SystemArrays, matrix: FloatArray) -> FloatArray:
     return np.asarray(vector[:, value > UNRESISTED * value[-1]] / arrays.scale[:, None])
 
 
-def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _Answer:
+def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _Reaction:
     elements = arrays.elements
-    local, force, stiffness = local_state(arrays, 0.0, q, np.zeros(q.size)), matrix @ q, matrix.copy()
+    local = local_state(arrays, time=0.0, q=q, v=np.zeros(q.size))
+    force, stiffness = matrix @ q, matrix.copy()
     largest = float(np.max(np.abs(force / arrays.scale), initial=0.0))
     bearings = np.flatnonzero(among(elements.law, BEARING_LAW_KINDS))
     for e in bearings:
@@ -108,7 +115,7 @@ def _on_bearings(arrays: SystemArrays, matrix: FloatArray, q: FloatArray) -> _An
         stiffness += gradient.T @ local.tangent[rows, : gradient.shape[0]] @ gradient
         largest = max(largest, float(np.max(np.abs(local.force[rows]))))
     stored = _stored(by_address(elements), by_address(local), bearings)
-    return _Answer(force, stiffness, 0.5 * float(q @ matrix @ q) + stored, largest)
+    return _Reaction(force, stiffness, 0.5 * float(q @ matrix @ q) + stored, largest)
 
 
 @compiled
@@ -125,50 +132,57 @@ def linear_scene(
     arrays: SystemArrays,
     bearings: Sequence[tuple[str, BearingElement]],
     supports: Mapping[str, Bushing | PlanetBearing],
-    push: FloatArray,
+    mesh_force: FloatArray,
 ) -> Scene:
-    """Return the scene with linear bearings in place of those that are not.
+    """Return the scene with a linear bearing in place of each nonlinear one.
 
-    They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
-    the bearings under the forces `push` (n,) of the meshes and the loads at t = 0. `bearings` are the last
-    elements with the names of their bearings, `supports` these with their dampings filled in. Raises
-    `SolveError`: they do not rest.
+    The bodies rest on the bearings under the forces `mesh_force` (n,) of the meshes and the loads at t = 0. A
+    linear bearing has the tangent stiffness and damping of the nonlinear one in this rest, and by its preload
+    the same force.
+
+    `bearings` are the last elements of `arrays`, with the names of their bearings. `supports` are these
+    bearings by name, with their dampings filled in. Raises `SolveError`: the bodies do not rest.
     """
     arrays = at_mean_loads(arrays)
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
     matrix = arrays.stiffness + stiffness_across(arrays, 0.0)
-    push = push + mean_loads(arrays, 0.0)
-    rest = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
+    known_force = mesh_force + mean_loads(arrays, 0.0)
+    force = arrays.constant + torque @ arrays.load.direction + known_force
+    rest = rest_on_bearings(arrays, matrix, force)
     if not rest.settled:
         raise SolveError(f"the shafts do not rest on their bearings: {rest.residual:.3g} N are left")
     q = rest.displacement
-    local, linear = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
-    first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
-    for start, (name, at) in zip(first, bearings, strict=False):
-        linear[name] = _with_tangent(linear[name], at, local, slice(start, start + at.directions.shape[0]))
+    local, linear = local_state(arrays, time=0.0, q=q, v=np.zeros(q.size)), dict(supports)
+    first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]  # and the end of the last one
+    for start, (name, element) in zip(first, bearings, strict=False):
+        rows = slice(start, start + element.directions.shape[0])
+        linear[name] = _with_tangent(linear[name], element, local, rows)
     parts = [linear[part.name] for part in (*scene.ground_bearings, *scene.planet_bearings)]
-    none: dict[str, Any] = dict.fromkeys(BEARING_PARTS, ())
+    no_laws: dict[str, Any] = dict.fromkeys(BEARING_PARTS, ())
     return replace(
         scene,
         bushings=tuple(part for part in parts if isinstance(part, Bushing)),
         planet_bearings=tuple(part for part in parts if isinstance(part, PlanetBearing)),
         rolling_bearings=(),
-        **none,
+        **no_laws,
     )
 
 
 def _with_tangent(
-    bearing: Bushing | PlanetBearing, at: BearingElement, local: LocalState, rows: slice
+    bearing: Bushing | PlanetBearing, element: BearingElement, local: LocalState, rows: slice
 ) -> Bushing | PlanetBearing:
-    """Return `bearing` with tangents and force that an element has in its `rows`."""
-    spread, size = at.local_rows, at.directions.shape[0]
-    added = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
+    """Return `bearing` with the tangents and the force that its element has in its `rows`."""
+    seat_rows, size = (
+        element.local_rows,
+        element.directions.shape[0],
+    )  # strains of the element per seat motion
+    preload = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
     stiffness = local.tangent[rows, :size]
     symmetric = 0.5 * (stiffness + stiffness.T)
-    preload = added + (symmetric @ local.coordinate[rows] - local.force[rows]) @ spread
+    preload = preload + (symmetric @ local.coordinate[rows] - local.force[rows]) @ seat_rows
     return replace(
         bearing,
-        stiffness=matrix_rows(bearing.added_stiffness + congruent(symmetric, spread)),
-        damping=matrix_rows(seat_matrix(bearing.damping) + congruent(local.viscous[rows, :size], spread)),
+        stiffness=matrix_rows(bearing.added_stiffness + congruent(symmetric, seat_rows)),
+        damping=matrix_rows(seat_matrix(bearing.damping) + congruent(local.viscous[rows, :size], seat_rows)),
         preload=tuple(float(value) for value in preload),
     )

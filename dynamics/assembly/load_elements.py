@@ -27,22 +27,25 @@ from dynamics.mechanism.phases import LoadPhase, angle_phase, frame_phase, repea
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
+NO_MESH = -1
+"""Index of the mesh of an element that reads no position."""
+
 
 def applied_force_elements(model: Model) -> tuple[tuple[Element, ...], ForceCourseLaws]:
     """Return one element per applied force, and their laws.
 
-    The rows of an element are its force and moment as one generalized force per newton. A lever makes
-    forces of moments.
+    The rows of an element are its generalized force by force and moment, over their size in N. A moment over
+    a lever counts as a force.
     """
     mechanism = model.mechanism
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     lever, vectors = tilt_lever(scene), mechanism.vectors
     phases = repeating_phases(scene, kinematics)
     elements = []
-    size: list[float] = []  # N that the rows are divided by
-    row_count: list[int] = []  # rows that carry force
-    course_phase: list[int] = []
-    frame_turn: list[int] = []
+    size: list[float] = []  # of force and moment, N
+    row_count: list[int] = []  # rows with a force; a row whose speed the law reads may follow them
+    course_phase: list[int] = []  # index of the angle that the course of the force depends on
+    frame_turn: list[int] = []  # index of the angle of the frame that the force turns with
     senses: list[int] = []
     for entry, force in enumerate(scene.forces):
         frame = frame_phase(scene, kinematics, force)
@@ -55,13 +58,16 @@ def applied_force_elements(model: Model) -> tuple[tuple[Element, ...], ForceCour
         if isinstance(force.course, BySpeed):
             shaft = scene.shaft_index(force.course.shaft)
             sense = _running_sense(kinematics, shaft, f"forces[{entry}].course.shaft", force.course.shaft)
-            rows = np.concatenate([rows, lever * turn_row(rotors, shaft, 0.0)[None]])  # its speed is read
+            speed_row = lever * turn_row(rotors, shaft, 0.0)  # the law reads its rate
+            rows = np.concatenate([rows, speed_row[None]])
         senses.append(sense)
         course = force.course
         angle = angle_phase(scene, kinematics, force, course) if isinstance(course, Orders) else None
         course_phase.append(_position_index(scene, phases, angle))
         frame_turn.append(_position_index(scene, phases, frame))
-        elements.append(Element(Law.APPLIED_FORCE, entry, -1, rows, np.zeros(len(rows)), rows @ vectors.T))
+        elements.append(
+            Element(Law.APPLIED_FORCE, entry, NO_MESH, rows, np.zeros(len(rows)), rows @ vectors.T)
+        )
     laws = ForceCourseLaws.packed(
         [force.course for force in scene.forces],
         size=np.array(size, dtype=float),
@@ -91,7 +97,7 @@ def unbalance_elements(model: Model) -> tuple[tuple[Element, ...], UnbalanceLaws
             raise InputError(f"unbalances[{entry}].shaft", part.shaft, bound, remedy)
         moves = section_rows(rotors, shaft, rotors[shaft].shaft.origin[2] + part.position)
         rows = np.array([moves[0], moves[1], lever * moves[ROTATION]])
-        elements.append(Element(Law.UNBALANCE, entry, -1, rows, np.zeros(3), rows @ vectors.T))
+        elements.append(Element(Law.UNBALANCE, entry, NO_MESH, rows, np.zeros(3), rows @ vectors.T))
         phase.append(_position_index(scene, phases, unbalance_phase(scene, kinematics, part)))
     laws = UnbalanceLaws(
         amount=np.array([part.amount for part in scene.unbalances], dtype=float),
@@ -107,8 +113,8 @@ def unbalance_elements(model: Model) -> tuple[tuple[Element, ...], UnbalanceLaws
 def _wrench_rows(scene: Scene, rotors: Bodies, force: AppliedForce, in_frame: bool) -> FloatArray:
     """Return the generalized force of a force and moment, (p, N).
 
-    Where they turn with a frame: of their part across the axis as it is and a quarter turn on, then of the
-    part along the axis, which does not turn.
+    For a force that turns with a frame the rows are: the part across the axis, the same part turned by 90
+    degrees, and, if there is one, the part along the axis, which does not turn.
     """
     index = scene.shaft_index(force.shaft)
     moves = section_rows(rotors, index, rotors[index].shaft.origin[2] + force.position)
@@ -123,10 +129,11 @@ def _wrench_rows(scene: Scene, rotors: Bodies, force: AppliedForce, in_frame: bo
 
 
 def _steady_part(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> tuple[float, float]:
-    """Return the means of s cos a and s sin a, with the factor s and the angle a of the frame.
+    """Return the means of s cos a and s sin a over time.
 
-    They are not zero where an order of s is the rotation of the frame itself: part of such a force stands
-    still.
+    s is the factor of the force by its course and a the angle of the frame that it turns with. The means are
+    not zero where an order of s is the rotation of the frame itself: part of such a force is constant in the
+    fixed frame.
     """
     frame, course = frame_phase(scene, kinematics, force), force.course
     if frame is None or not isinstance(course, Orders):
@@ -142,7 +149,7 @@ def _steady_part(scene: Scene, kinematics: Kinematics, force: AppliedForce) -> t
 
 
 def _running_sense(kinematics: Kinematics, shaft: int, field: str, name: str) -> int:
-    """Return the sense in which a shaft turns; refuse one that stands."""
+    """Return the sense in which a shaft turns; refuse a shaft at rest."""
     sense = kinematics.sense[shaft]
     if sense == 0:
         raise InputError(field, name, "a shaft that turns", "Give a held shaft's force by time.")
@@ -150,7 +157,7 @@ def _running_sense(kinematics: Kinematics, shaft: int, field: str, name: str) ->
 
 
 def _position_index(scene: Scene, phases: tuple[LoadPhase, ...], phase: LoadPhase | None) -> int:
-    """Return the index of a phase among the positions, which the meshes begin; -1: there is no phase."""
+    """Return the index of a phase among the positions, of which those of meshes come first; -1: no phase."""
     return -1 if phase is None else len(scene.meshes) + phases.index(phase)
 
 
@@ -173,5 +180,5 @@ def speed_torque_elements(model: Model) -> tuple[tuple[Element, ...], SpeedTorqu
         gradient = np.zeros((1, column_count(rotors)))
         gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
         drift = sense * radius * kinematics.float_ratio[shaft][None, :]
-        elements.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
+        elements.append(Element(Law.SPEED_TORQUE, entry, NO_MESH, gradient, np.zeros(1), drift))
     return tuple(elements), SpeedTorqueLaws.packed(scene.speed_torques, radius)

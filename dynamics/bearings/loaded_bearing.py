@@ -30,12 +30,16 @@ from dynamics.types import FloatArray
 
 TOLERANCE = 1e-12  # unbalanced force over the load, at which the search ends
 STEPS = 500  # most Newton steps to the displacement under a load
-MIN_DAMPING = 1.0  # N/m; a tangent of unloaded elements is singular without
+FIRST_DAMPING = 1e9  # damping of the first step, N/m
+MIN_DAMPING = 1.0  # least damping, N/m; without damping the tangent of unloaded elements is singular
 
 
 @dataclass(frozen=True)
 class Reaction:
-    """The answer of a bearing of Z elements in L laminae each (balls: 1) to a displacement."""
+    """The force of a bearing under a displacement, and its derivatives.
+
+    The bearing has Z elements of L laminae each; a ball is one lamina.
+    """
 
     force: FloatArray
     """Force and moment of the inner ring on the outer, N and N m. Shape (5,)."""
@@ -46,25 +50,25 @@ class Reaction:
     s/m. Shape (5, 5).
     """
     energy: float
-    """Stored in the contacts, J."""
+    """Energy in the contacts, J."""
     slope: float
     """Derivative of the energy in the angle of the cage, J/rad."""
     load: FloatArray
-    """Normal loads of the elements, N; with copies (Z copies, L), each copy has the load of a whole element.
-    Shape (Z, L).
+    """Normal loads of the elements, N; each copy of an element has the load of a whole element. Shape (Z
+    copies, L).
     """
 
 
 class LoadedBearing:
-    """A bearing laid out for compiled evaluation.
+    """A bearing in the arrays that compiled laws read.
 
     Raises `InputError`: a ring of a row with a contact angle slides.
 
     Parameters
     ----------
     copies : int
-        Each element as so many that share its stiffness, evenly spaced. 1: the elements as they are, whose
-        force varies as the cage turns (element passing). More: its average over the passing of an element.
+        Number of evenly spaced copies that share the stiffness of an element. With 1 the force varies as the
+        cage turns (element passing). With more it is nearly the average over the passing of an element.
     locating : str
         Directions along z in which the rings are held in their seats: both, positive, negative, none. A ring
         that is not held slides to where it carries no axial force.
@@ -88,7 +92,7 @@ class LoadedBearing:
             routine.prepare(self._laws, self._local)
 
     def evaluate(self, displacement: ArrayLike, angle: float = 0.0) -> Reaction:
-        """Return the answer to `displacement` (5,) of the inner ring against the outer.
+        """Return the reaction to `displacement` (5,) of the inner ring against the outer.
 
         Parameters
         ----------
@@ -113,29 +117,30 @@ class LoadedBearing:
     ) -> FloatArray:
         """Return the displacement (5,) at which the bearing carries `load` (5,), N and N m.
 
-        Damped Newton steps reduce energy less work of the load. Where the bearing does not resist, it stays
-        at `start`, and so do the coordinates that are `fixed`, as (3, 4) by a shaft that does not tilt; their
-        load is of no account. Raises `SolveError`: no displacement carries the load.
+        Damped Newton steps lower the potential: the energy in the contacts less the work of the load. In
+        directions in which the bearing does not resist, the displacement stays at `start`. So do the
+        coordinates that are `fixed`, such as the tilts (3, 4) of a shaft that does not tilt; the load on them
+        does not count. Raises `SolveError`: no displacement carries the load.
         """
-        wanted, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
+        target, d = np.asarray(load, dtype=float), np.array(start, dtype=float)
         free = np.setdiff1d(np.arange(SEAT), fixed)
         lever = self.bearing.pitch_diameter / 2.0
-        scale = np.array([1.0, 1.0, 1.0, lever, lever])
-        floor = TOLERANCE * float(np.linalg.norm((wanted / scale)[free]))
-        damping, now = 1e9, self.evaluate(d, angle)  # N/m
+        scale = np.array([1.0, 1.0, 1.0, lever, lever])  # moments count as forces at the pitch circle
+        allowed = TOLERANCE * float(np.linalg.norm((target / scale)[free]))
+        damping, reaction = FIRST_DAMPING, self.evaluate(d, angle)
         for _ in range(STEPS):
-            missing = (wanted - now.force)[free]
-            left = float(np.linalg.norm(missing / scale[free]))
-            if left <= floor:
+            residual = (target - reaction.force)[free]
+            size = float(np.linalg.norm(residual / scale[free]))
+            if size <= allowed:
                 return d
-            damped = now.tangent + damping * np.diag(scale**2)
+            damped = reaction.tangent + damping * np.diag(scale**2)
             step = np.zeros(SEAT)
-            step[free] = np.linalg.solve(damped[np.ix_(free, free)], missing)
-            then = self.evaluate(d + step, angle)
-            gained = float(wanted @ step) - (then.energy - now.energy)
-            closer = np.linalg.norm(((wanted - then.force) / scale)[free]) < left
-            if gained > 0.0 or closer:
-                d, now, damping = d + step, then, max(damping / 10.0, MIN_DAMPING)
+            step[free] = np.linalg.solve(damped[np.ix_(free, free)], residual)
+            trial = self.evaluate(d + step, angle)
+            potential_drop = float(target @ step) - (trial.energy - reaction.energy)
+            is_closer = np.linalg.norm(((target - trial.force) / scale)[free]) < size
+            if potential_drop > 0.0 or is_closer:
+                d, reaction, damping = d + step, trial, max(damping / 10.0, MIN_DAMPING)
             else:
                 damping *= 4.0
-        raise SolveError(f"the bearing does not carry the load: {left:.3g} N are left after {STEPS} steps")
+        raise SolveError(f"the bearing does not carry the load: {size:.3g} N are left after {STEPS} steps")

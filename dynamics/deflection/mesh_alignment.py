@@ -58,15 +58,15 @@ def _axis_tilt(system: System, index: int, motion: FloatArray, strain: BearingSt
     if not names:
         tilts[COUPLING] += motion[6 * index + 3 : 6 * index + 5]
         return tilts
-    places = supports_by_name(system.rotors)
-    z = np.array([places[name][1].position for name in names])
-    at = [system.supports.name.index(name) for name in names]
+    bearings = {name: bearing for name, (_, bearing) in supports_by_name(system.rotors).items()}
+    z = np.array([bearings[name].position for name in names])
+    rows = [system.supports.name.index(name) for name in names]
     for cause, displacement in (
         (BEARING, strain.elastic),
         (CLEARANCE, strain.clearance),
         (HOUSING, strain.seat),
     ):
-        tilts[cause] += _line_tilt(z, displacement[at])
+        tilts[cause] += _line_tilt(z, displacement[rows])
     return tilts
 
 
@@ -75,43 +75,53 @@ def _line_tilt(z: FloatArray, displacement: FloatArray) -> FloatArray:
 
     u_x = tilt_y z and u_y = -tilt_x z.
     """
-    away = z - z.mean()
-    if float(np.max(np.abs(away))) == 0.0:
+    distance = z - z.mean()
+    if float(np.max(np.abs(distance))) == 0.0:
         return np.asarray(displacement[:, TILT].mean(axis=0))
-    slope = away @ displacement[:, :2] / (away @ away)
+    slope = distance @ displacement[:, :2] / (distance @ distance)  # of u_x and u_y over z
     return np.array([-slope[1], slope[0]])
 
 
 def _radial(system: System, index: int) -> list[str]:
-    """Return the bearings of a rotor that hold it across its axis."""
-    lawful = {system.supports.name[at.support] for at in system.bearings if at.directions[:, :2].any()}
+    """Return the bearings of a rotor that hold it across its axis, by a force law or by their stiffness."""
+    with_law = {
+        system.supports.name[bearing.support]
+        for bearing in system.bearings
+        if bearing.directions[:, :2].any()
+    }
     return [
         part.name
         for part in system.rotors[index].supports
-        if part.name in lawful or part.seat_stiffness[0, 0] + part.seat_stiffness[1, 1] > 0.0
+        if part.name in with_law or part.seat_stiffness[0, 0] + part.seat_stiffness[1, 1] > 0.0
     ]
 
 
 def _lead_torsion(system: System, index: int, motion: FloatArray) -> float:
     """Return the growth of the gap of mesh `index` over its common face by the twist of both shafts, m.
 
-    Towards positive z of the table's driving gear, as misalignment. The shafts as they are under the gears;
-    a torque that enters evenly along the face twists its ends as one that enters in its middle.
+    The gap grows towards positive z of the table's driving gear, as by a misalignment. The twist is that of
+    the bare shaft under each gear. The mesh torque enters the shaft at mid-face: relative to each other, the
+    ends of the face turn by the same angle if it enters evenly along the face.
     """
     scene, line, mesh = system.scene, system.lines[index], system.scene.meshes[index]
-    towards = -table_sense(scene, index, system.kinematics.mesh_sense[index])
-    half, grown = 0.5 * common_face_width(scene, index), 0.0
+    z_sense = -table_sense(
+        scene, index, system.kinematics.mesh_sense[index]
+    )  # table's z in that of the scene
+    half_width, growth = 0.5 * common_face_width(scene, index), 0.0
     for name, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
         shaft = scene.shaft_index(scene.gear(name).shaft)
         rotor = system.rotors[shaft]
-        middle, ends = float(line.point[2]) - rotor.shaft.origin[2], np.zeros(2)
+        middle = float(line.point[2]) - rotor.shaft.origin[2]
+        twist = 0.0  # angle by which the end of the face at higher z turns against the other end, rad
         if rotor.elastic is not None:  # linear between nodes: exact where torques act at nodes alone
             amplitudes = motion[elastic_columns(system.rotors, shaft)][rotor.elastic.twists]
-            turned, at = rotor.elastic.torsion.shape @ amplitudes, np.array([middle - half, middle + half])
-            ends = np.interp(at, rotor.elastic.position, turned)
-        lever = side * float(line.gradient(rotor.center)[5])
-        grown -= towards * lever * float(ends[1] - ends[0])
-    return grown
+            angles = rotor.elastic.torsion.shape @ amplitudes
+            ends = [middle - half_width, middle + half_width]
+            low, high = np.interp(ends, rotor.elastic.position, angles)
+            twist = float(high - low)
+        lever = side * float(line.gradient(rotor.center)[5])  # approach along the line per angle about z
+        growth -= z_sense * lever * twist
+    return growth
 
 
 @dataclass(frozen=True)
@@ -143,7 +153,9 @@ class MeshAlignment:
     mid-face.
     """
     in_table: bool = True
-    """Whether the table has the misalignments of the whole cycle, or no such axis."""
+    """Whether the misalignments of the whole cycle lie within those of the table; true for a table of a
+    single misalignment.
+    """
 
 
 def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain) -> MeshAlignment:
@@ -152,23 +164,23 @@ def mesh_alignment(system: System, index: int, rest: Rest, strain: BearingStrain
     line, sense = system.lines[index], system.kinematics.mesh_sense[index]
     motion = rest.motion.mean(axis=0)
     row = misalignment_gradient(scene, rotors, index, line, sense)
-    course = mesh.misalignment + rest.motion @ row
+    misalignment = mesh.misalignment + rest.motion @ row  # over the positions of the cycle
     distance_change = float(distance_gradient(scene, rotors, index, line) @ motion)
     per_tilt = misalignment_per_tilt(scene, index, line, sense)[:2]
     driver, driven = (_gear_tilt(system, gear, motion, strain) for gear in (mesh.driver, mesh.driven))
     causes = (driver - driven) @ per_tilt
     causes[SET] += mesh.misalignment
     axis = np.asarray(mesh.table.misalignment)
-    inside = axis.size == 1 or bool(np.all((course >= axis[0]) & (course <= axis[-1])))
+    in_table = axis.size == 1 or bool(np.all((misalignment >= axis[0]) & (misalignment <= axis[-1])))
     return MeshAlignment(
         name=mesh.name,
         force=float(rest.mesh_force[:, index].mean()),
-        misalignment=float(course.mean()),
-        least=float(course.min()),
-        largest=float(course.max()),
+        misalignment=float(misalignment.mean()),
+        least=float(misalignment.min()),
+        largest=float(misalignment.max()),
         causes=causes,
         center_distance_change=mesh.center_distance_change + distance_change,
         lead_torsion=_lead_torsion(system, index, motion),
         load_arm=float(rest.load_arm[:, index].mean()),
-        in_table=inside,
+        in_table=in_table,
     )

@@ -12,6 +12,7 @@ from bounds import engineering
 from bounds.pitch_tolerance import RUN_OUT_SHARE, cumulative_pitch_of_class
 from dynamics.effects.effect import MeshEffect, Verdict
 from dynamics.effects.loaded_parts import LoadedMesh
+from dynamics.identity_cache import identity_cached
 from dynamics.mechanism.additions import TEETH_AS_MADE
 from dynamics.meshes.mesh_table import MeshTable
 from dynamics.meshes.nominal_table import nominal_table, table_as_made
@@ -60,17 +61,21 @@ def _of_assumed_class(mesh: LoadedMesh) -> Verdict:
 
     Once per revolution of its shaft, whatever the load; twice the eccentricity is the run-out.
     """
-    table = mesh.mesh.table
-    error = _static_error(table, mesh.force)
-    at = np.arange(SAMPLES) / SAMPLES
-    curve = np.interp(at, np.asarray(table.position), error, period=1.0)
-    order = 2.0 * abs(np.mean(curve * np.exp(-2j * np.pi * at)))
+    order = _mesh_order(mesh.mesh.table, mesh.force)
     first, second = sizes = [_eccentricity(mesh, name) for name in (mesh.mesh.driver, mesh.mesh.driven)]
     reason = (
         f"all teeth are alike, deviations neglected: run-out of class {ASSUMED_CLASS} (assumed) makes order "
         f"1 of the shafts {_um(first)} (driver) and {_um(second)} (driven) beside mesh order 1, {_um(order)}"
     )
     return Verdict(False, False, reason, sum(sizes))
+
+
+@identity_cached
+def _mesh_order(table: MeshTable, force: float) -> float:
+    """Return mesh order 1 of the transmission error at a force, m."""
+    at = np.arange(SAMPLES) / SAMPLES
+    curve = np.interp(at, np.asarray(table.position), _static_error(table, force), period=1.0)
+    return float(2.0 * abs(np.mean(curve * np.exp(-2j * np.pi * at))))
 
 
 def _eccentricity(mesh: LoadedMesh, name: str) -> float:

@@ -21,28 +21,32 @@ from dynamics.housings.supports import in_axes
 from dynamics.types import FloatArray, IntArray
 
 INDEPENDENT = 1e-12
-"""Share of a deflection that is not in the modes kept, in modal mass, below which it adds nothing."""
+"""Least share of the modal mass of a deflection that lies outside the natural modes and the other
+deflections. Below it, two deflections are the same.
+"""
 SINGULAR = 1e-12  # relative eigenvalue, below which a direction has no stiffness
 
 
 @dataclass(frozen=True)
 class _Coordinates:
-    """Reduced coordinates: their mass and stiffness, and the housing's freedoms per coordinate, (f, r)."""
+    """Reduced coordinates of a housing with f freedoms."""
 
     mass: FloatArray
     stiffness: FloatArray
+    """`mass`, `stiffness`: Mass and stiffness of the coordinates. Shape (r, r) each."""
     motion: FloatArray
+    """Displacements of the freedoms per coordinate. Shape (f, r)."""
 
 
 def reduce_housing(housing: MeshedHousing) -> ReducedHousing:
     """Reduce a housing to its seats and modes.
 
-    Its motion is a sum of the natural modes with the seats free and the static deflections under forces on
-    the seats (Craig and Chang, AIAA paper 77-405; Rubin, AIAA Journal 13 (1975) 995-1006), projected by
-    Galerkin's method: natural frequencies kept are those of the mesh, static motion is exact, and so are
-    rigid motions. The coordinates are those of Craig and Bampton (AIAA Journal 6 (1968) 1313-1319) there.
-    Raises `InputError`: a seat, foot or point is not on the mesh, or two seats are one; `SolveError`: the
-    stiffness is singular or the modes do not converge.
+    The motion of the housing is a sum of natural modes with free seats and of static deflections under forces
+    on the seats (Craig and Chang, AIAA paper 77-405; Rubin, AIAA Journal 13 (1975) 995-1006), by Galerkin's
+    method. So the frequencies of these modes are those of the mesh, and static and rigid motions are exact.
+    In this space of motions, the coordinates are those of Craig and Bampton (AIAA Journal 6 (1968)
+    1313-1319). Raises `InputError`: a seat, foot or point is not on the mesh, or two seats are one;
+    `SolveError`: the stiffness is singular or the modes do not converge.
     """
     assembled = assemble(housing)
     modes = free_modes(assembled, housing.modes)
@@ -86,7 +90,7 @@ def _require_converged(modes: FreeModes, count: int) -> None:
 
 
 def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
-    """Return rigid motions, modes and the independent parts of the deflections, unit modal masses, (f, r)."""
+    """Return rigid motions, modes and independent parts of the deflections, (f, r), of modal masses 1."""
     basis = np.hstack([modes.rigid, modes.shape])
     rest = modes.deflection
     for _ in range(2):  # the second pass removes the rounding of the first
@@ -103,32 +107,37 @@ def _independent(housing: AssembledHousing, modes: FreeModes) -> FloatArray:
 
 
 def _craig_bampton(housing: AssembledHousing, space: FloatArray) -> _Coordinates:
-    """Change to coordinates of which the first are the motions of the seats."""
+    """Return coordinates in a space of motions (f, r), of which the first are the motions of the seats."""
     mass, stiffness = (_symmetric(space.T @ (matrix @ space)) for matrix in (housing.mass, housing.stiffness))
     seats = housing.seats @ space
-    fixed_space = null_space(seats)
-    static = np.linalg.pinv(seats)
+    fixed_space = null_space(seats)  # motions that leave the seats at rest
     inside = fixed_space.T @ stiffness @ fixed_space
-    static = static - fixed_space @ (
-        np.linalg.pinv(inside, SINGULAR, hermitian=True) @ (fixed_space.T @ stiffness @ static)
-    )
+    # a unit motion of each seat, in static equilibrium
+    static = np.linalg.pinv(seats)
+    unbalanced = fixed_space.T @ stiffness @ static
+    static = static - fixed_space @ (np.linalg.pinv(inside, SINGULAR, hermitian=True) @ unbalanced)
     _, shape = eigh(inside, fixed_space.T @ mass @ fixed_space)
-    change = np.hstack([static, fixed_space @ shape])
+    basis = np.hstack([static, fixed_space @ shape])
     return _Coordinates(
-        _symmetric(change.T @ mass @ change), _symmetric(change.T @ stiffness @ change), space @ change
+        mass=_symmetric(basis.T @ mass @ basis),
+        stiffness=_symmetric(basis.T @ stiffness @ basis),
+        motion=space @ basis,
     )
 
 
 def _material_damping(
     housing: MeshedHousing, assembled: AssembledHousing, coordinates: _Coordinates, springs: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts."""
-    square, shape = eigh(coordinates.stiffness, coordinates.mass)
-    square[: assembled.loose.shape[1]] = 0.0
-    energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)
+    """Return damping ratios of all reduced modes, and their damping matrix, without that of the mounts.
+
+    The material damps the part of a mode's energy that is not in the `springs` (r, r) of the mounts.
+    """
+    square, shape = eigh(coordinates.stiffness, coordinates.mass)  # squares of the angular frequencies
+    square[: assembled.loose.shape[1]] = 0.0  # rigid motions, which have rounding alone
+    energy = np.einsum("rm,rs,sm->m", shape, springs, shape, optimize=True)  # of mode m in the springs
     share = np.where(square > 0.0, 1.0 - energy / np.where(square > 0.0, square, 1.0), 0.0)
     ratio = housing.damping.ratios(np.clip(share, 0.0, 1.0))
-    impulse = coordinates.mass @ shape
+    impulse = coordinates.mass @ shape  # inverse of shape.T, as modal masses are 1
     damping = impulse @ np.diag(2.0 * ratio * np.sqrt(np.maximum(square, 0.0))) @ impulse.T
     return ratio, _symmetric(damping)
 
@@ -137,20 +146,22 @@ def _residuals(housing: MeshedHousing, assembled: AssembledHousing, modes: FreeM
     mesh = housing.mesh
     area, point = over_surface(mesh.points, mesh.surface)
     volume = float(np.einsum("tpi,tpi->", area, point)) / 3.0
-    # how far the motion of seats is off in rigid motions of all nodes and rigid faces
+    # the motion of seats in rigid motions of all nodes, and as it must be on rigid faces
     center = assembled.body.center
-    mean = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
-    turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
-    bodies = (np.vstack([rigid_motions(frame.position[None], center), turned]) for frame in assembled.frames)
+    seat_motion = assembled.seats @ assembled.freedoms.rigid(housing.mesh.points, center)
+    rotations = np.hstack([np.zeros((3, 3)), np.eye(3)])
+    bodies = (
+        np.vstack([rigid_motions(frame.position[None], center), rotations]) for frame in assembled.frames
+    )
     expected = np.vstack(
         [in_axes(frame) @ body for frame, body in zip(assembled.frames, bodies, strict=True)]
     )
     return ReductionChecks(
-        abs(housing.material.density * volume / assembled.body.mass - 1.0),
-        modes.eigen_residual,
-        modes.solve_residual,
-        modes.rigid_ratio,
-        float(np.abs(mean - expected).max() / np.abs(expected).max()),
+        volume=abs(housing.material.density * volume / assembled.body.mass - 1.0),
+        eigen=modes.eigen_residual,
+        solve=modes.solve_residual,
+        rigid_frequency=modes.rigid_ratio,
+        seat_rigid=float(np.abs(seat_motion - expected).max() / np.abs(expected).max()),
     )
 
 

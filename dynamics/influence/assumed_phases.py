@@ -1,7 +1,10 @@
-"""Phases that rest on assumptions, for the effect ledger: angles with their influence, and thicknesses.
+"""Assumed angles and tooth thicknesses behind the phases of meshes, for the effect ledger.
 
-The phase of a mesh is its position when no law has turned yet. It follows from the teeth, up to angles
-between gears of one shaft and tooth thicknesses that a scene does not state.
+The phase of a mesh is its position at time 0. It follows from the geometry, except for angles between gears
+of one shaft and tooth thicknesses that a scene does not state. Those are assumed; the influence of an angle
+is estimated.
+
+Axis letters: m meshes, b bearings, S speeds, H orders.
 """
 
 from __future__ import annotations
@@ -29,14 +32,15 @@ ANGLES = 239
 different phase at each angle.
 """
 AUDIBLE = 0.01
-"""Least amplitude of an order, over the largest amplitude, of which a change is reported."""
+"""Least amplitude of an order over the largest; changes of smaller orders are not reported."""
 
 
 def with_assumed_phases(ledger: Json, system: System) -> Json:
     """Return a ledger with the assumptions on phases of meshes; unchanged where geometry fixes all phases.
 
-    The change by an angle is that of the force on all bearings together, the largest over the speeds of the
-    run, from its least to its largest over all angles, of the order where that is most; by linear response.
+    The influence of an angle is the change of the level of the forces on all bearings, by linear response.
+    The level of an order is its largest over the speeds of the run. Its change is from the angle with the
+    lowest level to the angle with the highest one; the ledger has the order with the largest change.
     """
     rows = _rows(system)
     return {**ledger, "assumed": rows} if rows else ledger
@@ -68,12 +72,12 @@ def _changes(system: System) -> list[Json]:
         return []
     try:
         speed = _speeds(system)
-        at = excited(system, 0.0, FEWER, POSITIONS)
-        harmonics = _lines(at)
-        parts = _forces_by_mesh(at, speed, harmonics)
+        linear = excited(system, 0.0, FEWER, POSITIONS)
+        harmonics = _lines(linear)
+        parts = _forces_by_mesh(linear, speed, harmonics)
     except DynamicsError as error:
         return [{"reason": str(error)}] * len(angles)
-    return [_change(at, angle, harmonics, parts) for angle in angles]
+    return [_change(linear, angle, harmonics, parts) for angle in angles]
 
 
 def _speeds(system: System) -> FloatArray:
@@ -83,35 +87,34 @@ def _speeds(system: System) -> FloatArray:
     return np.asarray(speed[np.unique(np.linspace(0, speed.size - 1, SPEEDS).round().astype(int))])
 
 
-def _lines(at: Excited) -> IntArray:
+def _lines(linear: Excited) -> IntArray:
     """Return the low mesh orders of all meshes (H,), multiples of the frequency of their common period."""
-    pitches = np.unique(np.abs(at.period.pitches))
+    pitches = np.unique(np.abs(linear.period.pitches))
     return np.unique(np.arange(1, FEWER + 1)[:, None] * pitches[pitches > 0])
 
 
-def _forces_by_mesh(at: Excited, speed: FloatArray, harmonics: IntArray) -> ComplexArray:
-    """Return the forces of the bearings that each mesh excites, (m, b, 3, S, H), N."""
-    _, force = flank_forces(at, harmonics)
-    steady = swept_vibration(at, speed, np.zeros(speed.size), harmonics)
-    return np.stack(
-        [
-            bearing_forces(
-                at,
-                steady.omega,
-                np.einsum("shnf,fh->shn", steady.receptance[..., cycle.rows], force[cycle.rows]),
-            )[:, :3]
-            for cycle in at.cycles
-        ]
-    )
+def _forces_by_mesh(linear: Excited, speed: FloatArray, harmonics: IntArray) -> ComplexArray:
+    """Return the forces on bearings that each mesh excites, (m, b, 3, S, H), N."""
+    _, force = flank_forces(linear, harmonics)  # (rows of flanks, H)
+    steady = swept_vibration(linear, speed, np.zeros(speed.size), harmonics)
+    parts = []
+    for cycle in linear.cycles:
+        # displacements of the freedoms n by the forces on the flanks f of one mesh
+        motion = np.einsum("shnf,fh->shn", steady.receptance[..., cycle.rows], force[cycle.rows])
+        parts.append(bearing_forces(linear, steady.omega, motion)[:, :3])
+    return np.stack(parts)
 
 
-def _change(at: Excited, angle: AssumedAngle, harmonics: IntArray, parts: ComplexArray) -> Json:
-    """Return the order that an angle changes most, and by how much."""
-    pitches = np.array(at.period.pitches, dtype=float)
-    # a pitch of the second gear moves a mesh by `moves` of its own, of which the common period has `pitches`
+def _change(linear: Excited, angle: AssumedAngle, harmonics: IntArray, parts: ComplexArray) -> Json:
+    """Return the order whose level an angle changes most, and the change in dB."""
+    pitches = np.array(linear.period.pitches, dtype=float)
+    # an angle of one pitch of the second gear shifts a mesh by `moves` of its base pitches; the common period
+    # has
+    # `pitches` of them
     per_pitch = np.divide(angle.moves, pitches, out=np.zeros_like(pitches), where=pitches != 0.0)
     turn = np.arange(ANGLES) / ANGLES
     phase = np.exp(2j * math.pi * turn[:, None, None] * per_pitch[:, None] * harmonics)
+    # square of the sum over meshes m and n, summed over bearings b and directions d, for each angle a
     products = np.einsum("mbdsh,nbdsh->mnsh", parts.conj(), parts)
     squares = np.einsum("amh,anh,mnsh->ash", phase.conj(), phase, products, optimize=True).real
     level = np.sqrt(np.maximum(np.max(squares, axis=1), 0.0))  # (angles, H)
@@ -125,5 +128,5 @@ def _change(at: Excited, angle: AssumedAngle, harmonics: IntArray, parts: Comple
     return {
         "decibels": float(by_order[index]),
         "above_assumed": above,  # dB from the assumed angle to the loudest one
-        "order": float(harmonics[index] / at.period.counted),
+        "order": float(harmonics[index] / linear.period.counted),
     }

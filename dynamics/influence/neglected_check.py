@@ -191,12 +191,17 @@ def estimate_influences(
     -----
     The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
     """
+    return _sizes(scene, settled, partial(assemble, scene) if system is None else lambda: system, free)
+
+
+def _sizes(scene: Scene, settled: float, system: Callable[[], System], free: bool) -> dict[str, Influence]:
+    """Return `estimate_influences` of a scene, whose `system` is assembled if they are not known."""
     content = content_key(scene)
     for only_free in (False, free):  # sizes of all effects hold those of the free ones
         known = _KNOWN.get((content, settled, only_free))
         if content is not None and known is not None:
             return {name: size for name, size in known.items() if not (free and _chosen(scene, name))}
-    sizes = _estimated(scene, settled, system, free)
+    sizes = _estimated(scene, settled, system(), free)
     _remember((content, settled, free), sizes)
     return dict(sizes)
 
@@ -218,9 +223,8 @@ def _remember(key: _Key, sizes: dict[str, Influence]) -> None:
             _KNOWN.pop(next(iter(_KNOWN)), None)
 
 
-def _estimated(scene: Scene, settled: float, system: System | None, free: bool) -> dict[str, Influence]:
+def _estimated(scene: Scene, settled: float, system: System, free: bool) -> dict[str, Influence]:
     """Return `estimate_influences` of a scene that is not known."""
-    system = assemble(scene) if system is None else system
     try:
         conditions = operating_conditions(scene, leading_law(system), settled)
     except (InputError, SolveError):
@@ -410,6 +414,14 @@ class Decision:
     """Estimates; empty where there was no tolerance to decide by."""
     taken: TimeTaken = field(default_factory=TimeTaken)
     """Time that the decision took."""
+    assembled: tuple[Scene, System] | None = None
+    """Scene that was assembled for the estimates, and its system."""
+
+    def system(self) -> System:
+        """Return the system of the scene, that of the estimates where they were of the same scene."""
+        if self.assembled is not None and self.assembled[0] is self.scene:
+            return self.assembled[1]
+        return assemble(self.scene)
 
     @property
     def allowed(self) -> float:
@@ -441,10 +453,17 @@ def decide_effects(
     if allowance is None:
         return Decision(scene)
     began = TimeTaken.now()
+    systems: list[System] = []
+
+    def system() -> System:
+        systems.append(assemble(scene))
+        return systems[0]
+
     if estimates is None:
         lean = scene.tolerance is None and scene.outputs.receipt != "full"
-        estimates = partial(estimate_influences, free=lean)
-    influences = estimates(scene)
+        influences: Mapping[str, Influence] = _sizes(scene, 0.0, system, free=lean)
+    else:
+        influences = estimates(scene)
     free = {name: influence for name, influence in influences.items() if not _chosen(scene, name)}
     automatic = {
         name: f"on for the tolerance of {allowance.text}: influence {influence.text}"
@@ -455,8 +474,9 @@ def decide_effects(
     for name in _neglected(free, allowance):
         choices[name] = "off"
         automatic[name] = f"neglected for the tolerance of {allowance.text}: influence {free[name].text}"
-    chosen = replace(scene, effects={**scene.effects, **choices})
-    return Decision(chosen, automatic, influences, TimeTaken.now().since(began))
+    chosen = replace(scene, effects={**scene.effects, **choices}) if choices else scene
+    assembled = (scene, systems[0]) if systems else None
+    return Decision(chosen, automatic, influences, TimeTaken.now().since(began), assembled)
 
 
 def _neglected(free: Mapping[str, Influence], allowance: _Allowance) -> list[str]:

@@ -40,6 +40,7 @@ class Routine:
         self._slot = np.zeros(1, dtype=np.int64)
         self.symbol = f"{function.__module__}.{function.__qualname__}"
         llvmlite.binding.add_symbol(self.symbol, self._slot.ctypes.data)
+        # what numba needs in compiled callers: the types of a call, and its instructions
         infer_global(self, types.Function(_typing(self)))
         lower_builtin(self, types.VarArg(types.Any))(_lowering(self))
 
@@ -49,7 +50,10 @@ class Routine:
         return bool(self._slot[0])
 
     def prepare(self, *tuples: Any) -> None:
-        """Compile it or read the cache, once; `tuples` show the layout of those it takes, in their order."""
+        """Compile the routine or read it from the cache, once.
+
+        `tuples` are examples of the tuples that it takes, in their order: they have the same layout.
+        """
         if self.prepared:
             return
         values = iter(tuples)

@@ -41,11 +41,14 @@ class _Absorber:
 def element_absorbers(
     system: System, linear: LinearSystem, cycles: tuple[FlankCycle, ...], time: float
 ) -> Iterator[_Absorber]:
-    """Yield the force elements except those of rotating frames."""
+    """Yield the force elements except those of rotating frames.
+
+    `cycles` are the tangents of the flanks over a cycle; the flanks are the first elements.
+    """
     arrays, elements = system.arrays, system.arrays.elements
-    rest = np.zeros(arrays.mass.shape[0])
-    local = local_state(arrays, time, linear.equilibrium.displacement, rest)
-    tangents = local.tangent - swept_by_frames(elements, local, local.pace)
+    at_rest = np.zeros(arrays.mass.shape[0])
+    local = local_state(arrays, time, q=linear.equilibrium.displacement, v=at_rest)
+    tangents = local.tangent - swept_by_frames(elements, local, local.pace)  # elastic parts alone
     for e, (first, end) in enumerate(zip(elements.first[:-1], elements.first[1:], strict=True)):
         if elements.law[e] == Law.ROTATING_FRAME:
             continue
@@ -59,9 +62,9 @@ def _element_part(system: System, element: int) -> tuple[str, str]:
     """Return the name of the part that a force element belongs to, and its kind."""
     scene, elements = system.scene, system.arrays.elements
     law, entry, count = elements.law[element], int(elements.entry[element]), elements.law.size
-    on_bearings = (*system.housed, *system.bearings)
-    if element >= count - len(on_bearings):
-        return on_bearings[element - count].name, "bearing"
+    bearings = (*system.housed, *system.bearings)  # in the order of the last elements
+    if element >= count - len(bearings):
+        return bearings[element - count].name, "bearing"
     if law in FLANKS:
         return scene.meshes[int(elements.mesh[element])].name, "mesh"
     if law == Law.FRAME_COUPLING:
@@ -73,19 +76,20 @@ def _element_part(system: System, element: int) -> tuple[str, str]:
 
 
 def bearing_absorbers(system: System) -> Iterator[_Absorber]:
-    """Yield linear bearings: springs one by one, and bearings with matrices by group."""
+    """Yield the linear bearings on the ground: single ones with springs, groups with matrices."""
     supports, seats, keep = system.supports, system.seats, system.freedoms.keep
     grounded = ~supports.carried
     for index in np.flatnonzero(grounded):
         damping = np.diag(supports.damping[index])
         yield _damper(supports.name[index], "bearing", keep(supports.motion[index]), damping)
-    on = np.repeat(grounded[seats.support], SEAT)
-    for name, at in seats.group:
-        yield _damper(name, "bearing", keep(seats.motion[at]), seats.damping[at, at] * on[at])
+    grounded_rows = np.repeat(grounded[seats.support], SEAT)
+    for name, rows in seats.group:
+        damping = seats.damping[rows, rows] * grounded_rows[rows]
+        yield _damper(name, "bearing", keep(seats.motion[rows]), damping)
 
 
 def coupling_absorbers(system: System) -> Iterator[_Absorber]:
-    """Yield couplings, as far as no frame turns them, and elastic drives."""
+    """Yield the couplings that are no force elements, and the elastic drives."""
     couplings, keep = system.couplings, system.freedoms.keep
     for name, motion, damping in zip(couplings.name, couplings.motion, couplings.damping, strict=True):
         yield _damper(name, "coupling", keep(motion), damping)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.harmonic_response import (
@@ -40,7 +41,7 @@ NOTHING_EXCITES = "such that one excites: transmission errors and loads are cons
 
 @brief
 @dataclass(frozen=True)
-class ForcedResponse(HarmonicResponse, ArrayFile):
+class ForcedResponse(HarmonicResponse, ArrayFile, Plottable):
     """Harmonic response over S speeds with a measure of its validity."""
 
     SCHEMA = "lineofaction forced response"

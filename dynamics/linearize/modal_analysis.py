@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import integer, positive
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
@@ -46,7 +47,7 @@ def resolved_to(system: System, speed: FloatArray, orders: int, highest: float |
 
 @brief
 @dataclass(frozen=True)
-class ModalAnalysis(ArrayFile):
+class ModalAnalysis(ArrayFile, Plottable):
     """Modes of a system about its static equilibrium; fields state unit, meaning and dimensions of arrays.
 
     n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.

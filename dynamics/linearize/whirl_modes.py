@@ -18,7 +18,7 @@ from dynamics.motion.force_balance import block_diagonal, swept_by_frames
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import ComplexArray, FloatArray, IntArray
 
-QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # J: turns a vector (x, y) by 90 degrees about +z
 
 
 LATERAL, TILT = (0, 1), (3, 4)  # indices among the freedoms of a rotor: x and y, tilt_x and tilt_y
@@ -86,7 +86,8 @@ def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
     and a ground damper c seen from the frame c W J u. Constant centripetal forces are left out: they move
     the equilibrium, not the modes.
     """
-    return terms_at(system, observe_laws(system.arrays, np.array([time]))[2, :, 0])
+    _, _, law_speed, _ = observe_laws(system.arrays, np.array([time]))  # (laws, 1) each
+    return terms_at(system, law_speed[:, 0])
 
 
 def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -116,8 +117,9 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
             stiffening += damping * moves.T @ QUARTER_TURN @ moves
     seats = system.seats
     if any(carrier is not None for carrier in seats.frame):
-        of_frame = [0.0 if carrier is None else float(speed[carrier]) for carrier in seats.frame]
-        stiffening += seats.motion.T @ (seats.turned_damping * np.repeat(of_frame, SEAT)) @ seats.motion
+        frame_speed = [0.0 if carrier is None else float(speed[carrier]) for carrier in seats.frame]
+        column_speed = np.repeat(frame_speed, SEAT)  # (5 s,): each seat has `SEAT` columns
+        stiffening += seats.motion.T @ (seats.turned_damping * column_speed) @ seats.motion
     for index, rotor in enumerate(system.rotors):
         if rotor.elastic is not None and rotor.elastic.bends:
             gyroscopic += _along_the_shaft(system, index, float(speed[index]))
@@ -127,8 +129,10 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
 
 def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
     """Return the stiffness (n, n) by dampers across frames, at the frames' angles at t = 0."""
-    arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
-    local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
+    arrays = system.arrays
+    zero = np.zeros(arrays.mass.shape[0])
+    local = local_state(arrays, time=0.0, q=zero, v=zero)
+    pace = arrays.reference.per_radian @ law_speed  # base pitches of meshes and turns of frames per second
     swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))
     return np.asarray(arrays.direction.T @ swept @ arrays.direction)
 
@@ -136,8 +140,8 @@ def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
 def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:
     """Gyroscopic terms of a shaft that bends, beyond those of its tilt as a rigid body, (N, N)."""
     rows, inertia = pair_rows(system.rotors, index), spun_inertia(system.rotors[index])
-    inertia[0, 0] = 0.0
-    across = QUARTER_TURN @ np.tensordot(inertia, rows, axes=1)
+    inertia[0, 0] = 0.0  # the tilt as a rigid body, which `terms_at` has counted
+    across = QUARTER_TURN @ np.tensordot(inertia, rows, axes=1)  # (1 + b, 2, N)
     return np.asarray(-spin * np.tensordot(rows, across, axes=((0, 1), (0, 1))))
 
 
@@ -183,12 +187,14 @@ def _senses(
     candidates = [
         (rotor, *(system.freedoms.find(rotor, kind) for kind in kinds))
         for rotor in range(len(system.rotors))
-        for kinds in ((0, 1), (3, 4))
+        for kinds in (LATERAL, TILT)
     ]
+    # rotor, and columns of its motions about x and y; a freedom that is not computed has column -1
     pairs = np.array([pair for pair in candidates if min(pair[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
     if pairs.size == 0 or not clusters:
         return np.zeros(len(clusters))
-    (rotor, i, j), first = pairs.T, [cluster[0] for cluster in clusters]
+    rotor, i, j = pairs.T
+    first = [cluster[0] for cluster in clusters]
     turned, size, share = (
         np.add.reduceat(values, first, axis=0)
         for values in (

@@ -1,6 +1,9 @@
 """A hull with fewer panels, for models whose cost grows with the square of their number.
 
-A cell is the part of the surface around a seed. Its node lies where the planes of its faces meet best.
+The surface of the fine hull is divided into cells, each of the nodes that are nearest to a seed along the
+surface. A cell becomes one node of the coarse hull, where the planes of the cell's panels meet best.
+
+Shapes: N nodes and T panels of a hull, C cells, r reduced coordinates of the housing's motion.
 """
 
 from __future__ import annotations
@@ -28,17 +31,17 @@ surface.
 THIN = 0.05
 """Height over longest edge below which a panel is thin."""
 ROUNDS = 4
-"""A row of nodes on a straight edge needs several exchanges."""
+"""Most rounds of exchanges of diagonals; a row of nodes on a straight edge needs several."""
 LONGEST = 2.0
-"""Longest edge of a coarse hull over its mean distance of nodes."""
+"""Longest edge of a coarse hull over its mean distance of nodes, as expected."""
 ATTEMPTS = 16
 """Most attempts to split cells; walls of gear cases took up to six."""
 FEWER = 0.5
-"""Nodes of a coarse hull over those of the fine one, at most: otherwise the fine one is taken."""
+"""Most nodes of a coarse hull over those of the fine one; with more of them the fine hull is taken."""
 
 
 def surface_cells(hull: Hull, count: int) -> IntArray:
-    """Return the cell of every node, (N,), numbers from 0 on; at most `count` of about the same size."""
+    """Return the number of the cell of every node, (N,); at most `count` cells of about the same size."""
     share = _node_areas(hull)
     maximum = min(count, int(np.count_nonzero(share)))
     seeds = np.random.default_rng(0).choice(len(share), maximum, replace=False, p=share / share.sum())
@@ -46,7 +49,10 @@ def surface_cells(hull: Hull, count: int) -> IntArray:
 
 
 def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
-    """Return the cell of every node, (N,), where each of the `chosen` (C,) cells has become two."""
+    """Return the cell of every node, (N,), after each of the `chosen` (C,) cells was divided in two.
+
+    The seeds of the two are the nodes of the cell nearest to its middle and farthest from it.
+    """
     middle = _means(cell, _node_areas(hull), hull.nodes)
     distance = np.linalg.norm(hull.nodes - middle[cell], axis=1)
     nearest, farthest = _first_nodes(cell, distance), _first_nodes(cell, -distance)
@@ -54,7 +60,11 @@ def split_cells(hull: Hull, cell: IntArray, chosen: BoolArray) -> IntArray:
 
 
 def _cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
-    """Return a node for each cell, next to the planes of all its panels, m: edges and corners stay sharp."""
+    """Return a node for each cell, (C, 3) in m, next to the planes of all its panels.
+
+    Edges and corners so stay sharp. The node minimizes the sum of the squared distances from the planes,
+    weighted by the areas of the panels; a panel counts for the cell of each of its corners.
+    """
     count, owner = int(cell.max()) + 1, cell[hull.triangles].ravel()
     planes, offset = np.zeros((count, 3, 3)), np.zeros((count, 3))
     weighted = np.repeat(hull.area_vectors, 3, axis=0)
@@ -63,6 +73,7 @@ def _cell_positions(hull: Hull, cell: IntArray) -> FloatArray:
     middle = _means(cell, _node_areas(hull), hull.nodes)
     height = np.sum(normals * (np.repeat(hull.centers, 3, axis=0) - middle[owner]), axis=1)
     np.add.at(offset, owner, weighted * height[:, None])
+    # in directions in which a flat cell has no planes, the pseudoinverse leaves the node in the middle
     step = np.einsum("cij,cj->ci", np.linalg.pinv(planes, rcond=FLAT, hermitian=True), offset)
     reach = np.zeros(count)
     np.maximum.at(reach, cell, np.linalg.norm(hull.nodes - middle[cell], axis=1))
@@ -77,12 +88,13 @@ def _nearest_nodes(hull: Hull, cell: IntArray, positions: FloatArray) -> IntArra
 
 def _first_nodes(cell: IntArray, value: FloatArray) -> IntArray:
     """Return the node of the least value in each cell, (C,)."""
-    order = np.lexsort((value, cell))
-    return np.asarray(order[np.unique(cell[order], return_index=True)[1]])
+    order = np.lexsort((value, cell))  # by cell, then by value
+    _, first = np.unique(cell[order], return_index=True)
+    return np.asarray(order[first])
 
 
 def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
-    """Return the cells of seeds after repeated moves to the middle of their cells."""
+    """Return the cells of seeds, (N,), after the seeds moved to the middle of their cells so many times."""
     starts, ends = hull.triangles.ravel(), np.roll(hull.triangles, -1, axis=1).ravel()
     pairs = np.unique(np.sort(np.stack([starts, ends], axis=1), axis=1), axis=0)
     length = np.linalg.norm(hull.nodes[pairs[:, 0]] - hull.nodes[pairs[:, 1]], axis=1)
@@ -95,11 +107,11 @@ def settled_cells(hull: Hull, seeds: IntArray, steps: int) -> IntArray:
 
 
 def _next_seed(edges: csr_array, seeds: IntArray) -> IntArray:
-    """Return the number of the next seed of every node; parts of the surface without a seed are one cell."""
+    """Return the number of the nearest seed of every node; surfaces without a seed are one cell."""
     _, _, source = dijkstra(edges, directed=False, indices=seeds, min_only=True, return_predecessors=True)
-    number = np.full(edges.shape[0], len(seeds))  # number of the nodes that no seed reaches
+    number = np.full(edges.shape[0], len(seeds))
     number[seeds] = np.arange(len(seeds))
-    reached = source >= 0  # a negative number of scipy's says that no seed is connected
+    reached = source >= 0  # scipy marks a node that is connected with no seed by a negative number
     cell = np.where(reached, number[np.where(reached, source, 0)], len(seeds))
     return np.unique(cell, return_inverse=True)[1]
 
@@ -112,15 +124,15 @@ def _node_areas(hull: Hull) -> FloatArray:
 
 def _means(cell: IntArray, weight: FloatArray, values: FloatArray) -> FloatArray:
     """Return the weighted means of values (N, 3) over each cell, (C, 3)."""
-    total = np.maximum(np.bincount(cell, weight), 1e-300)
+    total = np.maximum(np.bincount(cell, weight), 1e-300)  # a cell of nodes without panels has weight 0
     return np.stack([np.bincount(cell, weight * values[:, axis]) / total for axis in range(3)], axis=1)
 
 
 def _without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
-    """Return triangles (T, 3) in which thin ones share their longest edge no more.
+    """Return the triangles (T, 3) after thin ones were divided otherwise.
 
-    A thin triangle and the one beyond its longest edge form a quadrilateral, which gets its other diagonal.
-    What was closed stays closed.
+    A thin triangle and its neighbor at its longest edge form a quadrilateral, which is divided along its
+    other diagonal. A closed surface stays closed.
     """
     result = np.array(triangles)
     for _ in range(ROUNDS):
@@ -132,7 +144,7 @@ def _without_thin(nodes: FloatArray, triangles: IntArray) -> IntArray:
 
 
 def _longest_first(nodes: FloatArray, triangles: IntArray) -> tuple[IntArray, BoolArray]:
-    """Return triangles turned so that their longest edge comes first, and which are thin."""
+    """Return the triangles, turned so that the longest edge comes first, and which of them are thin."""
     length = np.linalg.norm(nodes[np.roll(triangles, -1, axis=1)] - nodes[triangles], axis=2)
     first = np.argmax(length, axis=1)
     turned = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
@@ -143,7 +155,7 @@ def _longest_first(nodes: FloatArray, triangles: IntArray) -> tuple[IntArray, Bo
 
 def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
     """Exchange the diagonals of thin triangles with their neighbors, each of which takes part once."""
-    beyond = {
+    beyond = {  # by directed edge: the triangle that has it, and the corner opposite to it
         (int(nodes[k]), int(nodes[(k + 1) % 3])): (index, int(nodes[(k + 2) % 3]))
         for index, nodes in enumerate(result)
         for k in range(3)
@@ -151,7 +163,7 @@ def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
     done: set[int] = set()
     for index in thin.tolist():
         p, q, top = (int(node) for node in turned[index])
-        other, far = beyond.get((q, p), (index, top))
+        other, far = beyond.get((q, p), (index, top))  # the neighbor; at an open edge the triangle itself
         if index in done or other in done or far == top or other == index:
             continue
         if (top, far) in beyond or (far, top) in beyond:
@@ -163,14 +175,18 @@ def _exchange(turned: IntArray, result: IntArray, thin: IntArray) -> None:
 
 @dataclass(frozen=True)
 class Coarseness:
-    """Coarseness of a hull: least longest edges in a wavelength, least cells for the shape of a body."""
+    """The coarseness of a hull."""
 
     edges: float = PANELS_PER_WAVELENGTH
+    """Least number of longest edges in a wavelength."""
     cells: int = 800
+    """Least number of cells, which the shape of a body needs at any frequency."""
 
 
 OF_PANELS = Coarseness()
-"""Coarseness for models by panels: with 800 cells a sphere loses 1 % of its volume, 0.1 dB as a dipole."""
+"""Coarseness for models by panels. With 800 cells a sphere loses 1 % of its volume, and the sound of its
+motion as a dipole 0.1 dB.
+"""
 
 
 @dataclass(frozen=True)
@@ -185,15 +201,17 @@ class RadiatingHull:
 def radiating_hull(
     outer: OuterHull, highest_frequency: float, sound_speed: float, coarseness: Coarseness = OF_PANELS
 ) -> RadiatingHull:
-    """Return a coarse closed hull that resolves a frequency in Hz; the fine one if that is hardly finer.
+    """Return a coarse closed hull that resolves a frequency in Hz, or the fine hull.
 
-    Cells are split where edges come out too long, or where the hull meets itself around a thin part.
+    The fine hull is returned where a coarse one would need more than `FEWER` of its nodes. Cells are split
+    where edges are too long, or where the coarse hull is open because it meets itself around a thin part.
     """
     fine, maximum = RadiatingHull(outer.hull, outer.shapes), FEWER * len(outer.hull.nodes)
     longest = sound_speed / highest_frequency / coarseness.edges * ROUNDED_DOWN
-    count = max(
-        int(np.ceil(outer.hull.area / (0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2))), coarseness.cells
-    )
+    cell_area = (
+        0.5 * np.sqrt(3.0) * (longest / LONGEST) ** 2
+    )  # nodes at this distance in a triangular lattice
+    count = max(int(np.ceil(outer.hull.area / cell_area)), coarseness.cells)
     if count >= maximum:
         return fine
     cell = surface_cells(outer.hull, count)
@@ -209,21 +227,21 @@ def radiating_hull(
 
 
 def _coarse_hull(outer: OuterHull, cell: IntArray) -> tuple[RadiatingHull, IntArray]:
-    """Return a hull that has a node for each cell of the nodes, and the cell of each of its nodes.
+    """Return a hull with one node for each cell, and the cell of each of its nodes.
 
-    A cell, which lies along the surface so that thin walls stay apart, becomes the node nearest to the
-    planes of its panels: edges stay sharp. Where three cells meet there is a panel. It moves as the surface
-    does next to its corners; a uniform velocity restores the volume that each coordinate displaces, on which
-    sound of long waves depends. Cells that meet fewer than two others have no node.
+    Cells lie along the surface, so that both sides of a thin wall stay apart. Where three cells meet there is
+    a panel; a cell that meets fewer than two others has no node. A panel moves as the fine surface next to
+    its corners. A uniform velocity is added so that each coordinate displaces the same volume as on the fine
+    hull: sound of long waves depends on that volume.
     """
     hull = outer.hull
     triangles = cell[hull.triangles]
     has_area = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
     used, corners = np.unique(triangles[has_area], return_inverse=True)
     nodes = _cell_positions(hull, cell)
-    near = _nearest_nodes(hull, cell, nodes)[used]
+    fine_node = _nearest_nodes(hull, cell, nodes)[used]
     corners = _without_thin(nodes[used], corners.reshape(-1, 3))
     coarse = Hull(nodes[used], corners[~flat_triangles(nodes[used], corners)])
-    shapes = OuterHull(coarse, outer.motion[near], 0.0, 0.0).shapes
+    shapes = OuterHull(coarse, outer.motion[fine_node], inner_area=0.0, cap_area=0.0).shapes
     lost = hull.areas @ outer.shapes - coarse.areas @ shapes
     return RadiatingHull(coarse, shapes + lost / coarse.area), used

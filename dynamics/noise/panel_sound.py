@@ -1,4 +1,4 @@
-"""Through which panels and regions of a housing its sound leaves at one order and speed."""
+"""Sound power of the panels and regions of a housing at one order and speed."""
 
 from __future__ import annotations
 
@@ -112,9 +112,9 @@ def panel_sound(
 ) -> PanelSound:
     """Return the sound power of the panels at one speed and order.
 
-    Between the frequencies of the radiation resistance powers of panels are interpolated as it is: their sum
-    is the power that `radiated_sound` has there. At lines that boundary elements correct, shares of panels
-    are those of the model. Raises `InputError` as `radiated_sound` does.
+    The powers of panels are computed at the frequencies of the radiation resistance and interpolated between
+    them, as the resistance is. Their sum is the power of `radiated_sound`. Where boundary elements correct
+    that power, the panels share it as by the model. Raises `InputError` as `radiated_sound` does.
 
     Parameters
     ----------
@@ -127,20 +127,20 @@ def panel_sound(
     """
     air, outer = air or Air(), outer_hull(housing)
     velocity, hertz = _coordinate_velocity(response, housing, bearings, at), float(response.frequency[at])
-    weights = radiation.weights(hertz)
-    resolved = [
-        weighted for weighted in weights if radiation.hull_at(outer, weighted[0], air.sound_speed)
-    ] or weights
-    panels = radiation.hull_at(outer, resolved[-1][0], air.sound_speed)
-    if panels is None:
+    weights = radiation.weights(hertz)  # frequencies of the resistance, and their weights at this one
+    resolved = [(knot, weight) for knot, weight in weights if radiation.hull_at(outer, knot, air.sound_speed)]
+    resolved = resolved or list(weights)
+    highest, _ = resolved[-1]
+    panels = radiation.hull_at(outer, highest, air.sound_speed)
+    if panels is None:  # no mesh resolves the frequency
         panels, model = RadiatingHull(outer.hull, outer.shapes), EquivalentRadiatedPower()
-    moving = {knot: np.asarray(panels.shapes @ radiation.radiating(velocity, knot)) for knot, _ in resolved}
-    parts = [weight * panel_power(model, panels.hull, knot, moving[knot], air) for knot, weight in resolved]
-    power = np.sum(parts, axis=0)
+    power = np.zeros(len(panels.shapes))
+    for knot, weight in resolved:
+        panel_velocity = np.asarray(panels.shapes @ radiation.radiating(velocity, knot))
+        power = power + weight * panel_power(model, panels.hull, knot, panel_velocity, air)
     total_power = float(radiation.power(np.array([hertz]), velocity[None])[0])
-    return PanelSound(
-        panels.hull, np.asarray(power * (total_power / power.sum() if total_power > 0.0 else 1.0))
-    )
+    scale = total_power / power.sum() if total_power > 0.0 else 1.0
+    return PanelSound(panels.hull, np.asarray(power * scale))
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class Region:
     """Connected panels that face the same axis of the mesh rather than any other."""
 
     facing: str
-    """The axis, such as "+y"."""
+    """Axis that it faces, such as "+y"."""
     points: tuple[str, ...]
     """Named points of the housing next to it."""
     normal: FloatArray
@@ -158,37 +158,36 @@ class Region:
     area: float
     """Area of the region, m^2."""
     power: float
-    """W, negative where it takes power from the others."""
+    """Sound power, W; negative where the region takes power from others."""
 
 
 def regions(sound: PanelSound, points: Sequence[PointMotion] = ()) -> tuple[Region, ...]:
-    """Return the regions of a hull, those that radiate most first; their powers add up to the whole.
+    """Return the regions of a hull by falling power; the sum of their powers is that of the hull.
 
-    A region below 2 % of the hull's area joins the neighbor with the longest common edge. `points`: named
-    points; each belongs to the region of the panel with the nearest center.
+    A region below `SMALL` of the hull's area joins the neighbor with the longest common edge. Each of the
+    named `points` belongs to the region of the panel with the nearest center.
     """
     number = _region_numbers(sound.hull)
     region_by_point = {
         point.name: int(number[np.argmin(np.linalg.norm(sound.hull.centers - point.position, axis=1))])
         for point in points
     }
-    made = [
-        _region(
-            sound, number == index, tuple(name for name, where in region_by_point.items() if where == index)
-        )
-        for index in np.unique(number)
-    ]
-    return tuple(sorted(made, key=lambda region: -region.power))
+    every_region = []
+    for index in np.unique(number):
+        names = tuple(name for name, region in region_by_point.items() if region == index)
+        every_region.append(_region(sound, number == index, names))
+    return tuple(sorted(every_region, key=lambda region: -region.power))
 
 
 def _region_numbers(hull: Hull) -> IntArray:
-    one, other, nodes = shared_edges(hull.triangles)
+    """Return the number of the region of each panel, (T,)."""
+    first, second, nodes = shared_edges(hull.triangles)
     length = np.linalg.norm(hull.nodes[nodes[:, 0]] - hull.nodes[nodes[:, 1]], axis=1)
     faces = _facing(hull.normals)
-    same = faces[one] == faces[other]
-    joined = coo_array((np.ones(same.sum()), (one[same], other[same])), shape=(len(faces),) * 2)
-    number = connected_components(joined, directed=False)[1]
-    return _without_small(number.astype(int), hull.areas, one, other, length)
+    same = faces[first] == faces[second]
+    adjacent = coo_array((np.ones(same.sum()), (first[same], second[same])), shape=(len(faces),) * 2)
+    number = connected_components(adjacent, directed=False)[1]
+    return _without_small(number.astype(int), hull.areas, first, second, length)
 
 
 def _facing(normals: FloatArray) -> IntArray:
@@ -197,17 +196,20 @@ def _facing(normals: FloatArray) -> IntArray:
 
 
 def _without_small(
-    number: IntArray, areas: FloatArray, one: IntArray, other: IntArray, length: FloatArray
+    number: IntArray, areas: FloatArray, first: IntArray, second: IntArray, length: FloatArray
 ) -> IntArray:
-    """Join small regions, the smallest first, to their neighbors."""
+    """Join small regions, the smallest first, to their neighbors; return the new numbers of panels (T,).
+
+    `first` and `second` (E,) are the panels on both sides of edges of a `length` (E,) in m.
+    """
     while True:
         area = np.bincount(number, areas)
         small = np.flatnonzero((area > 0.0) & (area < SMALL * areas.sum()))
         for region in small[np.argsort(area[small], kind="stable")]:
-            near = (number[one] == region) != (number[other] == region)
-            if np.any(near):
-                beyond = np.where(number[one] == region, number[other], number[one])[near]
-                number[number == region] = np.argmax(np.bincount(beyond, length[near]))
+            border = (number[first] == region) != (number[second] == region)
+            if np.any(border):
+                neighbor = np.where(number[first] == region, number[second], number[first])[border]
+                number[number == region] = np.argmax(np.bincount(neighbor, length[border]))
                 break
         else:
             return number
@@ -216,7 +218,7 @@ def _without_small(
 def _region(sound: PanelSound, panels: FloatArray, points: tuple[str, ...]) -> Region:
     hull = sound.hull
     area, vector = hull.areas[panels], hull.area_vectors[panels].sum(axis=0)
-    normal = vector / max(float(np.linalg.norm(vector)), 1e-300)
+    normal = vector / max(float(np.linalg.norm(vector)), 1e-300)  # 0 for a region around a whole body
     side, axis = divmod(int(_facing(normal[None])[0]), 3)
     return Region(
         "+-"[side] + AXES[axis],

@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds import at_least
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from dynamics.acoustics import Hull, OrderPower, sound_power_level
 from dynamics.acoustics.levels import a_weighting
 from dynamics.errors import InputError
@@ -72,7 +73,7 @@ def _no_bins() -> FloatArray:
 
 @brief
 @dataclass(frozen=True)
-class RadiatedSound(ArrayFile):
+class RadiatedSound(ArrayFile, Plottable):
     """Sound power at S speeds in H orders, each as in a steady state; b bearings and m modes of housings.
 
     Orders add up in power, and so do several housings. Shares of bearings add up to the power; to those of

@@ -1,4 +1,4 @@
-"""Sound power of a housing over the time of a run, all that its bearing forces hold, in third octaves."""
+"""Sound power of a housing over the time of a run, in third octaves."""
 
 from __future__ import annotations
 
@@ -19,11 +19,16 @@ from dynamics.types import BoolArray, FloatArray, IntArray
 from dynamics.vibration import finer_seat_forces, motion_pieces
 
 FINER = 2
-"""Factor on the run's rate, at which the force is a cubic spline: 0.6 % low at most, 0.05 dB."""
+"""Factor on the sample rate of the run. A cubic spline takes the forces to this rate, with amplitudes that
+are low by at most 0.6 %, 0.05 dB.
+"""
 BLOCK = 0.1
 """Length of a block, s: its lines are 10 Hz apart."""
 LEAKAGE = 3
-"""Lines into which a mean and a drift leak under Hann's window."""
+"""Number of the lowest lines into which a mean and a drift leak under Hann's window."""
+MIN_SAMPLES = 4 * LEAKAGE
+"""Least samples of a block: half of its lines, those below the Nyquist frequency, are then twice `LEAKAGE`.
+"""
 
 
 @dataclass(frozen=True)
@@ -91,11 +96,11 @@ def sound_over_time(
 ) -> SoundOverTime:
     """Return the sound power of a housing over a run: orders, impacts, sidebands, free vibration.
 
-    The modes of the housing follow the forces exactly in time. Blocks of their velocities overlap by half; a
-    Hann window makes them spectra, whose lines radiate as steady vibrations: the power of a block is its mean
-    under the squared window. Shorter blocks follow a fast run-up, longer ones have lower bands. Raises
-    `InputError`: the run is shorter than a block, no band lies in the range, or as `run_seat_forces` and
-    `motion_pieces`.
+    The modes of the housing follow the forces exactly in time. Their velocities are cut into blocks that
+    overlap by half. The spectrum of a block, under a Hann window, radiates line by line as a steady vibration
+    does: the power of a block is the mean over its time, weighted by the squared window. Shorter blocks
+    follow a fast run-up, longer ones have lower bands. Raises `InputError`: the run is shorter than a block,
+    no band lies in the range, or as `run_seat_forces` and `motion_pieces`.
 
     Parameters
     ----------
@@ -106,19 +111,20 @@ def sound_over_time(
     bearings : sequence of str or None
         Bearings in the order of the seats; None: those with the names of the seats.
     radiation : HousingRadiation
-        Of this housing. Lines outside of its range are left out, as are those below 20 Hz or three lines, and
-        above the pass frequency of the run's output.
+        Radiation of this housing. Lines outside of its range of frequencies are left out. So are lines below
+        20 Hz, the lowest `LEAKAGE` lines, and lines above the pass frequency of the run's output.
     block : float
-        s.
+        Length of a block, s.
     """
     samples, rate = round(block * result.sample_rate), result.sample_rate
-    if not 4 * LEAKAGE <= samples <= result.time.size:
-        raise InputError(
-            "block", block, from_to(4 * LEAKAGE / rate, result.time.size / rate, "s", "the run's")
-        )
+    if not MIN_SAMPLES <= samples <= result.time.size:
+        bound = from_to(MIN_SAMPLES / rate, result.time.size / rate, "s", "the run's")
+        raise InputError("block", block, bound)
     time, force = finer_seat_forces(result, housing, bearings, FINER)
     pieces = motion_pieces(housing, time, force, np.eye(len(housing.stiffness)))
-    velocities = _blocks((piece[::FINER] for piece in pieces), samples)  # pieces have even numbers of samples
+    # back at the rate of the run; pieces have even numbers of samples, so that each begins with one of the
+    # run's
+    velocities = _blocks((piece[::FINER] for piece in pieces), samples)
     starts = np.arange(0, result.time.size - samples + 1, samples // 2)
     width = rate / samples
     line = np.arange(1.0, samples // 2) * width
@@ -139,7 +145,10 @@ def sound_over_time(
 
 
 def _blocks(pieces: Iterable[FloatArray], samples: int) -> Iterator[FloatArray]:
-    """Yield blocks of `samples` that overlap by half, of a series in pieces; no more of it is held."""
+    """Yield blocks of `samples` that overlap by half, of a series in pieces.
+
+    Only the samples of unfinished blocks stay in memory.
+    """
     pending: list[FloatArray] = []
     for piece in pieces:
         pending.append(piece)
@@ -155,10 +164,13 @@ def _blocks(pieces: Iterable[FloatArray], samples: int) -> Iterator[FloatArray]:
 def _line_powers(
     velocity: FloatArray, line: FloatArray, inside: BoolArray, radiation: HousingRadiation
 ) -> FloatArray:
-    """Return the power of the lines inside, W: their sum is the mean under the squared window."""
+    """Return the power of the lines inside the range, W.
+
+    Their sum is the mean power of the block, weighted by the squared window.
+    """
     samples = len(velocity)
     weight = np.sin(np.pi * np.arange(samples) / samples) ** 2
     spectrum = np.fft.rfft((velocity - velocity.mean(axis=0)) * weight[:, None], axis=0)
     scale = 2.0 / np.sqrt(samples * np.sum(weight**2))
     amplitude = scale * spectrum[1 : line.size + 1][inside]
-    return np.maximum(radiation.power(line[inside], amplitude), 0.0)
+    return np.maximum(radiation.power(line[inside], amplitude), 0.0)  # rounding may make it negative

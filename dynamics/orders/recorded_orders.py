@@ -58,8 +58,8 @@ class PositionedSignal:
     @property
     def highest_order(self) -> int:
         """The highest multiple of the mesh frequency that the samples hold at the highest speed."""
-        top = float(np.max(np.diff(self.position))) * self.sample_rate
-        return math.floor(PASSED * self.sample_rate / top) if top > 0.0 else 0
+        highest_frequency = float(np.max(np.diff(self.position))) * self.sample_rate  # of the mesh, Hz
+        return math.floor(PASSED * self.sample_rate / highest_frequency) if highest_frequency > 0.0 else 0
 
 
 def recorded_waterfall(
@@ -67,9 +67,9 @@ def recorded_waterfall(
 ) -> Waterfall:
     """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
 
-    Blocks overlap by that share of their length; orders are 1/`pitches` apart. Interpolation is that of
-    `resample_to_position`. Blocks below 2 % of the highest speed are left out. Raises `InputError`: the
-    signal is shorter than one block, or its samples do not hold the order.
+    Blocks overlap by the share `overlap` of their length; orders are 1/`pitches` apart. Interpolation is that
+    of `resample_to_position`. Blocks below `SLOWEST` of the highest speed are left out. Raises `InputError`:
+    the signal is shorter than one block, or its samples do not hold the order.
     """
     integer("pitches", pitches, 1, 1_000_000)
     integer("highest", highest, 1, 1000)
@@ -77,35 +77,37 @@ def recorded_waterfall(
         suggestion = "Record at a higher rate, or name lower orders."
         raise InputError("highest", highest, at_most(signal.highest_order), suggestion)
     fine = interpolated(signal.values, FINER, HALF_LENGTH)
-    top = float(np.max(np.diff(signal.position))) * signal.sample_rate
-    made = [
+    highest_frequency = float(np.max(np.diff(signal.position))) * signal.sample_rate
+    blocks = [
         _Block.of(signal, fine, start, pitches, highest, window)
         for start in _starts(signal, pitches, overlap)
-        if pitches >= SLOWEST * top * _duration(signal, start, pitches)
+        if pitches >= SLOWEST * highest_frequency * _duration(signal, start, pitches)
     ]
-    if not made:
+    if not blocks:
         raise InputError(
             "signal", signal.travel, at_least(pitches, name="base pitches,"), "Record for longer."
         )
     lines = highest * pitches + 1
     return Waterfall(
-        made[0].spectrum.frequency[:lines],
-        np.array([block.time for block in made]),
-        np.array([block.mesh_frequency for block in made]),
-        np.stack([block.spectrum.amplitude[:lines] for block in made]),
-        np.array([block.rms for block in made]),
+        blocks[0].spectrum.frequency[:lines],
+        np.array([block.time for block in blocks]),
+        np.array([block.mesh_frequency for block in blocks]),
+        np.stack([block.spectrum.amplitude[:lines] for block in blocks]),
+        np.array([block.rms for block in blocks]),
         signal.unit,
-        made[0].spectrum.noise_bandwidth,
+        blocks[0].spectrum.noise_bandwidth,
     )
 
 
 def _starts(signal: PositionedSignal, pitches: int, overlap: float) -> FloatArray:
+    """Return the positions at which blocks start."""
     step = pitches * (1.0 - overlap)
     count = math.floor((signal.travel - pitches) / step) + 1
     return np.asarray(signal.position[0] + step * np.arange(max(count, 0)))
 
 
 def _duration(signal: PositionedSignal, start: float, pitches: int) -> float:
+    """Return the duration of a block, s."""
     first, last = np.interp([start, start + pitches], signal.position, signal.time)
     return float(last - first)
 
@@ -133,13 +135,13 @@ class _Block:
         return cls(
             spectrum(values, float(per_pitch), signal.unit, window),
             float(time.mean()),
-            float(np.mean(1.0 / (per_pitch * np.diff(time)))),
+            float(np.mean(1.0 / (per_pitch * np.diff(time)))),  # pitches per second
             float(values.std()),
         )
 
 
 def _samples_per_pitch(signal: PositionedSignal, start: float, pitches: int, highest: int) -> int:
-    """Return a power of two of samples a pitch, at least one for each sample of the slowest part."""
+    """Return the samples in a pitch, a power of two: at least those of the recording at its slowest."""
     first, last = np.searchsorted(signal.position, [start, start + pitches])
     slowest = float(np.min(np.diff(signal.position[max(first - 1, 0) : last + 1])))
     needed = max(MIN_PER_PITCH, 8 * highest, math.ceil(1.0 / max(slowest, 1e-9)))

@@ -15,6 +15,7 @@ import numpy as np
 import scipy
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.operating_speeds import checked_speeds, leading_law
@@ -204,7 +205,7 @@ def sweep(
 
 @brief
 @dataclass(frozen=True)
-class SteadyStates(ArrayFile):
+class SteadyStates(ArrayFile, Plottable):
     """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.
 
     m meshes, b bearings, n freedoms; fields state unit, meaning and dimensions of arrays. Figures of motions

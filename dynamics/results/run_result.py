@@ -15,6 +15,7 @@ import numpy as np
 
 from bounds import Quantity, Text
 from bounds.brief import Row, brief
+from bounds.plottable import Plottable
 from dynamics.errors import InputError, ResultError
 from dynamics.results.array_file import stored
 from dynamics.results.energy_audit import EnergyAudit
@@ -61,7 +62,7 @@ class StepStatistics:
 
 @brief
 @dataclass(frozen=True)
-class RunResult:
+class RunResult(Plottable):
     """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms.
 
     Fields state unit, meaning and dimensions of arrays.

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from bounds import warn_of
-from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.assemble import System
 from dynamics.assembly.varied import with_static_reference
 from dynamics.errors import ResultError, SolveError
 from dynamics.influence import Decision, decide_effects
@@ -238,7 +238,7 @@ class _Start:
         """
         clock = StageClock()
         with clock.stage("assembly_and_equilibrium"):
-            system = with_tolerance_to_scale(assemble(decision.scene))
+            system = with_tolerance_to_scale(decision.system())
             rest = static_equilibrium(system)
         if not rest.status.usable:
             message = (

@@ -16,6 +16,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from dynamics.checks import integer, within
 from dynamics.errors import DynamicsError, InputError
 from dynamics.results.array_file import ArrayFile, stored
@@ -62,7 +63,7 @@ class _Spread:
 
 @brief
 @dataclass(frozen=True)
-class Study(ArrayFile):
+class Study(ArrayFile, Plottable):
     """The figures of N runs: f factors, r responses."""
 
     factor: tuple[str, ...]

@@ -187,7 +187,9 @@ def _decision(choice: Decision, curves: ExpectedCurves | None, cache: Path | Non
     checked, option = choice.checked, choice.mesh.option
     error = option.error
     if not error.mean:  # None or 0: no size of the transmission error was known to the decision
-        error = expected_error(checked.request.pair, choice.plan, curves, bound=checked.request.model_chosen)
+        error = expected_error(
+            checked.request.pair, choice.plan, curves, model_chosen=checked.request.model_chosen
+        )
     return PlannedLevel(checked.model_name, option.level, option.slices, choice.predicted(cache), error)
 
 
@@ -195,7 +197,7 @@ def _planned(checked: Checked, level: str, curves: ExpectedCurves | None, cache:
     options = replace(checked.request.options, level=None)
     plan = replace(checked, request=replace(checked.request, options=options)).plan(level)
     cost, request = checked.predicted(plan, cache), checked.request
-    error = expected_error(request.pair, plan, curves, bound=request.model_chosen)
+    error = expected_error(request.pair, plan, curves, model_chosen=request.model_chosen)
     return PlannedLevel(checked.model_name, level, plan.discretization.slices, cost, error)
 
 

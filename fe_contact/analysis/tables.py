@@ -88,7 +88,7 @@ def solve_table(
     run.on_plan(prediction.stages)
     announce(run.progress, "compliance", prediction.cpu_seconds, _subject(checked, prediction))
     report = partial(run.progress, "compliance")
-    nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report)
+    nominal = condensed_bodies(checked, plan, clock, run, known=known, report=report, coarse_next=full)
     points = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
         progress = by_cost(partial(run.progress, "contact"), prediction.parts["contact"])
@@ -156,24 +156,34 @@ def condensed_bodies(
     coarse: bool = False,
     known: PairContact | None = None,
     report: Report = unreported,
+    coarse_next: bool = False,
 ) -> PairContact:
-    """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run."""
+    """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run.
+
+    `coarse_next`: as of `pair_contact`.
+    """
     request = checked.request
     report(0.0)
     with clock.stage("error estimate" if coarse else "compliance"):
         changes = request.center_distance_change
-        nominal = known or _condensed(request.pair, plan, coarse, changes, run, report)
+        nominal = known or _condensed(request.pair, plan, coarse, changes, run, report, coarse_next)
     report(1.0)
     return nominal
 
 
 def _condensed(
-    pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray, run: Run, report: Report
+    pair: ParallelAxes,
+    plan: Plan,
+    coarse: bool,
+    changes: FloatArray,
+    run: Run,
+    report: Report,
+    coarse_next: bool,
 ) -> PairContact:
     """Condense the gears, those of three dimensions by the workers if there are any."""
     made = plan.discretization
     if isinstance(condensing(run.workers), InProcess) or not isinstance(made, FaceDiscretization):
-        return pair_contact(pair, plan, run.cache, coarse, changes, report)
+        return pair_contact(pair, plan, run.cache, coarse, changes, report, coarse_next=coarse_next)
     with TemporaryDirectory() as folder:
         cache = run.cache or Path(folder)
         recipes = made.coarse_recipes if coarse else made.recipes

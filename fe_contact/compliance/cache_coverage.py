@@ -26,7 +26,7 @@ def free_ends_cached(gear: Toothing, recipe: SectorRecipe, teeth: int, cache: Pa
     """Return the bytes kept of the solids that correct the plane with `teeth` teeth; 0 if one is missing."""
     if cache is None:
         return 0
-    reach = min(teeth - 1, gear.teeth // 2)
+    gear, reach = gear.whole, min(teeth - 1, gear.teeth // 2)
     keys = (
         compliance_key_3d(gear, recipe, reach, support) for support in (bore_support(gear), PlaneStrain())
     )

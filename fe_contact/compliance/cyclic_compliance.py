@@ -20,7 +20,7 @@ from fe_contact.compliance.cache import (
 from fe_contact.compliance.condensation_cost import predict_cost
 from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
 from fe_contact.compliance.tooth_reach import usual_reach
-from fe_contact.errors import integer
+from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quad_sector import quad_sector
@@ -70,6 +70,8 @@ def flank_compliance_3d(
     SolveError
         The stiffness is singular, or the result breaks a law.
     """
+    if gear.sector_teeth is not None:
+        raise InputError("sector_teeth", gear.sector_teeth, "left out over the face", "Its rings are whole.")
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     reach = usual_reach(gear) if reach is None else integer("reach", reach, 0, gear.teeth // 2)
     key = compliance_key_3d(gear, recipe, reach, support)

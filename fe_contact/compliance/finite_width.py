@@ -76,7 +76,8 @@ def finite_width_compliances(
     Parameters
     ----------
     gears : sequence of Toothing
-        Spur gears, bores clamped. Modification plays no part.
+        Spur gears, bores clamped. Modification plays no part. Of a sector it is that of the whole gear, whose
+        free ends differ little.
     recipes : sequence of SectorRecipe
         Of half the face, one per gear; `SectorRecipe.even_load` is made for it.
     teeth : int
@@ -87,6 +88,7 @@ def finite_width_compliances(
     for gear in gears:
         if gear.helix_angle != 0.0:
             raise InputError("gear.helix_angle", gear.helix_angle, "0", "Use the 3-D model for it.")
+    gears = [gear.whole for gear in gears]
     keys = [
         compliance_key_3d(gear, recipe, 0, ClampedBore()) for gear, recipe in zip(gears, recipes, strict=True)
     ]

@@ -11,6 +11,7 @@ import numpy as np
 from fe_contact.compliance.cache import (
     CACHED_KEYS,
     cached_or_computed,
+    cached_size,
     computed_once,
     content_hash,
     mesher_version,
@@ -24,7 +25,7 @@ from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrices
 from fe_contact.compliance.ring_checks import ring_checks, uniform_pressure
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
+from fe_contact.mesh import GearMesh, MeshRecipe, mesh_ahead, mesh_gear
 from fe_contact.types import IntArray, Json
 from model_studies.stage_clock import StageClock
 
@@ -79,13 +80,23 @@ def flank_compliances(
     *,
     teeth: int | None = None,
     cache: Path | None = None,
+    later: Sequence[MeshRecipe] | None = None,
 ) -> tuple[FlankCompliance, ...]:
     """Return the compliance of each gear; gears of the same section, material and recipe share one object.
 
     Parameters are those of `flank_compliance`, with one recipe per gear.
+
+    later : sequence of MeshRecipe, optional
+        Recipes of the same gears that the next call will have: one process meshes for both calls.
     """
     recipes = recipes or [MeshRecipe.standard(gear) for gear in gears]
     keys = section_keys(gears, recipes, hypothesis, teeth)
+    later_keys = [] if later is None else section_keys(gears, later, hypothesis, teeth)
+    sections = [*zip(gears, recipes, strict=True), *zip(gears, later or (), strict=later is not None)]
+    first: dict[str, tuple[Toothing, MeshRecipe]] = {}
+    for key, section in zip([*keys, *later_keys], sections, strict=True):
+        first.setdefault(key, section)  # gears of the same section are meshed as the first of them
+    mesh_ahead([section for key, section in first.items() if not cached_size(cache, key)])
     return computed_once(
         keys, lambda i: flank_compliance(gears[i], recipes[i], hypothesis, teeth=teeth, cache=cache)
     )
@@ -103,10 +114,15 @@ def section_keys(
 
 def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
     """Return the number of condensed teeth, checked against the real ones."""
-    real = min(gear.teeth, recipe.real_teeth or gear.teeth)
+    whole = gear.teeth if gear.sector_teeth is None else gear.sector_teeth - 2  # cut planes carry no load
+    real = min(whole, recipe.real_teeth or whole)
     limit = real - 1 + real % 2
     if teeth is None:
         return min(USUAL_TEETH, limit)
+    if gear.sector_teeth is not None and teeth > limit:
+        bound = f"{teeth + 2} or more, or left out"
+        remedy = f"{teeth} teeth can touch, and one beside each cut plane carries no load."
+        raise InputError("sector_teeth", gear.sector_teeth, bound, remedy)
     count = integer("teeth", teeth, 1, limit, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
     if count % 2 == 0:
         raise InputError("teeth", teeth, "odd", "The teeth are centered on tooth 0.")

@@ -15,7 +15,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Ring:
-    """Condensed stiffness of one gear, bore clamped, per unit face width."""
+    """Condensed stiffness of one gear, bore and cut planes clamped, per unit face width."""
 
     mesh: GearMesh
     """Mesh of the gear."""
@@ -48,7 +48,7 @@ def rotation(angle: float) -> FloatArray:
 
 
 def assemble_ring(mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_array | None) -> Ring:
-    """Add up the condensed sectors and the hub, clamp the bore, factorise."""
+    """Add up the condensed sectors and the hub, clamp the bore and cut planes, factorise."""
     retained = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
     retained = np.setdiff1d(retained, mesh.bore_nodes)
     position = np.full(2 * len(mesh.points), -1)
@@ -57,9 +57,10 @@ def assemble_ring(mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_ar
     for i in range(len(mesh.teeth)):
         turned = _turned_matrix(sector.stiffness, mesh.teeth[i] * mesh.pitch_angle)
         at = position[freedoms(mesh.sector_nodes[i, sector.boundary])]
-        rows.append(np.repeat(at, len(at)))
-        columns.append(np.tile(at, len(at)))
-        values.append(turned.ravel())
+        free = at >= 0
+        rows.append(np.repeat(at[free], free.sum()))
+        columns.append(np.tile(at[free], free.sum()))
+        values.append(turned[np.ix_(free, free)].ravel())
     if hub_matrix is not None:
         coo = hub_matrix.tocoo()
         at = position[freedoms(mesh.hub_nodes)]

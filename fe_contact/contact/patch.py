@@ -26,7 +26,7 @@ from host.loops import inner
 
 @dataclass(frozen=True)
 class Patches:
-    """Patches of one gear; arrays (P, n Q), Q side by side on each of n slices."""
+    """Patches of one gear at P positions, Q side by side on each of n slices. Arrays are (P, n Q)."""
 
     center: FloatArray
     half_width: FloatArray
@@ -34,7 +34,7 @@ class Patches:
     edge_share: FloatArray
     """Share of the load that is singular at the tip edge, 0 to 1."""
     count: int = 1
-    """Q."""
+    """Number Q of patches on a slice."""
     bulge: FloatArray | float = 0.0
     """`fe_contact.hertz.lateral_share` of the material times the curvature of the flank, 1/m; 0 of a half
     plane.
@@ -48,8 +48,8 @@ class Patches:
             np.asarray(np.broadcast_to(values, self.center.shape)[keep])
             for values in (self.bulge, self.at_tip)
         )
-        laid = self.center[keep], self.half_width[keep], self.edge_share[keep]
-        return Patches(*laid, self.count, bulge, at_tip)
+        arrays = self.center[keep], self.half_width[keep], self.edge_share[keep]
+        return Patches(*arrays, self.count, bulge, at_tip)
 
     def by_slice(
         self, position: int | IntArray, slices: IntArray
@@ -73,32 +73,36 @@ class Patches:
 
     @property
     def at_edge(self) -> FloatArray:
-        """Share of the strip on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
+        """Share of the strip at the edge: 0 until it reaches the edge, 1 where rigid flanks touch there."""
         return np.minimum(1.5 * self.edge_share, 1.0)
 
     def stretched(self, part: float, mate: Patches) -> Patches:
-        """Return patches whose length at an edge grows by a part of it, their form kept.
+        """Return patches of the same form whose length at a tip edge is larger by a part of it.
 
-        Where a patch of the mate is at its edge, the patch on this gear follows the load towards the tip.
+        Where only the patch of the mate is at its edge, the patch on this gear moves with the load on the
+        mate, towards the tip.
         """
         half = np.where(self.at_tip, (1.0 + part) * self.half_width, self.half_width)
-        follows = np.logical_and(mate.at_tip, np.logical_not(self.at_tip))
-        center = self.center + np.where(follows, part * mate.edge_distance, self.half_width - half)
+        moves_with_mate = np.logical_and(mate.at_tip, np.logical_not(self.at_tip))
+        # a longer patch at an edge keeps its upper end there
+        shift = np.where(moves_with_mate, part * mate.edge_distance, self.half_width - half)
+        center = self.center + shift
         return replace(self, center=center, half_width=half)
 
     @cached_property
     def law_width(self) -> FloatArray:
-        """Half-width in m of the semi-elliptic patch that moves as much on a half plane under its own weight.
+        """Half-width a in m of the semi-elliptic patch with the same mean displacement on a half plane.
 
-        Normals of a flank turn under the patch, so that it moves by k p `bulge` E|x - y| more.
-        With w the density of the patch, u = u(0) - s [phi x + x^2/(2R)] over it, which leaves ln a = ln 2 +
-        1/4 + E_w[ln x] + E_w[x^2 - 2 t x]/(c (3c/4 - t)); the moments are those of Beta distributions. It
-        equals a at no edge share.
+        The mean is weighted by the load. Let w be the density of the load over the patch, of length c from
+        the edge x = 0, and t the distance of the contact from the edge. Then ln a = ln 2 + 1/4 + E_w[ln x] +
+        E_w[x^2 - 2 t x]/(c (3c/4 - t)), with the moments E_w of Beta distributions. Without an edge share it
+        is the half-width of the patch itself. The normals of a curved flank turn under the patch, which adds
+        `bulge` E|x - y| to the displacement over k p.
         """
         share, c = self.edge_share, 2.0 * self.half_width
         logarithm = np.log(c / 4.0) + 0.5 - 1.5 * share
         first, second = 0.5 - 0.25 * share, 0.3125 - 0.1875 * share
-        # t/c = (1/2 - 3/4 share)/(1 - share), multiplied through by 1 - share, zero at a sharp corner
+        # t/c = (1/2 - 3/4 share)/(1 - share); both terms are multiplied by 1 - share, which may be 0
         moments = (second * (1.0 - share) - first * (1.0 - 1.5 * share)) / 0.25
         curved = self.bulge * self.mean_distance
         return np.asarray(np.exp(math.log(2.0) + 0.25 + logarithm + moments - curved))
@@ -114,7 +118,7 @@ class Patches:
 def tip_patches(
     s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: FloatArray | float
 ) -> Patches:
-    """Patches on a flank for contacts at `s`.
+    """Return the patches on a flank for contacts at `s`.
 
     Parameters
     ----------
@@ -140,7 +144,7 @@ def tip_patches(
 def load_vector(
     nodes: FloatArray, center: float, half_width: float, edge_share: float, out: FloatArray
 ) -> tuple[int, int]:
-    """Fill `out` with the nodal forces of a unit patch and return the range of nodes it touches.
+    """Fill `out` with the nodal forces of a patch of unit load, and return the range of its nodes.
 
     Parameters
     ----------
@@ -180,10 +184,10 @@ def load_vector(
 
 @inner()
 def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) -> tuple[float, float]:
-    """Return the angles of a patch, -pi/2 to pi/2, between which it lies on element e.
+    """Return the angles of a patch, from -pi/2 to pi/2, between which it lies on element e.
 
-    The last element has the rest of it: at a tip edge rounding leaves the end of a patch beside the last
-    node, the angle moves by the root of that, and with it a singular load.
+    On the last element a patch always ends at pi/2. At a tip edge, rounding may put its end beside the last
+    node; the angle, and a singular load with it, would change by the root of that distance.
     """
     start = math.asin(min(max((nodes[2 * e] - center) / half_width, -1.0), 1.0))
     if 2 * e + 3 == nodes.size:
@@ -195,19 +199,20 @@ def patch_angles(nodes: FloatArray, e: int, center: float, half_width: float) ->
 def profile_moments(
     nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float
 ) -> tuple[float, float, float]:
-    """Return moments 0 to 2 of a unit patch on element e, in its coordinate from -1 to 1."""
+    """Return moments 0 to 2 of a patch of unit load on element e, over its coordinate from -1 to 1."""
     start, stop = patch_angles(nodes, e, center, half_width)
     first, last = _sine_moments(start, edge_share), _sine_moments(stop, edge_share)
+    # moments of powers 0 to 2 of the sine; the coordinate of the element is middle + half sin t
     zeroth, tilt, square = last[0] - first[0], last[1] - first[1], last[2] - first[2]
     left, length = nodes[2 * e], nodes[2 * e + 2] - nodes[2 * e]
     middle, half = 2.0 * (center - left) / length - 1.0, 2.0 * half_width / length
-    by_one = middle * zeroth + half * tilt
-    return zeroth, by_one, middle * by_one + half * (middle * tilt + half * square)
+    first_moment = middle * zeroth + half * tilt
+    return zeroth, first_moment, middle * first_moment + half * (middle * tilt + half * square)
 
 
 @inner()
 def _sine_moments(angle: float, edge_share: float) -> tuple[float, float, float]:
-    """Return integrals of a unit patch times powers 0 to 2 of the sine up to an angle, but for constants."""
+    """Return antiderivatives at an angle of a patch of unit load times powers 0 to 2 of the sine."""
     sine, cosine = math.sin(angle), math.cos(angle)
     product, cube = sine * cosine, cosine * cosine * cosine / 3.0
     smooth, edge = (1.0 - edge_share) / math.pi, edge_share / math.pi

@@ -14,7 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.contact.edge_strip import EDGE_REACH, SIDE, EdgeStrips, edge_motions, edge_table, no_edges
+from fe_contact.contact.edge_strip import (
+    EDGE_REACH,
+    OFFSET,
+    SIDE,
+    EdgeStrips,
+    edge_motions,
+    edge_table,
+    no_edges,
+)
 from fe_contact.contact.free_end import ENDLESS, SMOOTH, FreeEnds, end_excess
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.plain_touch import Touch
@@ -373,7 +381,9 @@ class ContactProblem:
     def edges(self) -> FloatArray:
         """Table (Q, n, 8) of `EdgeStrips`; (1, n, 8) without any where no flank rolls.
 
-        Of plain flanks: what modifications displace, they displace with its patch.
+        It is that of plain flanks: what modifications displace, they displace with its patch. Flanks that
+        open from an edge in some base pitch press there, not where plain ones touch: the table is (P, n, 8)
+        then.
         """
         slices, touch = self.candidates.slices, self.candidates.slices.touch
         if not self.rolling.size:
@@ -397,7 +407,20 @@ class ContactProblem:
             corner=np.where(first, *corners) / slices.width,
             length=np.where(at_tip, length, away),
         )
-        return edge_table(strips, slices.present)
+        table = edge_table(strips, slices.present)
+        at_edge = self._opening_from_edge(first)
+        held = (at_edge < 0.0) & (np.resize(away, at_edge.shape) > 0.0)
+        if not held.any():
+            return table
+        table = np.resize(table, (*at_edge.shape, table.shape[2]))
+        table[..., OFFSET] = np.where(held & (table[..., SIDE] != 0.0), at_edge, table[..., OFFSET])
+        return table
+
+    def _opening_from_edge(self, first: BoolArray) -> FloatArray:
+        """Return `Touch.offset_1` where `first` (Q, n), else `offset_2`, (P, n); 0 where patches moved."""
+        touch = self.candidates.touch
+        of_first = np.resize(first, touch.gap.shape)
+        return np.where(touch.shift == 0.0, np.where(of_first, touch.offset_1, touch.offset_2), 0.0)
 
     def displacement(self, force: FloatArray) -> FloatArray:
         """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
@@ -407,8 +430,9 @@ class ContactProblem:
         pressed = self.candidates.on_slices(force)
         radius, longest = self.radius, self.candidates.slices.law_length
         edges = self.edges
+        rows = -1, len(self.compliance) if len(edges) > 1 else 1, 1, radius.shape[1]
         radius = radius.reshape(-1, len(self.compliance), 1, radius.shape[1])
-        radius = np.where(edges[None, :, None, :, SIDE] == 0.0, radius, 0.0)
+        radius = np.where(edges[..., SIDE].reshape(rows) == 0.0, radius, 0.0)
         by_pitch = pressed.reshape(-1, len(self.compliance), *pressed.shape[1:])
 
         def times(matrices: FloatArray, forces: FloatArray) -> FloatArray:

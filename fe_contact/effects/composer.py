@@ -14,10 +14,11 @@ CHOICES = ("on", "off", "auto")
 
 
 def flipped(registry: Sequence[Effect], present: Mapping[str, str], name: str, choice: str) -> dict[str, str]:
-    """Return the choices with `name` on or off.
+    """Return the choices of all effects after `name` was turned on or off.
 
-    The plane that stands in for three dimensions is corrected for its finite width where it can be, and three
-    dimensions need no correction.
+    Two effects exclude each other: the effect across the face, with which a model has three dimensions, and
+    the correction of a plane model for the finite face width. Turning one on turns the other off. Without
+    the effect across the face, the scene decides on the correction.
 
     Parameters
     ----------
@@ -25,10 +26,10 @@ def flipped(registry: Sequence[Effect], present: Mapping[str, str], name: str, c
         Every effect "on" or "off".
     """
     choices = {**present, name: choice}
-    face, width = named(registry, "across_face"), named(registry, "finite_width")
+    face, correction = named(registry, "across_face"), named(registry, "finite_width")
     if name == face:
-        choices[width] = "auto" if choice == "off" else "off"
-    if name == width and choice == "on":
+        choices[correction] = "auto" if choice == "off" else "off"
+    if name == correction and choice == "on":
         choices[face] = "off"
     return choices
 
@@ -104,7 +105,7 @@ def acting(ledger: Sequence[LedgerEntry]) -> tuple[str, ...]:
 
 
 def contributed(scene: ContactScene, names: Sequence[str]) -> ContactModel:
-    """Return the contributions of effects, by their names, to the model of a scene."""
+    """Return the contact model of a scene with the effects of these names alone."""
     model = ContactModel()
     for effect in scene.registry:
         if effect.name in names:
@@ -113,8 +114,8 @@ def contributed(scene: ContactScene, names: Sequence[str]) -> ContactModel:
     gaps = tuple(sorted(model.gaps, key=repr))
     tooth_gaps = tuple(sorted(model.tooth_gaps, key=repr))
     compliances = tuple(sorted(model.compliances, key=repr))
-    terms = replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances)
-    return replace(terms, parts=tuple(sorted(model.parts)))
+    parts = tuple(sorted(model.parts))
+    return replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances, parts=parts)
 
 
 def _check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

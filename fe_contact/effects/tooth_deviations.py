@@ -21,7 +21,7 @@ from fe_contact.geometry import (
 )
 
 _PLACES = 513
-"""Number of places of the path of contact at which surfaces are sampled."""
+"""Number of points of the path of contact at which surfaces are sampled."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,9 @@ class ToothDeviations(Effect):
 def sharpest_crest(pair: ParallelAxes) -> float:
     """Return the largest curvature of waves and forms of both gears over that of the plain flanks.
 
-    At the ends of the path of contact, the crests of all of them together; of measured surfaces, over the
-    length of a contact strip at any place of it. At 1 a trough fits the mate.
+    Waves and forms count at the ends of the path of contact, where the curvatures of all of them add up.
+    Measured surfaces count anywhere on it, as the curvature over the width of a contact strip. At a ratio of
+    1 a trough of one gear has the curvature of the other gear's flank.
     """
     path = pair.path_of_contact
     roll_1 = np.array([path.start, path.end])
@@ -85,25 +86,29 @@ def sharpest_crest(pair: ParallelAxes) -> float:
 
 
 def _hollow_surface(pair: ParallelAxes, index: int) -> float:
-    """Return how hollow surfaces of single teeth of a gear are over a strip, over the flanks' curvature."""
+    """Return the largest hollow curvature of measured surfaces of a gear over that of the plain flanks.
+
+    It is a second difference over the points at `STEP` from each other: both ends and the middle of a strip.
+    """
     gear = (pair.pinion, pair.wheel)[index]
     roll_1 = np.linspace(pair.path_of_contact.start, pair.path_of_contact.end, _PLACES)
     roll = roll_1 if index == 0 else pair.mating_roll_length(roll_1)
     curvature = pair.relative_curvature(roll_1)
     strip = STEP / curvature
-    squares = (roll**2 + 2.0 * gear.base_radius * way for way in (-strip, 0.0 * strip, strip))
+    # along the flank, the square of the roll length grows by twice the base radius times the distance
+    squares = (roll**2 + 2.0 * gear.base_radius * distance for distance in (-strip, 0.0 * strip, strip))
     inner, outer = sorted((gear.form_roll_length, gear.tip_roll_length))
     rolls = np.clip(np.sqrt(np.maximum(list(squares), 0.0)), inner, outer)
-    middle, deepest = np.zeros(rolls.shape), 0.0
+    mid_face, deepest = np.zeros(rolls.shape), 0.0
     for flank in gear.tooth_flanks:
         if flank.flank_grid is not None:
-            before, center, after = flank.flank_grid.material_removed(rolls, middle)
+            before, center, after = flank.flank_grid.material_removed(rolls, mid_face)
             deepest = max(deepest, float(np.max((2.0 * center - before - after) / (strip**2 * curvature))))
     return deepest
 
 
 def _hollow(gear: Toothing) -> float:
-    """Return how hollow the form of a tooth is at most, as an amplitude times the square of its order."""
+    """Return the largest hollow curvature of a tooth's form, as that of a wave: amplitude times order^2."""
     u_per_turn = 2.0 * gear.base_radius / (gear.tip_roll_length - gear.form_roll_length)
     return max((flank.hollow for flank in gear.tooth_flanks), default=0.0) * u_per_turn**2
 
@@ -117,7 +122,7 @@ def _across_face(gear: Toothing) -> dict[str, str]:
         "waves": ("waves across the face", inclined),
         "tooth_flanks": ("helix deviations of teeth", flanks),
     }
-    return {field: text for field, (text, there) in causes.items() if there}
+    return {field: text for field, (text, is_present) in causes.items() if is_present}
 
 
 def _figures(gear: Toothing) -> str:

@@ -9,14 +9,16 @@ from functools import cached_property
 
 import numpy as np
 
-from bounds import Declared, Kind, between, declared, described, required
+from bounds import Declared, Kind, between, declared, described, integers, required
 from fe_contact.body import CLAMPED, BoreSeat, GearBlank, Web
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.form_point import FormPoint, find_form_point
 from fe_contact.geometry.gear_feasibility import (
+    SMALLEST_SECTOR,
     refuse_bore,
     refuse_pointed_tooth,
     refuse_rim,
+    refuse_sector,
     refuse_undercut,
     refuse_web,
 )
@@ -31,6 +33,15 @@ _BORE = Declared(
 )
 _BLANK = "Rim, web and hub; left out: a solid body"
 _SEAT = "Seat of the bore; left out: the whole bore is fixed"
+_SECTOR = Declared(
+    Kind.COUNT,
+    "",
+    integers(SMALLEST_SECTOR, 2000),
+    "Teeth of a sector that is cut out of the body, an odd number around the loaded tooth: its cut planes and"
+    " bore are fixed, as in finite-element models of a part of a gear. Left out: the whole gear",
+    7,
+    later=True,
+)
 
 
 @described
@@ -48,6 +59,7 @@ class Gear(Toothing):
     _: KW_ONLY
     blank: GearBlank | None = declared(None, Declared(Kind.PART, "", None, _BLANK, part=GearBlank))
     seat: BoreSeat = declared(CLAMPED, Declared(Kind.PART, "", None, _SEAT, part=BoreSeat))
+    sector_teeth: int | None = declared(None, _SECTOR)
 
     def __post_init__(self) -> None:
         self._check_fields()
@@ -58,6 +70,7 @@ class Gear(Toothing):
             refuse_rim(self, blank)
             refuse_web(self, blank)
         refuse_misfit_seat(self)
+        refuse_sector(self, self.sector_teeth)
         refuse_undercut(self)
         refuse_pointed_tooth(self)
         self._check_teeth()
@@ -116,6 +129,11 @@ class Gear(Toothing):
         same = all(getattr(self, name) == value for name, value in plain_values.items())
         return self if same else replace(self, **plain_values)  # type: ignore[arg-type]
 
+    @property
+    def whole(self) -> Gear:
+        """The gear whose body is no sector."""
+        return self if self.sector_teeth is None else replace(self, sector_teeth=None)
+
     def right_handed(self) -> Gear:
         """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""
         if self.helix_angle >= 0.0:
@@ -139,5 +157,7 @@ class Gear(Toothing):
             "root_radius_coefficient",
         )
         counts = {"teeth": int(self.teeth)}
+        if self.sector_teeth is not None:
+            counts["sector_teeth"] = int(self.sector_teeth)
         body = {} if self.web is None else {"web": self.web.content()}
         return counts | {"tip_diameter": 2.0 * self.tip_radius} | self.generated_shape(names) | body

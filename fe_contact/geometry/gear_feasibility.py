@@ -7,13 +7,16 @@ import math
 import numpy as np
 
 from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below, from_to
-from fe_contact.body import GearBlank
+from fe_contact.body import CLAMPED, GearBlank
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.toothing import Toothing
 
 THINNEST_RIM = 0.5  # in normal modules
 
 THINNEST_WEB = 0.02  # in face widths
+
+SMALLEST_SECTOR = 5
+"""Fewest teeth of a sector: three that may be loaded, and one beside each cut plane."""
 
 
 def refuse_bore(gear: Toothing) -> None:
@@ -61,6 +64,18 @@ def refuse_web(gear: Toothing, blank: GearBlank) -> None:
         bound = from_to(-room, room, "m", note=", so that the web stays within the face")
         remedy = "Lower the offset or the web thickness."
         raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, remedy)
+
+
+def refuse_sector(gear: Toothing, teeth: int | None) -> None:
+    """Refuse a sector that is not centered on a tooth, is the whole gear, or has a web or a seat."""
+    if teeth is None:
+        return
+    if teeth % 2 == 0 or teeth >= gear.teeth:
+        bound = f"odd and below the {gear.teeth} teeth"
+        raise InfeasibleGeometry("sector", "sector_teeth", teeth, bound, "Leave it out for the whole gear.")
+    if gear.web is not None or gear.seat != CLAMPED:
+        bound = "left out with a web or a seat of the bore"
+        raise InfeasibleGeometry("sector", "sector_teeth", teeth, bound, "A sector is solid, its bore fixed.")
 
 
 def refuse_undercut(gear: Toothing) -> None:

@@ -34,9 +34,10 @@ _DISTANCE = Declared(Kind.LENGTH, "m", up_to(1000.0), "Center distance a", 0.08)
 class ParallelAxes:
     """Two gears on parallel axes; use `GearPair` or `InternalGearPair`. Gear 1 (`pinion`) drives gear 2.
 
-    A center distance that is left out is that without backlash of gears without thickness allowance, so that
-    the allowances become backlash. `axial_offset`: distance in m of the wheel's mid-face from the pinion's,
-    along the pinion's axis; `shafts`: what carries pinion and wheel between two bearings each, None is rigid.
+    Without a `center_distance`, it is the one at which the gears would mesh without backlash if they had no
+    thickness allowances: the allowances then make the backlash. `axial_offset`: distance in m of the wheel's
+    mid-face from the pinion's, along the pinion's axis. `shafts`: shafts of pinion and wheel, each between
+    two bearings; None: a rigid one.
     """
 
     pinion: Gear
@@ -147,12 +148,13 @@ class ParallelAxes:
     def tilt_arm(self, roll_1: FloatArray | float, face: FloatArray | float) -> FloatArray:
         """Return the gap on the line of action by a tilt of the axes in the plane of action, m per rad.
 
-        About the pitch point in the pinion's mid-face. It is also the arm of a force there about that axis.
-        At roll lengths of gear 1 on the line of action and face positions, m: the face position, less
-        tan(beta_b) times the way from the pitch point.
+        The axis of the tilt goes through the pitch point in the pinion's mid-face. `roll_1` are roll lengths
+        of gear 1 on the line of action and `face` face positions, m. The gap is the face position less
+        tan(beta_b) times the distance from the pitch point; it is also the arm of a force there about the
+        axis.
         """
-        beyond = roll_1 - self.path_of_contact.pitch_point
-        return np.asarray(face - math.tan(self.base_helix_angle) * beyond)
+        distance = roll_1 - self.path_of_contact.pitch_point
+        return np.asarray(face - math.tan(self.base_helix_angle) * distance)
 
     def roll_lengths(self, position: ArrayLike, pair_index: ArrayLike = 0) -> tuple[FloatArray, FloatArray]:
         """Roll lengths at which tooth pair `pair_index` touches on the line of action.
@@ -167,8 +169,8 @@ class ParallelAxes:
         Returns
         -------
         tuple of arrays
-            l_1 and l_2 in m, their sum (internal: difference) being `common_tangent`; they run on beyond the
-            path of contact.
+            l_1 and l_2 in m. Their sum (of an internal pair, their difference) is `common_tangent`. They are
+            not limited to the path of contact.
         """
         phase = np.asarray(position, dtype=float) + np.asarray(pair_index)
         first = np.asarray(self.path_of_contact.pitch_point + phase * self.base_pitch, dtype=float)
@@ -194,26 +196,29 @@ class ParallelAxes:
 
     @property
     def tip_clearances(self) -> tuple[float, float]:
-        """Distance in m from the pinion's tip to the mating root circle, and from the wheel's tip to its."""
+        """Distances in m from tip to root: of the pinion's tip and the wheel's root, then the reverse."""
         pinion, wheel, a = self.pinion, self.wheel, self.center_distance
-        at_tip, at_root = (wheel.sign * (a - radius) for radius in (wheel.root_radius, wheel.tip_radius))
-        return at_tip - pinion.tip_radius, at_root - pinion.root_radius
+        # distances of the wheel's circles from the pinion's axis, on the line between the axes
+        root, tip = (wheel.sign * (a - radius) for radius in (wheel.root_radius, wheel.tip_radius))
+        return root - pinion.tip_radius, tip - pinion.root_radius
 
     @property
     def transverse_base_backlash(self) -> float:
         """Backlash along the transverse line of action j_bt, m: r_b1 times gear 1's free turn.
 
-        Gears that jam by no more than rounding of printed data makes have none, or what allowances make.
+        Data of a printed table may make gears jam by their rounding alone. Such gears have no backlash, or
+        only that of their thickness allowances.
         """
         computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
         return computed + self.rounding_jam
 
     @cached_property
     def rounding_jam(self) -> float:
-        """Jam along the line of action that rounding of printed data makes, m, >= 0 (`backlash_rounding`).
+        """Jam along the line of action by the rounding of printed data, m, >= 0 (`backlash_rounding`).
 
-        It is that of the gears without their thickness allowances, which are no part of nominal geometry; or
-        else that of the gears as they are. 0 where teeth do not jam, or by more than rounding makes.
+        First the gears are taken without their thickness allowances, since those are no part of the nominal
+        geometry; where these do not jam, the gears as they are. 0 where the teeth do not jam, or jam by more
+        than rounding can explain.
         """
         computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
         largest = backlash_rounding(self.pinion, self.wheel, self.center_distance)

@@ -262,6 +262,16 @@ class Toothing:
         return self
 
     @property
+    def sector_teeth(self) -> int | None:
+        """Number of teeth between two fixed cut planes; None for a whole body."""
+        return None
+
+    @property
+    def whole(self) -> Toothing:
+        """The gear whose body is no sector."""
+        return self
+
+    @property
     def seat(self) -> BoreSeat:
         """The seat of the gear at `seat_radius`."""
         return CLAMPED

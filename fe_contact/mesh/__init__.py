@@ -2,7 +2,7 @@
 
 import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.mesh.bore_support import ClampedBore, PlaneStrain, bore_support
-from fe_contact.mesh.gear_mesh import GearMesh, mesh_gear
+from fe_contact.mesh.gear_mesh import GearMesh, mesh_ahead, mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import QualityLimits, mesh_quality
 from fe_contact.mesh.recipe import MeshRecipe
@@ -19,6 +19,7 @@ __all__ = [
     "SectorRecipe",
     "SweptSector",
     "bore_support",
+    "mesh_ahead",
     "mesh_gear",
     "mesh_quality",
     "quad_sector",

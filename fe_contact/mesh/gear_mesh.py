@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
+from fe_contact.errors import FeContactError
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.hub import Hub, hub_outline, inner_rings, joined_hub
-from fe_contact.mesh.quadratic_mesh import quadratic_meshes, rotated
+from fe_contact.mesh.quadratic_mesh import Part, quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.recipe import MeshRecipe
 from fe_contact.mesh.tooth_outline import tooth_outline
@@ -18,6 +21,9 @@ from fe_contact.types import FloatArray, IntArray
 SLENDER = 3.0  # deepest sector down to the bore, in root circle pitches: beyond it a hub needs fewer elements
 TAPER = 0.35  # least bore of sectors down to it, in root circles: below it a sector is a needle
 RIM_DEPTH = 2.0  # depth of a sector above a hub, in normal modules
+
+_ahead: dict[tuple[Toothing, MeshRecipe], ToothSector] = {}
+"""Tooth sectors of `mesh_ahead` that are not yet taken: at most those of its last call."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +55,8 @@ class GearMesh:
     (m, 6).
     """
     bore_nodes: IntArray
-    """Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim. Shape
-    (b,).
+    """Nodes that the gear is held by: on its bore, or on the outside of a ring gear's rim, and of a sector on
+    its cut planes. Shape (b,).
     """
     flanks: tuple[_FlankNodes, ...]
     """Right flanks of the real teeth, in the order of `teeth`."""
@@ -77,7 +83,10 @@ def real_teeth(teeth: int, modeled: int | None) -> IntArray:
 def _assemble(
     sector: ToothSector, hub: Hub | None, teeth: IntArray, pitch_angle: float, normals: FloatArray
 ) -> GearMesh:
-    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame."""
+    """Join the sectors of `teeth` and the hub; `normals` (k, 2) at `sector.flank` are in the tooth frame.
+
+    Teeth that are neither all nor joined by a hub end at cut planes, which are held like the bore.
+    """
     closed = len(teeth) == round(2.0 * np.pi / pitch_angle)
     sector_nodes = _number_sectors(sector, len(teeth), closed)
     hub_nodes = _number_hub(sector, sector_nodes, hub)
@@ -90,6 +99,10 @@ def _assemble(
     if hub is not None:
         triangles = np.concatenate([triangles, hub_nodes[hub.triangles]])
     bore = hub_nodes[hub.bore] if hub is not None else np.unique(sector_nodes[:, sector.bottom])
+    if hub is None and not closed:
+        bore = np.unique(
+            np.concatenate([bore, sector_nodes[0, sector.right_side], sector_nodes[-1, sector.left_side]])
+        )
     flanks = tuple(
         _FlankNodes(int(j), sector_nodes[i, sector.flank], sector.s, rotated(normals, j * pitch_angle))
         for i, j in enumerate(teeth)
@@ -146,21 +159,56 @@ def mesh_gear(
     """
     recipe, limits = recipe or MeshRecipe.standard(gear), limits or QualityLimits()
     profile = tooth_profile(gear)
-    teeth = real_teeth(gear.teeth, recipe.real_teeth)
-    bottom_radius = _sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
-    outline = tooth_outline(profile, bottom_radius, recipe)
-    outlines, module = {"tooth sector": (outline.outline,)}, profile.gear.normal_module
-    (mesh,) = quadratic_meshes(outlines, module, recipe.growth, limits)
-    sector = tooth_sector(mesh, outline)
-    rest = None if bottom_radius == gear.seat_radius else _mesh_hub(gear, sector, teeth, recipe, limits)
+    teeth = _modeled_teeth(gear, recipe)
+    sector = _ahead.pop((gear, recipe), None) if limits == QualityLimits() else None
+    if sector is None:
+        (sector,) = _sectors([(gear, recipe)], limits)
+    is_whole = _sector_bottom(gear, recipe) == gear.seat_radius
+    rest = None if is_whole else _mesh_hub(gear, sector, teeth, recipe, limits)
     # Copies of the sector are as good as the sector, which is checked.
     return _assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
 
-def _sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
+def mesh_ahead(sections: Sequence[tuple[Toothing, MeshRecipe]]) -> None:
+    """Mesh the tooth sectors of several sections in one process of gmsh, for the next calls of `mesh_gear`.
+
+    That process takes longer to start than to mesh a sector. Sections that cannot be meshed are left to
+    `mesh_gear`, which says why.
+    """
+    made = {section: _ahead[section] for section in sections if section in _ahead}
+    new = [section for section in dict.fromkeys(sections) if section not in made]
+    _ahead.clear()
+    _ahead.update(made)
+    if len(new) > 1:
+        with suppress(FeContactError):
+            _ahead.update(zip(new, _sectors(new, QualityLimits()), strict=True))
+
+
+def _sectors(sections: Sequence[tuple[Toothing, MeshRecipe]], limits: QualityLimits) -> list[ToothSector]:
+    """Mesh a tooth sector of each section."""
+    outlines = [
+        tooth_outline(tooth_profile(gear), _sector_bottom(gear, recipe), recipe) for gear, recipe in sections
+    ]
+    parts = [
+        Part("tooth sector", (outline.outline,), gear.normal_module, recipe.growth)
+        for (gear, recipe), outline in zip(sections, outlines, strict=True)
+    ]
+    meshes = quadratic_meshes(parts, limits)
+    return [tooth_sector(mesh, outline) for mesh, outline in zip(meshes, outlines, strict=True)]
+
+
+def _modeled_teeth(gear: Toothing, recipe: MeshRecipe) -> IntArray:
+    """Return the teeth of a section: all of them, those of a toothed sector, or those of the recipe."""
+    return real_teeth(gear.teeth, gear.sector_teeth or recipe.real_teeth)
+
+
+def _sector_bottom(gear: Toothing, recipe: MeshRecipe) -> float:
     """Return the radius to which a tooth sector reaches, m."""
+    if gear.sector_teeth is not None:
+        return gear.seat_radius
+    all_real = len(_modeled_teeth(gear, recipe)) == gear.teeth
     depth = gear.rim_thickness
-    slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
+    slender = depth > SLENDER * gear.root_radius * tooth_profile(gear).pitch_angle
     if gear.web is None and all_real and not slender and gear.seat_radius >= TAPER * gear.root_radius:
         return gear.seat_radius
     return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
@@ -172,9 +220,10 @@ def _mesh_hub(
     """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
     toothed = hub_outline(gear, sector, teeth, recipe)
     rings = inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
-    meshes, around = [], toothed
+    parts, around = [], toothed
     for ring in rings:
         outermost_first = (around, ring.circle)[:: gear.sign]
-        meshes += quadratic_meshes({"hub": outermost_first}, gear.normal_module, recipe.growth, limits)
+        parts.append(Part("hub", outermost_first, gear.normal_module, recipe.growth))
         around = ring.circle.reversed()
+    meshes = quadratic_meshes(parts, limits)
     return joined_hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)

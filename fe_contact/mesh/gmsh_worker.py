@@ -4,7 +4,7 @@ Run as a script by `fe_contact.mesh.triangulation`, never imported by it: gmsh c
 crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from
 standard input and writes one to standard output::
 
-    {"regions": [[loop, ...], ...], "growth": 0.3, "seconds": 60}    loop = [[x, y], ...]
+    {"regions": [[loop, ...], ...], "growth": [0.3, ...], "seconds": 60}    loop = [[x, y], ...]
     {"regions": [{"points": [[x, y], ...], "triangles": [[i, j, k], ...]}, ...]}   or   {"error": "..."}
 
 The first loop of a region is its outer boundary, further ones are holes. The loops' points come first in
@@ -183,7 +183,10 @@ def main() -> None:
     try:
         gmsh = _start_gmsh()
         answer: dict[str, Any] = {
-            "regions": [_triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
+            "regions": [
+                _triangulate(gmsh, loops, growth)
+                for loops, growth in zip(request.get("regions", []), request.get("growth", []), strict=True)
+            ],
             "blocks": [_fill_block(gmsh, sides) for sides in request.get("blocks", [])],
         }
     except Exception as error:  # noqa: BLE001 - gmsh raises bare Exception; the parent turns the text into a MeshError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,10 @@ class Region:
     """Polygon with holes: `loops[0]` is the outer boundary, each loop (n, 2), first point not repeated."""
 
     loops: tuple[FloatArray, ...]
+    scale: float = 1.0
+    """Length in m of which gmsh works in multiples: its tolerances are absolute."""
+    growth: float = 0.3
+    """Growth of the triangles from the size of the boundary edges, per unit distance."""
 
 
 @dataclass(frozen=True)
@@ -37,30 +41,25 @@ class Triangulation:
 
 
 def triangulate(
-    regions: Sequence[Region],
-    scale: float,
-    growth: float = 0.3,
-    seconds: float = 60.0,
-    command: Sequence[str] | None = None,
+    regions: Sequence[Region], seconds: float = 60.0, command: Sequence[str] | None = None
 ) -> list[Triangulation]:
     """Fill each region with triangles that keep the edges of its loops undivided.
 
-    The size of the triangles grows from that of the boundary edges by `growth` per unit distance. All regions
-    are meshed in one child process, killed after `seconds`: the gmsh worker, or `command`. `scale` is the
-    length in m of which gmsh works in multiples (its tolerances are absolute). Raises `MeshError`: the child
-    failed, was killed, ran out of time or answered nonsense; the message says which.
+    All regions are meshed in one child process, killed after `seconds`: the gmsh worker, or `command`. Raises
+    `MeshError`: the child failed, was killed, ran out of time or answered nonsense; the message says which.
     """
-    loops = [[(loop / scale).tolist() for loop in r.loops] for r in regions]
+    loops = [[(loop / region.scale).tolist() for loop in region.loops] for region in regions]
+    growth = [region.growth for region in regions]
     answer = ask_gmsh({"regions": loops, "growth": growth}, seconds, command)
     try:
-        return [_received(r, mesh, scale) for r, mesh in zip(regions, answer["regions"], strict=True)]
+        return [_received(region, mesh) for region, mesh in zip(regions, answer["regions"], strict=True)]
     except (KeyError, ValueError, TypeError) as error:
         raise MeshError("gmsh worker: unusable answer") from error
 
 
-def _received(region: Region, mesh: dict[str, Any], scale: float) -> Triangulation:
+def _received(region: Region, mesh: dict[str, Any]) -> Triangulation:
     """Convert one answer, with the boundary points as they were given and triangles counter-clockwise."""
-    points = np.array(mesh["points"], dtype=float).reshape(-1, 2) * scale
+    points = np.array(mesh["points"], dtype=float).reshape(-1, 2) * region.scale
     boundary = np.concatenate(region.loops)
     points[: len(boundary)] = boundary
     triangles = np.array(mesh["triangles"], dtype=np.int64).reshape(-1, 3)
@@ -87,24 +86,36 @@ class QuadraticMesh:
     """Per outline the node numbers of its `nodes`, in their order."""
 
 
-def quadratic_meshes(
-    parts: Mapping[str, Sequence[Outline]],
-    scale: float,
-    growth: float,
-    limits: QualityLimits,
-    seconds: float = 60.0,
-) -> list[QuadraticMesh]:
-    """Fill each part, named for messages, with checked triangles; its first outline is the outer one.
+@dataclass(frozen=True)
+class Part:
+    """Part of a section."""
 
-    `scale`, `growth` and `seconds` are those of `triangulate`, which does all parts in one child process.
+    name: str
+    """Name in messages."""
+    outlines: tuple[Outline, ...]
+    """Outlines, the outer one first."""
+    scale: float
+    growth: float
+    """`scale`, `growth`: Those of its `Region`."""
+
+    @property
+    def region(self) -> Region:
+        """Polygon through the corners of the outlines."""
+        return Region(tuple(outline.corners for outline in self.outlines), self.scale, self.growth)
+
+
+def quadratic_meshes(
+    parts: Sequence[Part], limits: QualityLimits, seconds: float = 60.0
+) -> list[QuadraticMesh]:
+    """Fill each part with checked triangles, all in one child process (`triangulate`).
+
     Raises `MeshError`: gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
-    regions = [Region(tuple(outline.corners for outline in outlines)) for outlines in parts.values()]
     meshes = []
-    straight = triangulate(regions, scale, growth, seconds)
-    for (part, outlines), triangles in zip(parts.items(), straight, strict=True):
-        mesh = with_mid_side_nodes(outlines, triangles)
-        refuse_poor_elements(part, mesh.points, mesh.triangles, limits)
+    straight = triangulate([part.region for part in parts], seconds)
+    for part, triangles in zip(parts, straight, strict=True):
+        mesh = with_mid_side_nodes(part.outlines, triangles)
+        refuse_poor_elements(part.name, mesh.points, mesh.triangles, limits)
         meshes.append(mesh)
     return meshes
 

@@ -1,6 +1,7 @@
-"""The ripple of pairs as they are made, on bodies in memory: some are solved, the others follow by tangents.
+"""The ripple of pairs drawn within tolerances, on bodies in memory.
 
-The method is that of a tolerance Monte Carlo, in parts that are short enough for a live answer.
+Some of the pairs are solved; the curves of the others follow from tangents, their derivatives by the
+deviations. The method is that of a tolerance Monte Carlo, in parts that are short enough for a live answer.
 """
 
 from __future__ import annotations
@@ -23,16 +24,20 @@ from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.types import FloatArray
 from model_studies.spread import quantile_bounds, quantiles
 
-DRAWN, SOLVED = 1000, 16
-"""Number of drawn pairs, and of solved pairs among them. The ends of a band are off by 12 % of its width with
-8 solved pairs, 8 % with 16, 3 % with 64.
+DRAWN = 1000
+"""Number of drawn pairs."""
+SOLVED = 16
+"""Number of drawn pairs that are solved. The ends of a band are off by 12 % of its width with 8 solved pairs,
+8 % with 16, 3 % with 64.
 """
 IN_A_PART = 4
 """Number of pairs that are solved together; those of the first part have tangents. A part takes a fifth of a
 second.
 """
 FRACTIONS = 0.05, 0.95
+"""Fractions of the pairs below the ends of a band."""
 CONFIDENCE = 0.95
+"""Confidence of the bounds of these quantiles."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +64,7 @@ class RippleBand:
 
 @dataclass(frozen=True)
 class DrawnRipple:
-    """Pairs drawn within their tolerances, of which some are solved by now."""
+    """Pairs drawn within their tolerances, and the solutions of those that are solved so far."""
 
     evaluator: Evaluator
     """Evaluator of the pair as designed."""
@@ -83,50 +88,57 @@ class DrawnRipple:
         center_distance_change: float = 0.0,
         seed: int = 0,
     ) -> DrawnRipple:
-        """Draw pairs about one with flanks and alignment of its own, at the positions of a preview.
+        """Draw pairs within `tolerances` about a pair of given flanks and alignment.
 
-        Raises `InputError` as `CondensedPair.table`, or teeth that differ, or an effect that is off.
+        Positions are those of a preview, every other one of a table. Raises `InputError` as
+        `CondensedPair.table`, or for teeth that differ, or for an effect of the flanks that is off.
         """
-        question = pair, np.array([torque]), misalignment, center_distance_change
-        checked, contacts, _, nodes, plan = bodies.posed(*question)
+        request = pair, np.array([torque]), misalignment, center_distance_change
+        checked, contacts, _, nodes, plan = bodies.posed(*request)
         if checked.model.period > 1:
             bound = "left out where teeth differ"
             raise InputError("tolerance_class", "a class", bound, "For those, loa scatter draws pairs.")
         if not all(acts(name, checked) for name in tolerances.widths):
             bound = "left out where effects of the flanks are off"
             raise InputError("tolerance_class", "a class", bound, "Leave them at auto.")
-        skew, position = np.array([misalignment]), nodes.position[::2]
-        evaluator = Evaluator(contacts.fine, checked.request.choices, position, plan.load, skew, ONE_NODE)
+        misalignments, position = np.array([misalignment]), nodes.position[::2]
+        choices = checked.request.choices
+        evaluator = Evaluator(contacts.fine, choices, position, plan.load, misalignments, ONE_NODE)
         return cls(evaluator, tuple(tolerances.widths), tolerances.sample(DRAWN, seed))
 
     @property
     def solved(self) -> int:
-        """Pairs that are solved."""
+        """Number of the pairs that are solved."""
         return len(self.ste)
 
     @property
     def missing(self) -> int:
-        """Pairs that are still to be solved for a band."""
+        """Number of the pairs that are still to be solved for a band."""
         return SOLVED - self.solved
 
     def further(self) -> DrawnRipple:
-        """Solve further pairs; raises `SolveError`: the contact of one cannot be solved."""
+        """Return the same with further pairs solved; the first part gets tangents too.
+
+        Raises `SolveError`: the contact of a pair cannot be solved.
+        """
         part = self.deviation[self.solved : self.solved + IN_A_PART]
-        ste, by = curves_of_samples((self.evaluator, self.names), (self.model is None, part))
+        is_first = self.model is None
+        ste, derivatives = curves_of_samples((self.evaluator, self.names), (is_first, part))
         if not np.isfinite(ste).all():
             raise SolveError("the contact of a pair within the tolerances cannot be solved", ste)
-        if self.model is not None or by is None:
+        if not is_first or derivatives is None:
             return replace(self, ste=np.concatenate([self.ste, ste]))
         design = linearized(self.evaluator, {}, self.names, NO_LIMITS)
         nominal, variables = np.zeros((1, len(self.names))), (self.evaluator, self.names)
-        about = tangents_about(*variables, nominal, design.evaluation.ste, design.curves)
-        return replace(self, ste=ste, model=about.with_further(tangents_about(*variables, part, ste, by)))
+        nominal_tangents = tangents_about(*variables, nominal, design.evaluation.ste, design.curves)
+        pair_tangents = tangents_about(*variables, part, ste, derivatives)
+        return replace(self, ste=ste, model=nominal_tangents.with_further(pair_tangents))
 
     def band(self) -> RippleBand:
-        """Return the band of all pairs, once `SOLVED` are solved; tangents are held against the later ones.
+        """Return the band of all pairs, once `SOLVED` are solved.
 
-        An error has the bounds of the quantiles of so many pairs and what the tangents miss, root of the mean
-        square.
+        The solved pairs without tangents correct the model and show its error. An error combines the bounds
+        of the quantiles of `DRAWN` pairs with the root mean square error of the model.
         """
         assert self.model is not None
         known = self.deviation[IN_A_PART : self.solved]
@@ -136,12 +148,13 @@ class DrawnRipple:
         level = curves[..., 0] - curves[..., 0].mean(axis=1, keepdims=True)
         low, high = quantiles(level, FRACTIONS)
 
-        def spread(of: FloatArray, by_model: FloatArray, by_contact: FloatArray) -> Spread:
-            ends = [quantile_bounds(of, fraction, CONFIDENCE) for fraction in FRACTIONS]
-            bounds = max(float(0.5 * (above - below)[0]) for _, below, above in ends)
-            off = float(np.sqrt(np.mean((by_model - by_contact) ** 2)))
-            return Spread(float(ends[0][0][0]), float(ends[1][0][0]), float(np.hypot(bounds, off)))
+        def spread(every_pair: FloatArray, by_model: FloatArray, by_contact: FloatArray) -> Spread:
+            quantile_ends = [quantile_bounds(every_pair, fraction, CONFIDENCE) for fraction in FRACTIONS]
+            lowest, highest = (float(value[0]) for value, _, _ in quantile_ends)
+            half_bounds = max(float(0.5 * (above - below)[0]) for _, below, above in quantile_ends)
+            model_error = float(np.sqrt(np.mean((by_model - by_contact) ** 2)))
+            return Spread(lowest, highest, error=float(np.hypot(half_bounds, model_error)))
 
         ripple = (np.ptp(values, axis=1) for values in (curves, predicted, solved))
-        tone = (order_amplitude(values, 1, 1) for values in (curves, predicted, solved))
-        return RippleBand(self.evaluator.position, low, high, spread(*ripple), spread(*tone))
+        first_harmonic = (order_amplitude(values, 1, 1) for values in (curves, predicted, solved))
+        return RippleBand(self.evaluator.position, low, high, spread(*ripple), spread(*first_harmonic))

@@ -38,7 +38,7 @@ WOBBLE_SHARE = 0.5
 
 @dataclass(frozen=True)
 class PitchBounds:
-    """Bounds of pitches in a class, with the pitches that the eccentricity makes."""
+    """Bounds of the pitches of a gear in a class; they include the pitches that the eccentricity makes."""
 
     single: float
     cumulative: float
@@ -65,10 +65,11 @@ class PitchBounds:
         return cls(single, cumulative, largest, cosine, accumulated)
 
     def places(self, deviation: FloatArray) -> FloatArray:
-        """Return places of teeth (..., z), m, with accumulated pitch deviations.
+        """Return displacements of teeth (..., z), m, with accumulated pitch deviations.
 
-        Harmonic j of the teeth grows by the root of 1 - a + a / (2 sin^2(pi j / z)), a the part accumulated:
-        the mean square of a single pitch stays, and that of neighbors' difference is the same at every tooth.
+        With a the share of the accumulated deviation, harmonic j of the displacements over the z teeth is
+        multiplied by the root of 1 - a + a / (2 sin^2(pi j / z)). That leaves the mean square of a single
+        pitch as it is, and makes that of the difference of neighbors the same at every tooth.
         """
         if not self.accumulated:
             return deviation
@@ -79,13 +80,19 @@ class PitchBounds:
         return np.asarray(np.fft.irfft(lines, teeth, axis=-1))
 
     def bounded(self, eccentricity: float | FloatArray, deviation: FloatArray) -> FloatArray:
-        """Return places of teeth (..., z), m, scaled where they and the eccentricity pass a bound."""
-        arc = 2.0 * np.asarray(eccentricity)[..., None] / self.cosine
-        step = np.abs(deviation - np.roll(deviation, 1, axis=-1)).max(axis=-1, keepdims=True)
-        left = self.single - arc * math.sin(math.pi / deviation.shape[-1])
-        total = np.ptp(deviation, axis=-1, keepdims=True)
-        tiny = np.finfo(float).tiny
-        share = np.minimum(left / np.maximum(step, tiny), (self.cumulative - arc) / np.maximum(total, tiny))
+        """Return displacements of teeth (..., z), m, scaled down where they exceed a bound.
+
+        A bound applies to the sum of the displacements and those by the eccentricity.
+        """
+        by_eccentricity = 2.0 * np.asarray(eccentricity)[..., None] / self.cosine  # range over a revolution
+        single = np.abs(deviation - np.roll(deviation, 1, axis=-1)).max(axis=-1, keepdims=True)
+        cumulative = np.ptp(deviation, axis=-1, keepdims=True)
+        single_limit = self.single - by_eccentricity * math.sin(math.pi / deviation.shape[-1])
+        cumulative_limit = self.cumulative - by_eccentricity
+        tiny = np.finfo(float).tiny  # a gear without deviations has nothing to scale
+        share = np.minimum(
+            single_limit / np.maximum(single, tiny), cumulative_limit / np.maximum(cumulative, tiny)
+        )
         return np.asarray(deviation * np.clip(share, 0.0, 1.0))
 
 
@@ -96,16 +103,16 @@ class ToothTolerances:
     gear: str
     teeth: int
     widths: Mapping[str, float]
-    """Half widths in m: ``run_out``, the eccentricity; ``wobble``, the largest helix slope of a revolution;
-    ``pitch_deviation``, the place of each tooth; ``tooth_flanks.profile_slope`` and the like, the part of a
-    tolerance that teeth have not in common.
+    """Half widths in m by name. ``run_out``: the eccentricity. ``wobble``: the largest helix slope over a
+    revolution. ``pitch_deviation``: the displacement of each tooth. ``tooth_flanks.profile_slope`` and
+    others: the part of a tolerance by which single teeth differ.
     """
     distribution: Distribution = "normal"
     """Distribution of the deviations, as in `Tolerances`. A normal distribution of eccentricity and wobble
     holds in both directions.
     """
     pitches: PitchBounds | None = None
-    """Bounds to which the places of all teeth are scaled; None: the places have no common bound."""
+    """Bounds to which the displacements of all teeth are scaled; None: they have no common bound."""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -119,34 +126,40 @@ class ToothTolerances:
         return 2 * of_axis + (len(self.widths) - of_axis) * self.teeth
 
     def drawn(self, count: int, seed: int, after: int = 0) -> DrawnTeeth:
-        """Draw gears from a scrambled Sobol' sequence, of which `after` dimensions are others'.
+        """Draw gears from a scrambled Sobol' sequence.
 
-        A larger sample of the same seed begins with a smaller one.
+        The first `after` dimensions of the sequence belong to other deviations. A larger sample of the same
+        seed begins with the smaller one.
         """
         from scipy.stats import qmc  # noqa: PLC0415 (start-up time)
 
-        of_axis = [name for name in OF_AXIS if name in self.widths]
-        of_teeth = [name for name in self.widths if name not in OF_AXIS]
-        of_both = 2 * len(of_axis)
+        axis_names = [name for name in OF_AXIS if name in self.widths]
+        tooth_names = [name for name in self.widths if name not in OF_AXIS]
         sequence = qmc.Sobol(after + self.dimensions, rng=seed)
+        # the length of a sequence is a power of two
         uniform = sequence.random_base2(max(count - 1, 1).bit_length())[:count, after:]
-        of_tooth = uniform[:, of_both:].reshape(count, len(of_teeth), self.teeth)
+        first_of_teeth = 2 * len(axis_names)  # amount and angle of each deviation of the axis come first
+        tooth_uniform = uniform[:, first_of_teeth:].reshape(count, len(tooth_names), self.teeth)
         by_axis = {
             name: self._amounts(name, uniform[:, 2 * k]) * np.exp(2j * math.pi * uniform[:, 2 * k + 1])
-            for k, name in enumerate(of_axis)
+            for k, name in enumerate(axis_names)
         }
         by_tooth = {
-            name: spread_within(self.widths[name], of_tooth[:, k], self.distribution)
-            for k, name in enumerate(of_teeth)
+            name: spread_within(self.widths[name], tooth_uniform[:, k], self.distribution)
+            for k, name in enumerate(tooth_names)
         }
         return DrawnTeeth(by_axis, by_tooth, self.pitches)
 
     def _amounts(self, name: str, uniform: FloatArray) -> FloatArray:
+        """Return amounts of a deviation of the axis from numbers in [0, 1).
+
+        Normal in both directions is a Rayleigh distribution of the amount, cut off at the width.
+        """
         limit = self.widths[name]
         if self.distribution == "uniform":
             return np.asarray(limit * uniform)
-        below = 1.0 - math.exp(-0.5 * PROCESS_SPREAD**2)
-        return np.asarray(limit / PROCESS_SPREAD * np.sqrt(-2.0 * np.log1p(-below * uniform)))
+        below_limit = 1.0 - math.exp(-0.5 * PROCESS_SPREAD**2)  # probability without the cut
+        return np.asarray(limit / PROCESS_SPREAD * np.sqrt(-2.0 * np.log1p(-below_limit * uniform)))
 
 
 @dataclass(frozen=True)
@@ -154,12 +167,12 @@ class DrawnTeeth:
     """N gears of z teeth each."""
 
     by_axis: Mapping[str, ComplexArray]
-    """Eccentricity and wobble in m, their angles as of `RunOut`: complex. Mapping of str to ndarray, shape
-    (N,).
+    """Eccentricity and wobble by name: complex numbers of their amount in m and their angle, as of `RunOut`.
+    Shape (N,) each.
     """
     by_tooth: Mapping[str, FloatArray]
-    """Pitch deviations on the reference circle and deviations of single flanks, m; > 0 is material in excess.
-    They are as drawn; `made` is scaled to the class. Mapping of str to ndarray, shape (N, z).
+    """Pitch deviations on the reference circle and deviations of single flanks by name, m; > 0 is material in
+    excess. They are as drawn; those of `made` are scaled to the class. Shape (N, z) each.
     """
     pitches: PitchBounds | None = None
     """Bounds of the pitches, as in `ToothTolerances`."""
@@ -179,7 +192,7 @@ class DrawnTeeth:
         return (self.by_axis if name in OF_AXIS else self.by_tooth)[name]
 
     def changed(self, name: str, amount: Any) -> DrawnTeeth:
-        """Return the gears with one deviation drawn otherwise."""
+        """Return the gears with other amounts of one deviation."""
         if name in OF_AXIS:
             return replace(self, by_axis={**self.by_axis, name: amount})
         return replace(self, by_tooth={**self.by_tooth, name: amount})
@@ -191,14 +204,14 @@ class DrawnTeeth:
 
     def fields(self, index: int) -> dict[str, Any]:
         """Return the fields of one of the gears."""
-        turning = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)
-        axis = [figure for amount in turning for figure in cmath.polar(amount)]
+        vectors = (complex(self.by_axis[name][index]) if name in self.by_axis else 0j for name in OF_AXIS)
+        axis = [part for vector in vectors for part in cmath.polar(vector)]  # amount and angle of each
         by_name = {name: values[index].tolist() for name, values in self.made.items()}
         pitch = by_name.pop(PITCH, ())
-        figures = {name.removeprefix(FLANK): values for name, values in by_name.items()}
+        deviations = {name.removeprefix(FLANK): values for name, values in by_name.items()}
         flanks = tuple(
-            ToothFlank(tooth, **dict(zip(figures, amounts, strict=True)))
-            for tooth, amounts in enumerate(zip(*figures.values(), strict=True), start=1)
+            ToothFlank(tooth, **dict(zip(deviations, amounts, strict=True)))
+            for tooth, amounts in enumerate(zip(*deviations.values(), strict=True), start=1)
         )
         return {
             "run_out": RunOut(*axis),
@@ -216,14 +229,15 @@ def iso1328_tooth_tolerances(
     distribution: Distribution = "normal",
     finishing: Finishing = "any",
 ) -> ToothTolerances:
-    """Return the differences between the teeth of one gear by ISO 1328-1:2013.
+    """Return the tolerances of the differences between the teeth of one gear by ISO 1328-1:2013.
 
-    The eccentricity is at most half the run-out F_rT, a tooth by itself at most half of f_pT out of its
-    place. Of the square of a single pitch the teeth behind keep the part `ACCUMULATED`; all places are scaled
-    where pitches and eccentricity together pass f_pT or F_pT (`PitchBounds`). Of a slope or
-    form of which all teeth have the part c in common, the rest is the root of 1 - c^2 of the tolerance
-    (`COMMON`). Wobble is a helix slope once per revolution: of the square of this rest it has the part
-    `WOBBLE_SHARE`, single flanks have the others.
+    Pitches: the eccentricity is at most half the run-out F_rT, and the displacement of a single tooth at most
+    half of f_pT. Following teeth keep the share `ACCUMULATED` of the square of a pitch deviation. Where
+    pitches and eccentricity together exceed f_pT or F_pT, all displacements are scaled (`PitchBounds`).
+
+    Flanks: all teeth have a part c of the tolerance of a slope or form in common (`COMMON`). Single teeth
+    differ by the root of 1 - c^2 of the tolerance. Of the square of that difference of helix slopes, wobble,
+    which varies once per revolution, has the share `WOBBLE_SHARE`, and single flanks have the rest.
     """
     toothing: Toothing = getattr(pair, gear)
     flanks = {

@@ -11,6 +11,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import increasing
 from fe_contact.geometry import ParallelAxes
@@ -175,7 +176,7 @@ class Perturbation:
 
 @brief
 @dataclass(frozen=True)
-class Optimization:
+class Optimization(Plottable):
     """Result of `optimize`."""
 
     outcome: Outcome

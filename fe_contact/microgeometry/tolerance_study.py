@@ -10,6 +10,7 @@ import numpy as np
 
 from bounds import MAX_BYTES, at_most
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import InputError, SolveError, integer, within
 from fe_contact.geometry import ParallelAxes
@@ -133,7 +134,7 @@ class WithinClass:
 
 @brief
 @dataclass(frozen=True)
-class ToleranceStudy:
+class ToleranceStudy(Plottable):
     """Peak-to-peak of N pairs at L torques."""
 
     torque: FloatArray = field(metadata=in_unit("n_m", "torque"))

@@ -103,8 +103,8 @@ _ROW_NUMBERS, _LOAD_NUMBERS = 150, 160
 STAGES = ("compliance", "contact", "error estimate")
 PROCESS_BYTES = 210_000_000
 """Memory of a process with the libraries loaded and a small table, bytes."""
-# CPU seconds of a gear in the plane: process of the mesher, hub mesh, sector factors, ring, hub freedoms
-_MESHER, _HUB = 0.095, 0.025
+# CPU seconds of a gear in the plane: sector mesh, hub mesh, sector factors, ring, hub freedoms
+_MESHER, _HUB = 0.036, 0.025
 _SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
 _DEEP_RING = 9.4
 """Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""

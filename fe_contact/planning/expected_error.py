@@ -59,7 +59,7 @@ class ExpectedError:
     positions: float
     """Error by interpolation between positions."""
     plane: float
-    """Error of the plane as a model of three dimensions."""
+    """Error of a plane model for the gears in three dimensions; 0 in three dimensions."""
     method: float
     """Error of the method against full contact, for any mesh (`model_error`)."""
     mean: float | None = None
@@ -80,25 +80,29 @@ class ExpectedError:
         return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
 
     @property
-    def bought(self) -> float:
-        """The part that work lowers, to which a tolerance applies: with the plane, unless it was chosen."""
+    def reducible(self) -> float:
+        """The part that more computation lowers, to which a tolerance applies.
+
+        It includes the error of the plane, which a run in three dimensions does not have, unless the caller
+        chose the model.
+        """
         return self.numerical if self.chosen else float(np.hypot(self.numerical, self.plane))
 
     @property
     def prudent(self) -> float:
-        """The part that work lowers which nine runs of ten keep, as far as the scatter of runs is known."""
-        return self.bought * math.exp(NINE_OF_TEN * self.scatter)
+        """Bound of the reducible error that nine runs of ten keep, as far as the scatter of runs is known."""
+        return self.reducible * math.exp(NINE_OF_TEN * self.scatter)
 
     def probability(self, relative: float) -> float | None:
         """Return the part of runs that keep a relative tolerance; None where their scatter is not known."""
-        if not self.scatter or not self.bought:
+        if not self.scatter or not self.reducible:
             return None
-        return 0.5 * math.erfc(-math.log(relative / self.bought) / (math.sqrt(2.0) * self.scatter))
+        return 0.5 * math.erfc(-math.log(relative / self.reducible) / (math.sqrt(2.0) * self.scatter))
 
     @property
     def text(self) -> str:
         """Text of the errors that a tolerance applies to."""
-        plane = f", with the plane {percent(self.bought)} %" if self.bought > self.numerical else ""
+        plane = f", with the plane {percent(self.reducible)} %" if self.reducible > self.numerical else ""
         return f"{percent(self.numerical)} %{plane}"
 
     @property
@@ -115,15 +119,15 @@ class ExpectedError:
 
 
 def expected_error(
-    pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None = None, *, bound: bool = False
+    pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None = None, *, model_chosen: bool = False
 ) -> ExpectedError:
-    """Say the error of a plan.
+    """Return the error that a run of a plan is expected to state.
 
     Parameters
     ----------
     curves : ExpectedCurves, optional
         What is known of mean and peak-to-peak before the run; default: those of usual pairs.
-    bound : bool
+    model_chosen : bool
         The caller chose the model.
     """
     known = curves or usual_curves(pair, plan)
@@ -137,7 +141,9 @@ def expected_error(
     at_worst = {name: float((part / known.scale)[worst]) for name, part in parts.items()}
     mean, ripple = (float(value) for value in absolute.max(axis=1)) if known.absolute else (None, None)
     scatter = QUIET_SCATTER if _is_quiet(pair, plan) else 0.0
-    return ExpectedError(**at_worst, mean=mean, peak_to_peak=ripple, chosen=bound, bias=bias, scatter=scatter)
+    return ExpectedError(
+        **at_worst, mean=mean, peak_to_peak=ripple, chosen=model_chosen, bias=bias, scatter=scatter
+    )
 
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:

@@ -1,4 +1,8 @@
-"""Choice of mesh and slices for a tolerance or a time, by the models of error and of cost."""
+"""Choice of mesh and slices for a tolerance or a time, by the models of error and of cost.
+
+A mesh is one of `MESHES` by its name; it is two-dimensional ("in the plane") or extruded over the face, which
+is then cut into slices.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from bounds import engineering
 from fe_contact.allowed_error import AllowedError
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.options import BETWEEN, LEVELS, MESHES, AnalysisOptions
+from fe_contact.options import LEVELS, MEDIUM, MESHES, AnalysisOptions
 from fe_contact.planning.cost_model import effort, predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.expected_curves import (
@@ -32,8 +36,8 @@ class MeshOption:
     """Number of slices of the face; 1 in the plane."""
     error: ExpectedError
     effort: float
-    """CPU seconds of a run on the host on which the models were measured, with an empty cache. They are equal
-    on every host, and so is the choice.
+    """CPU seconds of a run on the host on which the cost model was measured, with an empty cache. The number
+    does not depend on this host, so that every host makes the same choice.
     """
 
     @property
@@ -68,35 +72,42 @@ class MeshChoice:
 
 
 def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
-    """Return the option of least effort whose error is expected to be within the tolerance, prudently.
+    """Return the option of least effort whose reducible error is expected to be within the tolerance.
 
-    Prudent is what nine runs of ten keep, where runs scatter by a known amount: a mesh that misses is paid
-    for as well as the one after it. What is expected within the tolerance, but not prudently, comes next.
+    Where the scatter of runs is known, an option counts first by its prudent error, which nine runs of ten
+    keep: a run that misses the tolerance costs a second run on a finer mesh. If no prudent error is within
+    the tolerance, the expected errors count.
 
-    Expected errors are parts of the size of each quantity that the tolerance counts by, and without what
-    lasts, which no mesh mends. If there is none: where it is the plane that is beyond it, the one of least
-    effort whose numerical error is within it; else the most exact one. Said in either case.
+    If no expected error is within the tolerance either, the choice says so. Where the error of the plane
+    alone exceeds the tolerance, it is the option of least effort whose numerical error is within it. Else it
+    is the option with the smallest error.
     """
     within = [option for option in options if option.error.prudent <= tolerance.relative]
-    within = within or [option for option in options if option.error.bought <= tolerance.relative]
+    within = within or [option for option in options if option.error.reducible <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
         return MeshChoice(best, True, f"expected error {best.error.text}{_probability_text(best, tolerance)}")
-    enough = [option for option in options if option.error.numerical <= tolerance.relative]
-    beyond = min(option.error.plane for option in options) > tolerance.relative
-    best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.bought)
+    fine_enough = [option for option in options if option.error.numerical <= tolerance.relative]
+    plane_exceeds = min(option.error.plane for option in options) > tolerance.relative
+    if fine_enough and plane_exceeds:
+        best = min(fine_enough, key=_effort)
+    else:
+        best = min(options, key=lambda option: option.error.reducible)
     error = best.error
     parts = f"mesh {percent(error.numerical)} %, plane {percent(error.plane)} %"
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.text} ({parts})")
 
 
 def _probability_text(option: MeshOption, tolerance: AllowedError) -> str:
-    """Return in how many runs the mesh keeps the tolerance, and the mesh of the other runs' second pass."""
+    """Return the text of the share of runs whose error is within the tolerance, and of the others' next mesh.
+
+    It is empty where the scatter of runs is not known.
+    """
     probability = option.error.probability(tolerance.relative)
     if probability is None:
         return ""
     finer = MESHES[min(MESHES.index(option.level) + 1, len(MESHES) - 1)]
-    following = "standard" if finer == BETWEEN else finer
+    following = "standard" if finer == MEDIUM else finer  # a second pass does not use the medium mesh
     share = min(round(100.0 * probability), 99)
     return f", within the tolerance in {share} % of runs; others take a second pass, mesh {following} at most"
 
@@ -126,20 +137,23 @@ def mesh_options(
     alignments: tuple[int, int] = (1, 1),
     curves: ExpectedCurves | None = None,
     *,
-    bound: bool = False,
+    model_chosen: bool = False,
 ) -> list[MeshOption]:
-    """Return the meshes and slices that there are, the levels first; parameters of `chosen_mesh`."""
+    """Return all meshes and numbers of slices of a request, `LEVELS` first.
+
+    The parameters are those of `chosen_mesh`.
+    """
 
     def option(level: str, slices: int | None = None) -> MeshOption:
         plan = make_plan(pair, load, options, model, level, slices)
-        error = expected_error(pair, plan, curves, bound=bound)
+        error = expected_error(pair, plan, curves, model_chosen=model_chosen)
         return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
 
     if options.level is not None:
         return [option(options.level)]
     meshes = [option(level) for level in LEVELS]
-    usual = make_plan(pair, load, options, model, "draft").discretization
-    if isinstance(usual, FaceDiscretization):
+    discretization = make_plan(pair, load, options, model, "draft").discretization
+    if isinstance(discretization, FaceDiscretization):  # any level tells whether the model is extruded
         levels = MESHES if is_relieved_helical(pair) else LEVELS
         meshes += [option(level) for level in levels if level not in LEVELS]
         meshes += [option(level, n) for level in levels for n in FINER_SLICES]
@@ -155,7 +169,7 @@ def chosen_mesh(
     cache: Path | None = None,
     curves: ExpectedCurves | None = None,
     *,
-    bound: bool = False,
+    model_chosen: bool = False,
 ) -> MeshChoice:
     """Choose mesh and slices by the tolerance, without one by the time budget.
 
@@ -164,21 +178,21 @@ def chosen_mesh(
     load : ndarray
         Requested normal forces in N.
     alignments : (int, int)
-        Numbers of misalignments and of center distances.
+        Numbers of misalignments and of center distances of the table.
     cache : Path, optional
-        Directory of compliances and of what is known of the host: a time depends on them, a tolerance does
-        not.
+        Directory of compliances and of the measured speed of this host. The choice by a time budget depends
+        on them; the choice by a tolerance does not.
     curves : ExpectedCurves, optional
-        What is known of the transmission error of the case.
-    bound : bool
-        The caller chose the model.
+        Estimate of the transmission error of the case.
+    model_chosen : bool
+        Whether the caller chose the model; a tolerance then does not apply to the error of the plane.
     """
 
     def seconds(choice: MeshOption) -> float:
         plan = make_plan(pair, load, options, model, choice.level, choice.slices)
         return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
-    meshes = mesh_options(pair, load, options, model, alignments, curves, bound=bound)
+    meshes = mesh_options(pair, load, options, model, alignments, curves, model_chosen=model_chosen)
     if options.level is not None:
         return MeshChoice(meshes[0], True, "as requested")
     if options.tolerance is None and options.time_budget is None:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds.brief import Row, brief
+from bounds.plottable import Plottable
 from fe_contact.ste import extraction, netcdf
 from fe_contact.ste.curve import Curve, curve
 from fe_contact.ste.fields import SteFields
@@ -64,7 +65,7 @@ class _StoredPoint(TypedDict, total=False):
 
 
 @brief
-class SteDatabase(SteFields):
+class SteDatabase(SteFields, Plottable):
     """Static transmission error over position, load, misalignment and center distance.
 
     The attributes are those of `SteFields`. Arguments left at None mean: perfect alignment, or the only

@@ -30,7 +30,7 @@ DESCRIPTORS = 3
 
 
 def main() -> None:
-    """Warm up, then obey."""
+    """Warm up, then serve requests until the starter is gone."""
     channel = socket.socket(fileno=int(sys.argv[1]))
     work: Work = importlib.import_module(sys.argv[2]).work
     for name in sys.argv[3:]:
@@ -52,30 +52,31 @@ def _obeyed(request: dict[str, Any], descriptors: list[int], channel: socket.soc
     """Fork a child and return its id, or reap one and return how it ended."""
     if "reap" in request:
         return reap(request["reap"])
-    leads, notes = os.pipe()
+    # the child closes its end of this pipe once it leads a session; `os.read` below waits for that
+    wait_end, child_end = os.pipe()
     try:
         _flush()
         if (pid := os.fork()) == 0:
             channel.close()
-            os.close(leads)
-            _become_worker(descriptors, request["workspace"], notes, work)
-        os.close(notes)
-        os.read(leads, 1)  # closed by the child once it leads a group, which can be killed
+            os.close(wait_end)
+            _become_worker(descriptors, request["workspace"], child_end, work)
+        os.close(child_end)
+        os.read(wait_end, 1)  # from now on the group of the child can be killed
         return pid
     except OSError as error:
-        os.close(notes)
+        os.close(child_end)
         return {"errno": error.errno, "strerror": error.strerror}
     finally:
-        for descriptor in (leads, *descriptors):
+        for descriptor in (wait_end, *descriptors):
             os.close(descriptor)
 
 
-def _become_worker(descriptors: list[int], workspace: str, notes: int, work: Work) -> NoReturn:
-    """Do as a worker that was started anew, and end; close `notes` when it leads its session."""
+def _become_worker(descriptors: list[int], workspace: str, child_end: int, work: Work) -> NoReturn:
+    """Run this fork as a worker until its end; close `child_end` once it leads its session."""
     code = 1
     try:
         lead_session()
-        os.close(notes)
+        os.close(child_end)
         orders, answers, log = descriptors
         for source, target in ((orders, 0), (log, 1), (log, 2)):
             os.dup2(source, target)
@@ -94,7 +95,7 @@ def _become_worker(descriptors: list[int], workspace: str, notes: int, work: Wor
 
 
 def _flush() -> None:
-    """Leave nothing in buffers that a child would write again."""
+    """Empty the buffers of standard output and error, which a fork would write once more."""
     sys.stdout.flush()
     sys.stderr.flush()
 

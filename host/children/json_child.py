@@ -27,9 +27,10 @@ class ChildFailed(Exception):
     Parameters
     ----------
     cause : str
-        What became of it.
+        Reason of the failure, e.g. "killed by SIGKILL".
     complaint : str
-        The last line that it printed: of readers of foreign bytes that is not to be shown.
+        The last line that it printed, which may quote its input. Do not show it to users where the child
+        reads files of others: `cause` alone is safe.
     """
 
     def __init__(self, cause: str, complaint: str = "") -> None:
@@ -50,7 +51,7 @@ def ask_child(
 ) -> dict[str, Any]:
     """Run a child on one request and return its answer.
 
-    Raises `ChildOutOfMemory`, `ChildFailed`: also if the answer is an ``error``: its text.
+    Raises `ChildOutOfMemory`; `ChildFailed`, also with the text of an ``error`` in the answer.
 
     Parameters
     ----------
@@ -61,9 +62,10 @@ def ask_child(
     command : sequence of str
         Program and arguments. It finds Python modules where this process does.
     folder : Path, optional
-        Where it works; default: where this process does.
+        Working directory of the child; default: that of this process.
     limits : Limits, optional
-        Those of a child that confines itself and writes into `folder` alone: it is ended beyond them.
+        Limits of what the child writes into `folder`; the child is killed when it exceeds them. The child
+        must confine itself to writing there alone.
     """
     watch = Watch.begun(seconds, folder, limits)
     answer = _ask(json.dumps(request | {"seconds": seconds}), watch, command)
@@ -97,7 +99,7 @@ def _ask(request: str, watch: Watch, command: Sequence[str]) -> dict[str, Any]:
         answer = json.loads(output)
     except json.JSONDecodeError as error:
         raise ChildFailed("unusable answer") from error
-    return answer if isinstance(answer, dict) else {}
+    return answer if isinstance(answer, dict) else {}  # callers take it for an answer without keys
 
 
 def _communicated(child: subprocess.Popen[str], request: str, watch: Watch) -> tuple[str, str]:

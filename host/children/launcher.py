@@ -1,7 +1,8 @@
 """Child processes that work on one order each: new processes, or forks of a warm process.
 
-A child forked from it needs no imports and no compilation. It is started for the first child, which waits for
-it: both take what that child alone would. Where it cannot be had, or not in time, children are started anew.
+A child that is forked from a warm process needs no imports and no compilation. The warm process starts with
+the first child, which waits for it: that child would need the same imports by itself. Where a warm process
+cannot be started, or is not ready in time, children are new processes.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _FORK_SERVER = (sys.executable, "-P", "-m", "host.children.fork_server")
 another program's.
 """
 MAX_FORKS = 500
-"""Number of children of one warm process; then a new one takes its place."""
+"""Number of children of one warm process, which a new one then replaces."""
 WARM_WITHIN_S = 10.0
 """Longest wait of a child for a warm process, s. An idle machine starts one in two seconds."""
 _PATIENCE_S = 10.0
@@ -42,7 +43,7 @@ Warn: TypeAlias = Callable[..., object]
 class Launcher:
     """Launches children that do ``work(descriptor)`` of a module, forked from a warm process where it can.
 
-    It is for one thread, but for `hurry` and `close`.
+    One thread calls its methods; any thread may call `hurry` and `close`.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ class Launcher:
         return start_child(self._work, ends)
 
     def hurry(self) -> None:
-        """Let no child wait for a warm process until all is closed; for any thread."""
+        """Let no child wait for a warm process until `close` is called; any thread may call it."""
         self._waits = False
         if (server := self._server) is not None:
             server.end_unless_ready()
@@ -207,12 +208,12 @@ class WarmProcess:
         return json.loads(answer)
 
     def end_unless_ready(self) -> None:
-        """Kill it while it warms up; for any thread."""
+        """Kill the process while it warms up; any thread may call it."""
         if not self._ready:
             self._process.kill()
 
     def close(self) -> None:
-        """End it; its children live on."""
+        """End the process; its children live on."""
         self._channel.close()
         self._process.kill()
         self._process.wait()

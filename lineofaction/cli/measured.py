@@ -35,26 +35,25 @@ def run_measured(
     *,
     as_json: bool,
 ) -> None:
-    """Write the case with the measured deviations, or without a sheet the sheet of the case.
+    """Write the case with the measured deviations; without a sheet, write the sheet that the case would give.
 
-    Of a folder of sheets it writes the population.
-
-    `mounted` are the fields of `Inspected`.
+    Of a folder of sheets the population is written.
+    `mounted`: name of the inspected gear, its loaded flanks and the cut-off in mm, the fields of `Inspected`.
     """
-    case, of = read_model(Case, file), Inspected(*mounted)
+    case, inspected_gear = read_model(Case, file), Inspected(*mounted)
     if output is not None:
         check_writable(output)
     if sheet is None:
-        _write(output, sheet_text(inspected(of.chart(case))))
+        _write(output, sheet_text(inspected(inspected_gear.chart(case))))
         return
     if sheet.is_dir():
-        run_folder(case, sheet, of, output, as_json=as_json)
+        run_folder(case, sheet, inspected_gear, output, as_json=as_json)
         return
     try:
         text, values = read_text(sheet, str(sheet)), values_beside(sheet)
     except BadInput as error:
         raise error.within(FIELD) from None
-    changed, gear = measured_case(case, text, str(sheet), of, values)
+    changed, gear = measured_case(case, text, str(sheet), inspected_gear, values)
     warn(machine_warnings(gear.differences))
     warn(omission_warnings(gear.omitted, "case"))
     written = [] if output is None or (gear.differences and STRICT.get()) else [output]

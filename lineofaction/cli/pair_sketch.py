@@ -1,4 +1,4 @@
-"""A pair from few arguments, its data by rule."""
+"""A gear pair from few arguments; rules of thumb give the rest of its data."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ OVERLAP = 1.5
 LOAD = 60.0
 """Tangential force over face width and module, N/mm^2: roughly the endurable load of hardened gears."""
 _FRACTIONS = (0.1, 0.25, 0.5, 0.75, 1.0)
+"""Torques of a case over the torque of `LOAD`."""
 _BORE = 0.45
 """Bore diameter over root diameter."""
 _RIM = 3.0
@@ -24,12 +25,15 @@ _RIM = 3.0
 
 @dataclass(frozen=True)
 class GearSketch:
-    """A gear, in mm and um; `bore` is the diameter of the bore, of a ring gear that of the rim."""
+    """A gear as its case file has it, in mm and um."""
 
     teeth: int
     shift: float
+    """Profile shift in modules."""
     bore: float
+    """Diameter of the bore; of a ring gear, the outside diameter of the rim."""
     allowance: float
+    """Thinning of the teeth, which makes the backlash; 0: the case file leaves it out."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ class PairSketch:
 
     @property
     def relief(self) -> tuple[float, float]:
-        """Tip relief in um and its length in mm: the bending of teeth under this load, over 0.4 modules."""
+        """Tip relief in um, near the deflection of teeth under `LOAD`, and its length in mm: 0.4 modules."""
         return round(5.0 + 5.0 * self.module), round(0.4 * self.module, 2)
 
     @property
@@ -100,7 +104,7 @@ def ring_pair(module: float, helix: float, width: float, teeth: int, ring_teeth:
         width,
         distance,
         GearSketch(teeth, 0.0, bore_diameter(pinion), 0.0),
-        GearSketch(ring_teeth, 0.0, rim, 2.0 * allowance),
+        GearSketch(ring_teeth, 0.0, rim, 2.0 * allowance),  # the ring alone makes the backlash
         _torques(pinion),
         _ring_addendum(pinion, ring_teeth, distance),
     )
@@ -111,8 +115,8 @@ def _ring_addendum(pinion: Gear, ring_teeth: int, distance: float) -> float:
     ratio = ring_teeth / pinion.teeth
     tangent = distance * MM * math.sin(pinion.transverse_pressure_angle)
     minimum = math.hypot(ratio * pinion.base_radius, tangent + pinion.form_roll_length)
-    free = (ratio * pinion.reference_radius - minimum) / pinion.normal_module
-    return min(0.9, math.floor(20.0 * (free - 0.02)) / 20.0)
+    largest = (ratio * pinion.reference_radius - minimum) / pinion.normal_module
+    return min(0.9, math.floor(20.0 * (largest - 0.02)) / 20.0)  # 0.02 modules to spare, steps of 1/20
 
 
 def _hunting_teeth(teeth: int, ratio: float) -> int:
@@ -130,9 +134,14 @@ def face_width(module: float, helix: float) -> float:
 
 
 def blank_table(teeth: int, module: float, helix: float, width: float) -> Gear:
-    """Return a gear without profile shift; enough of one that is undercut to measure it."""
-    lengths = (module * MM, width * MM, 0.1 * teeth * module * MM)
-    return Gear(teeth, *lengths, helix_angle=helix * DEGREE)
+    """Return a gear without profile shift, from which a sketch is measured; it may be undercut."""
+    return Gear(
+        teeth,
+        normal_module=module * MM,
+        face_width=width * MM,
+        bore_diameter=0.1 * teeth * module * MM,  # no measure of a sketch depends on it
+        helix_angle=helix * DEGREE,
+    )
 
 
 def bore_diameter(gear: Gear, shift: float = 0.0) -> float:

@@ -59,8 +59,8 @@ from model_studies.workers import Workers
 
 Writer = Callable[[Any, Path], object]
 
-_MAX_SAID = 2
-"""First lines of a study among which a main result may stand already."""
+_FIRST_LINES = 2
+"""Number of the first lines of a study's text; a main result that stands among them is not printed twice."""
 
 
 def run_study(study: Study, options: Json) -> None:
@@ -79,15 +79,15 @@ def run_study(study: Study, options: Json) -> None:
     targets = _targets(study, options["output"], files[0])
     for subject, _ in subjects:
         study.run.check(subject, inputs)
-    written = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
+    fields = [subject.case if isinstance(subject, CheckedCase) else subject for subject, _ in subjects]
     runs = targets[0].with_name(f"{targets[0].stem}_runs") if targets else None
-    stopping = until_interrupted if study.run.interruptible else nullcontext
+    interrupts = until_interrupted if study.run.interruptible else nullcontext
     with (
         open_executor(options["workers"], options["scheduler"]) as others,
         _announced_cost(study, subjects, inputs, options),
-        cached_workers(study, written, inputs, others) as workers,
+        cached_workers(study, fields, inputs, others) as workers,
         progress_bar() as report,
-        stopping() as cancel,
+        interrupts() as cancel,
     ):
         means = Means(cache_home(), report, workers, cancel, runs, run)
         results = [
@@ -103,7 +103,7 @@ def run_study(study: Study, options: Json) -> None:
     warn(study.run.warnings(result) or ())
     source = read[0][0]
     about = (source.case if isinstance(source, CheckedCase) else source).report
-    _tell(study, (subjects[0][0], about), result, targets, options, remote_seconds)
+    _write_and_print(study, (subjects[0][0], about), result, targets, options, remote_seconds)
     if interrupted:
         raise KeyboardInterrupt("interrupted. The result above is the best so far.")
     if failure := study.run.failure(result):
@@ -121,7 +121,7 @@ def _announced_cost(study: Study, subjects: Sequence[Any], inputs: Any, options:
     yield
 
 
-def _tell(
+def _write_and_print(
     study: Study,
     subject: tuple[Any, ReportInput | None],
     result: Any,
@@ -129,7 +129,7 @@ def _tell(
     options: Json,
     remote_seconds: float,
 ) -> None:
-    """Write and print; the subject comes with its title block."""
+    """Write a result into its files and print it; `subject` is the case or scene, with its title block."""
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _writers(study, *subject)[target.suffix](result, target)
@@ -147,7 +147,7 @@ def _tell(
 
 
 def _inputs(study: Study, options: Json, subject: CheckedCase | SceneInput, project: Path | None) -> Any:
-    if isinstance(options.get("study"), BoundaryModel):  # of a verb that has read it
+    if isinstance(options.get("study"), BoundaryModel):  # the verb has read the file of the inputs
         return options["study"]
     fields = {} if study.takes.from_file else _fields(study, options)
     return inputs_of_study(study, subject, project, fields, options.get("study"))
@@ -207,9 +207,9 @@ def _targets(study: Study, output: Path | None, file: InputFile) -> list[Path]:
 
 
 def _output_files(output: Path, study: Study) -> list[Path]:
-    """Return the files to write: one by its ending, or one of each in a folder, made if missing.
+    """Return the files to write: one with an accepted ending, or in a folder one of each ending.
 
-    Raises `BadInput`: neither, or not writable.
+    Raises `BadInput`: `output` is neither, or cannot be written.
     """
     bound = f"a folder, or a file ending in one of {', '.join(study.accepted)}"
     if output.suffix and not output.is_dir():
@@ -219,7 +219,7 @@ def _output_files(output: Path, study: Study) -> list[Path]:
         return [output]
     if output.is_file():
         raise BadInput.of("output", str(output), bound)
-    check_writable(output / "x" if output.is_dir() else output)
+    check_writable(output / "x" if output.is_dir() else output)  # any file in the folder
     return [output / f"{study.folder}{ending}" for ending in study.endings]
 
 
@@ -233,7 +233,7 @@ def _writers(study: Study, subject: Any, about: ReportInput | None) -> dict[str,
         complete = titled(drawn if marks is None else marked_page_of_case(drawn, marks), about)
         write_page(complete, file, warnings=messages())
 
-    further = {
+    further = {  # `write=write` binds the writer of each ending, not the last one
         ending: lambda result, file, write=write: write(result, subject, file)
         for ending, write in run.writers.items()
     }
@@ -261,10 +261,10 @@ def _show(study: Study, result: Any, targets: list[Path], remote_seconds: float)
     """Print the main results, tables and lines, and the whole cost: tables, workers, other children."""
     presentation = presentation_of(study)
     parts = list(presentation.text(result))
-    said = {part for part in parts[:_MAX_SAID] if isinstance(part, str)}
+    first = {part for part in parts[:_FIRST_LINES] if isinstance(part, str)}
     headlines = presentation.page(result).headlines
     print_headlines(
-        [line for line in headlines if said.isdisjoint((line.value, f"{line.name}: {line.value}"))]
+        [line for line in headlines if first.isdisjoint((line.value, f"{line.name}: {line.value}"))]
     )
     print_parts(parts)
     console().print(f"cost {engineering(cpu_seconds() + remote_seconds, 3)} CPU s")

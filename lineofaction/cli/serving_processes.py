@@ -37,23 +37,24 @@ from service.worker.process import default_registry
 
 logger = structlog.get_logger(__name__)
 MIN_LIFE_S = 5.0
-"""Seconds in which a process that ends early is not replaced: what it lacks may be there by then."""
+"""Seconds before a process that ended soon after its start is replaced: the cause may be gone by then."""
 STOPPING_S = 3.5
 """Seconds after which serving processes that do not stop are killed."""
 _LOOK_S = 0.2
+"""Seconds between two looks at the processes and the scheduler."""
 _APPLICATION = "service.app"
 _METRICS = "PROMETHEUS_MULTIPROC_DIR"
 """Environment variable of prometheus-client that names the folder of the figures of all processes."""
 
 
 def _managed_work(
-    settings: Settings, machinery: Machinery, sums: str
+    settings: Settings, machinery: Machinery, metrics: str
 ) -> AbstractContextManager[Callable[[], None]]:
-    """Return the management port of the scheduler; `sums`: the folder of the figures of all processes."""
+    """Return the management port of the scheduler; `metrics`: the folder of the figures of all processes."""
     engine, store, scheduler = machinery.engine, machinery.store, machinery.scheduler
     writes = WriteCheck(Deployment(engine, store))
     registry = process_registry(engine, store, writes, scheduler, settings)
-    MultiProcessCollector(registry, path=sums)  # type: ignore[no-untyped-call]
+    MultiProcessCollector(registry, path=metrics)  # type: ignore[no-untyped-call]
     return managed(settings, Vitals(scheduler, writes), partial(generate_latest, registry))
 
 
@@ -117,7 +118,7 @@ class ServingProcesses:
     _starts: deque[float] = field(default_factory=deque)
 
     def replace_dead(self) -> None:
-        """Start missing processes; `number` starts take at least `MIN_LIFE_S`."""
+        """Start the missing processes, but not more than `number` of them within `MIN_LIFE_S`."""
         for process in [process for process in self._alive if not process.is_alive()]:
             logger.warning("serving process ended", pid=process.pid, code=process.exitcode)
             mark_process_dead(process.pid, os.environ[_METRICS])  # type: ignore[no-untyped-call]
@@ -158,10 +159,10 @@ class ServingProcesses:
 def end_with_parent() -> None:
     """Let this process stop when the supervising process has ended, however that ended."""
 
-    def heed() -> None:
+    def stop_after_parent() -> None:
         parent = multiprocessing.parent_process()
         assert parent is not None
         parent.join()
         os.kill(os.getpid(), signal.SIGTERM)
 
-    threading.Thread(target=heed, name="parent", daemon=True).start()
+    threading.Thread(target=stop_after_parent, name="parent", daemon=True).start()

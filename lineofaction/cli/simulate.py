@@ -41,29 +41,41 @@ from lineofaction.report.presentation import effect_text
 
 def run_simulate(
     file: InputFile,
-    named: Path | None,
+    output: Path | None,
     executor: tuple[int, str | None],
     service: str | None,
     *,
     resume: bool,
     as_json: bool,
 ) -> None:
-    """Gather the tables, integrate here into the file, print."""
+    """Gather the tables, integrate the scene in this process into a file, and print the main results.
+
+    Parameters
+    ----------
+    output : Path, optional
+        File of the run; None: that of the project.
+    executor : (int, str or None)
+        Number of worker processes and address of a Dask scheduler, for the tables.
+    service : str, optional
+        Address of a service that computes the tables.
+    resume : bool
+        Continue the interrupted run of the file.
+    """
     scene, folder = assessed_scene(file)
-    output = output_of(named, file.project, RUN)
-    check_netcdf_output(output)
-    if resume and not interrupted_run(output).is_dir():
+    run_file = output_of(output, file.project, RUN)
+    check_netcdf_output(run_file)
+    if resume and not interrupted_run(run_file).is_dir():
         remedy = "There is none. Omit --resume to start a run."
-        raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", remedy)
+        raise BadInput.of("--resume", str(run_file), "the file of a run that was interrupted", remedy)
     if not as_json:
         costs = [simulation_cost(scene, folder)]
         announce_cost("simulate", costs if service else [*costs, tables_cost(scene, folder)])
     with open_executor(*executor) as workers, progress_bar() as report:
         tabled = tabled_scene(scene, folder, service, report, workers)
-        _run(tabled.scene, output, report, resume=resume)
-    stamp(output, warnings_so_far())
-    stamp_scene(output, scene_metadata(tabled))
-    answer = {"file": str(output), **run_json(output)}
+        _run(tabled.scene, run_file, report, resume=resume)
+    stamp(run_file, warnings_so_far())
+    stamp_scene(run_file, scene_metadata(tabled))
+    answer = {"file": str(run_file), **run_json(run_file)}
     if as_json:
         print_json(answer)
     else:
@@ -79,16 +91,16 @@ def _run_headlines(peaks: Mapping[str, Any]) -> tuple[Headline, ...]:
         for axis, peak, rms in zip("xyz", force["peak"], force["rms"], strict=True)
     }
     headlines = []
-    for what, forces in (("mesh force of", meshes), ("force on bearing", bearings)):
+    for quantity, forces in (("mesh force of", meshes), ("force on bearing", bearings)):
         if forces:
-            name, (peak, rms) = max(forces.items(), key=lambda entry: entry[1][0])
+            name, (peak, rms) = max(forces.items(), key=lambda entry: entry[1][0])  # by peak
             value, remark = f"{number(peak, 4)} N", f"rms {number(rms, 4)} N"
-            headlines.append(Headline(f"largest {what} {name}", value, remark))
+            headlines.append(Headline(f"largest {quantity} {name}", value, remark))
     return tuple(headlines)
 
 
 def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
-    """Integrate; say how a run ended that is not complete."""
+    """Integrate; raise KeyboardInterrupt or `JobFailed` for a run that is not complete."""
     with until_interrupted() as cancel:
         status = simulate_to_file(scene, output, resume=resume, progress=staged(report), cancel=cancel)
     if status is RunStatus.CANCELLED:

@@ -23,14 +23,14 @@ from lineofaction.gearbox.subjects import scene_of
 
 _STATES, _HEAD = ("fresh", "stale", "missing"), ("state", "result", "made by")
 _NAMED = 3
-"""Verbs that are named where they refuse for one reason."""
+"""Largest number of verbs that are named where several refuse for the same reason."""
 
 
 def result_costs(states: Iterable[ResultState], project: Path) -> dict[str, StudyCost | BadInput]:
-    """Return the predicted cost by the name of the result, as its verb would run without options.
+    """Return the predicted cost of each result, by its name, for its verb without options.
 
-    Of what the verb would refuse its reason, unless it is fresh, with options that are not known here. What
-    nothing predicts is left out.
+    Where the verb would refuse to run, the refusal takes the place of the cost. A fresh result has none: it
+    was made with options that are not known here. A result without a prediction is left out.
     """
     costs: dict[str, StudyCost | BadInput] = {}
     for state in states:
@@ -66,7 +66,7 @@ def _result_cost(verb: str, source: Path, project: Path) -> StudyCost | None:
 
 
 def scene_tables_cost(project: Path) -> StudyCost:
-    """Return the predicted cost of the tables of the folder's scene that are not kept."""
+    """Return the predicted cost of those tables of the folder's scene that are not in the cache."""
     try:
         file = file_of(InputFile(project), "scene")
     except BadInput:
@@ -105,9 +105,9 @@ def run_status(folder: Path, *, as_json: bool) -> None:
     if due:
         kinds = {"that nothing predicts": sum(name not in costs for name in due)}
         kinds["refused"] = sum(name in refused for name in due)
-        beyond = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
-        rest = f", without {beyond}" if beyond else ""
-        out.print(f"stale or missing: about {engineering(total, 2)} CPU s{rest}")
+        exceptions = " and ".join(f"{count} {kind}" for kind, count in kinds.items() if count)
+        remark = f", without {exceptions}" if exceptions else ""
+        out.print(f"stale or missing: about {engineering(total, 2)} CPU s{remark}")
     if tables:
         line = f"of that the tables of the scene, which are not kept: {engineering(tables, 2)} CPU s"
         out.print(line)
@@ -125,7 +125,7 @@ def run_status(folder: Path, *, as_json: bool) -> None:
 
 
 def _reason(error: BadInput) -> str:
-    """Return the refusal of a verb in a line, without its suggestion, which the verb prints."""
+    """Return the reason of a refusal in one line; the suggestions are left to the verb itself."""
     return "; ".join(str(replace(fault, suggestion="")) for fault in error.faults)
 
 

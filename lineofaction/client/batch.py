@@ -43,7 +43,7 @@ class _BatchSurface(Followed, Generic[T, J]):
         """
         if not self.state.ended:
             pace = pace_of_known(self.session, timeout, interval)
-            yield from end_of(self, self.id, self._seen(progress), pace)
+            yield from end_of(self, self.id, self._watch(progress), pace)
         path, exchange = f"/v1/jobs/{self.id}/results", self.session.exchange
 
         def jobs(answer: dict[str, Any]) -> list[J]:

@@ -46,8 +46,8 @@ DEFAULT = "http://127.0.0.1:8321"
 def _http_options(base_url: str | None, timeout: float, key: str | None) -> dict[str, Any]:
     """Return the arguments of an httpx2 client, blocking or awaiting, of one service.
 
-    Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``, ``SSL_CERT_FILE``);
-    this machine is asked without a proxy.
+    Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``, ``SSL_CERT_FILE``).
+    Requests to a service on this machine take no proxy.
     """
     address = base_url or os.environ.get("LOA_SERVICE") or DEFAULT
     key = key or os.environ.get("LOA_KEY")
@@ -74,7 +74,7 @@ def _host(base_url: str) -> str:
 class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls):
     """All calls of a client.
 
-    Raises `BadInput`: the address is none.
+    Raises `BadInput`: `base_url` is no address of HTTP.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class Client(Studies, JobCalls, ResultCalls, PageCalls, LookupCalls, SceneCalls)
         tags : sequence of str
             Tags by which lists find the jobs: up to 16, each of up to 40 letters, digits and ``._:/+-``.
         priority : int
-            -9 to 9: of the jobs that wait the oldest of the highest is next.
+            -9 to 9: the next job is the oldest of those that wait with the highest priority.
         max_cost_s : float, optional
             CPU seconds that each job may take; default: no limit.
         """
@@ -154,7 +154,7 @@ class LineOfActionClient(Client, Blocking):
         self.driver = BlockingDriver(transport, options)
 
     def process(self, offered: Offered[P, Answer, F]) -> Process[P, Answer, F]:
-        """Return the process of a study, `loa.modes`; it is the attribute of its name too."""
+        """Return the process of a study, such as `loa.modes`; it is also the attribute `modes`."""
         return Process(self, offers()[offered.name])
 
     def __enter__(self) -> Self:
@@ -187,7 +187,7 @@ class AsyncLineOfActionClient(Client, Awaiting):
         self.driver = AwaitingDriver(transport, options)
 
     def process(self, offered: Offered[P, Answer, F]) -> AsyncProcess[P, Answer, F]:
-        """Return the process of a study, `loa.modes`; it is the attribute of its name too."""
+        """Return the process of a study, such as `loa.modes`; it is also the attribute `modes`."""
         return AsyncProcess(self, offers()[offered.name])
 
     async def __aenter__(self) -> Self:

@@ -27,12 +27,10 @@ Fetched = TypeVar("Fetched")
 
 
 class Followed(Surface):
-    """Operations that a job of any process and a batch share.
-
-    `state` is the state as of the last answer of the service.
-    """
+    """Operations that a job of any process and a batch share."""
 
     state: JobState
+    """State by the last answer of the service."""
 
     @property
     def id(self) -> str:
@@ -41,7 +39,7 @@ class Followed(Surface):
 
     @operation
     def status(self) -> Steps[JobState]:
-        """Return the state of the job now; one that has ended stays as it is."""
+        """Return the state of the job now; the service is not asked about a job that has ended."""
         if not self.state.ended:
             self.state = yield from JobCalls.status(self, self.id)
         return self.state
@@ -68,16 +66,19 @@ class Followed(Surface):
             yield from JobCalls.events(self, self.id)
 
     def _patiently(self, fetch: Callable[[], Steps[Fetched]]) -> Steps[Fetched]:
+        """Repeat a fetch while the service is away, within the patience of the client."""
         return outlasting(fetch, self.session.patience)
 
-    def _seen(self, progress: Watch | None) -> Watch:
-        def see(state: JobState) -> None:
+    def _watch(self, progress: Watch | None) -> Watch:
+        """Return the function to call with every new state: it stores the state and reports it."""
+
+        def store_and_report(state: JobState) -> None:
             self.state = state
             watch = progress or self.session.progress
             if watch is not None:
                 watch(state)
 
-        return see
+        return store_and_report
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.id or 'cached'} {self.state}>"
@@ -99,14 +100,14 @@ class JobSurface(Followed, Generic[T, F]):
         """Wait for the job; return where its result is; as the client's `wait`."""
         if self._result is None and self.state.status != "successful":
             pace = pace_of_known(self.session, timeout, interval)
-            self._result = yield from result_of(self, self.id, self._seen(progress), pace)
+            self._result = yield from result_of(self, self.id, self._watch(progress), pace)
         elif self._result is None:
             self._result = yield from JobCalls.result(self, self.id)
         return self._result
 
     @operation
     def result(self, progress: Watch | None = None, *, timeout: float | None = None) -> Steps[T]:
-        """Wait for the job and return its result, as the libraries have it; raises as `wait`."""
+        """Wait for the job and return its result as an object of the library; raises as `wait`."""
         return self._read((yield from JobSurface.file(self, progress, timeout=timeout)))
 
     @operation
@@ -137,7 +138,10 @@ class JobSurface(Followed, Generic[T, F]):
         return (yield from self._patiently(lambda: ResultCalls.report(self, result.key)))
 
     def ending(self) -> Steps[Result | None]:
-        """Wait until the job has ended and its file is cached; None without, and `result` raises why."""
+        """Wait until the job has ended and its file is in the cache; return its result.
+
+        None for a job without a result; its `result` then raises the reason.
+        """
         with suppress(BadInput, JobFailed, JobDismissed, NotFound, DamagedFile):
             yield from JobSurface.file(self)
             return self._result

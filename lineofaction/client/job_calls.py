@@ -50,7 +50,7 @@ def pages(
     parameters: Mapping[str, Any],
     limit: int | None,
 ) -> Items[T]:
-    """Hand out the entries of a list, at most `limit`; the next page is fetched when it is needed.
+    """Yield the entries of a list, at most `limit`; a page is fetched when its first entry is needed.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def pages(
 
 
 def pace_of_known(session: Session, timeout: float | None = None, interval: float = 0.05) -> Pace:
-    """Return the pace of waiting for a job that the service is known to have."""
+    """Return the pace of waiting for a job that the service has confirmed just now."""
     longest = math.inf if timeout is None else timeout
     return Pace(interval, _LONGEST_PAUSE_S, longest, session.patience, time.monotonic())
 
@@ -112,8 +112,9 @@ class JobCalls(Surface):
     ) -> Steps[JobState]:
         """Enter a job; equal work of several callers is done once.
 
-        However often the network makes it be sent, it is one job: it carries an ``Idempotency-Key``. Raises
-        `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`, `ServiceError`.
+        Repetitions of the request by the network make no further job, since the request carries an
+        ``Idempotency-Key``. Raises `BadInput`: the inputs cannot be used; `QueueFull`, `Unreachable`,
+        `ServiceError`.
 
         Parameters
         ----------
@@ -124,9 +125,9 @@ class JobCalls(Surface):
         """
         path = f"/v1/processes/{process}/execution"
         headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
-        sent = {"json": {**self.session.terms, "inputs": inputs}, "headers": headers}
+        request = {"json": {**self.session.terms, "inputs": inputs}, "headers": headers}
         try:
-            return (yield from self.session.exchange.read(JobState.from_json, "POST", path, **sent))
+            return (yield from self.session.exchange.read(JobState.from_json, "POST", path, **request))
         except BadInput as error:
             yield from self._note_other_version(error)
             raise
@@ -148,8 +149,8 @@ class JobCalls(Surface):
             Inputs that all share.
         """
         body = {**self.session.terms, "process": process, "inputs": inputs or {}, "jobs": list(jobs)}
-        sent = {"json": body, "headers": {"Idempotency-Key": str(uuid.uuid4())}}
-        return (yield from self.session.exchange.read(JobState.from_json, "POST", "/v1/batches", **sent))
+        request = {"json": body, "headers": {"Idempotency-Key": str(uuid.uuid4())}}
+        return (yield from self.session.exchange.read(JobState.from_json, "POST", "/v1/batches", **request))
 
     @operation
     def version(self) -> Steps[str]:
@@ -203,16 +204,16 @@ class JobCalls(Surface):
         limit : int, optional
             Most jobs to yield; default: all.
         """
-        wanted = {"processID": list(process), "status": list(status), "datetime": created}
-        wanted |= {"tag": list(tags), "title": title}
-        wanted |= {} if parent is None else {"parent": parent}
-        yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, wanted, limit)
+        query = {"processID": list(process), "status": list(status), "datetime": created}
+        query |= {"tag": list(tags), "title": title}
+        query |= {} if parent is None else {"parent": parent}
+        yield from pages(self.session.exchange, "/v1/jobs", "jobs", JobState.from_json, query, limit)
 
     @listing
     def events(self, job: str) -> Items[JobState]:
         """Yield the state of a job now and whenever it changes, until it has ended.
 
-        A stream that breaks is opened again; a state that did not change meanwhile is not handed out twice.
+        A stream that breaks is opened again; a state that did not change meanwhile is not yielded twice.
 
         Raises
         ------
@@ -282,6 +283,7 @@ class JobCalls(Surface):
             The service was away for longer than the client's patience.
         """
         known = pace_of_known(self.session, timeout, interval)
+        # a service that has never answered is not waited for
         return (yield from result_of(self, job, progress, replace(known, answered=-math.inf)))
 
     @operation
@@ -306,7 +308,7 @@ class JobCalls(Surface):
             if known is None:
                 raise
             text = f"No service answers at {service}: the {known.kind} is from the cache."
-            warnings.warn(text, OfflineWarning, stacklevel=6)
+            warnings.warn(text, OfflineWarning, stacklevel=6)  # the caller of the client, above its driver
             return known
         cache.remember(service, process, inputs, result)
         return result

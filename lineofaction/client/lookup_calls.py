@@ -69,17 +69,29 @@ class LookupCalls(Surface):
     def case_as_measured(
         self, case: CaseLike, sheet: Path, gear: str, loaded: str = "right", cutoff_mm: float | None = None
     ) -> Steps[schemas.Case]:
-        """Return a case with the pitches and traces of one gear's inspection (CSV) on its loaded flanks.
+        """Return a case with the measured deviations of one gear on its loaded flanks.
 
-        Raises `BadInput`: a line of the sheet that is none, or a trace that cannot be evaluated; warns of
-        points that are left out.
+        Raises `BadInput`: a line of the sheet cannot be read, or a trace cannot be evaluated. Warns of points
+        that are left out.
+
+        Parameters
+        ----------
+        sheet : Path
+            Pitches and traces of the inspection, CSV.
+        gear, loaded : str
+            "pinion" or "wheel", and its loaded flanks, "left" or "right".
+        cutoff_mm : float, optional
+            Cut-off of the filter that separates slope and form; default: that of the standard.
         """
         measured = {"csv": _read(sheet).decode(), "gear": gear, "loaded": loaded, "cutoff_mm": cutoff_mm}
         return self._as_made(case, {"measured": measured})
 
     @operation
     def case_of_class(self, case: CaseLike, tolerance_class: int, seed: int = 0) -> Steps[schemas.Case]:
-        """Return a case with both gears drawn within a class of ISO 1328-1:2013; equal seeds, equal gears."""
+        """Return a case with deviations of both gears drawn at random within a class of ISO 1328-1:2013.
+
+        The same seed gives the same deviations.
+        """
         return self._as_made(case, {"tolerance_class": tolerance_class, "seed": seed})
 
     @operation
@@ -103,8 +115,9 @@ class LookupCalls(Surface):
         Parameters
         ----------
         file : Path
+            REXS file.
         assume : sequence of str
-            Values over the file's, ``"14.helix_angle_reference_diameter=-12"``.
+            Values that replace those of the file, ``"14.helix_angle_reference_diameter=-12"``.
         """
         body = {"rexs_base64": base64.b64encode(_read(file)).decode(), "assume": list(assume)}
         unit: UnitBody = yield from self._answer("/v1/units/open", body, _model("UnitBody").model_validate)
@@ -113,13 +126,15 @@ class LookupCalls(Surface):
     def _answer(self, path: str, body: dict[str, Any], reader: Callable[[Any], T]) -> Steps[T]:
         return self.session.exchange.read(reader, "POST", path, json=body)
 
-    def _as_made(self, case: CaseLike, how: dict[str, Any]) -> Steps[schemas.Case]:
-        def made(answer: dict[str, Any]) -> schemas.Case:
+    def _as_made(self, case: CaseLike, deviations: dict[str, Any]) -> Steps[schemas.Case]:
+        def read_case(answer: dict[str, Any]) -> schemas.Case:
             for text in answer["left_out"]:
                 warnings.warn(f"left out of the case: {text}", stacklevel=2)
             return schemas.validated(schemas.Case, answer["case"])
 
-        return self._answer("/v1/cases/as-made", {"inputs": subject_inputs("case", case), **how}, made)
+        return self._answer(
+            "/v1/cases/as-made", {"inputs": subject_inputs("case", case), **deviations}, read_case
+        )
 
     def _validated(self, path: str, toml: str, name: str, model: type[M]) -> Steps[M]:
         return self._answer(path, {"toml": toml}, lambda answer: schemas.validated(model, answer[name]))
@@ -142,5 +157,5 @@ def _text(answer: dict[str, Any]) -> str:
 
 
 def _model(name: str) -> Any:
-    """Return a model of answers; all are loaded with the first of them."""
+    """Return a model of answers by its name; the first call imports the module of all of them."""
     return load(f"service.schemas.answers:{name}")

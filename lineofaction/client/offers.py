@@ -15,7 +15,7 @@ from lineofaction.gearbox.registry import STUDIES
 from lineofaction.gearbox.study import Study
 
 _SUBJECTS = "lineofaction.gearbox.subjects"
-"""Declares the fields of a case; loaded with the first call."""
+"""Module of the fields of a case, which the first call imports (start-up time)."""
 
 _REMEDY = (
     "Results as objects need the libraries: pip uninstall lineofaction-client, pip install lineofaction. "
@@ -43,16 +43,18 @@ class Offer:
         return self.name.replace("-", "_")
 
     def inputs(self, *args: Any, **kwargs: Any) -> dict[str, Any]:
-        """Return the inputs of a call as JSON; raises TypeError for a call that does not fit, `BadInput`."""
+        """Return the inputs of a call as JSON.
+
+        Raises TypeError: the call does not fit the signature; `BadInput`: an argument is refused.
+        """
         try:
             bound = self.signature.bind(*args, **kwargs).arguments
         except TypeError as error:
             raise TypeError(f"{self.attribute}{self.signature}: {error}") from None
         subject = subject_inputs(self.subject, bound[next(iter(self.signature.parameters))])
-        varied: dict[str, Any] = load(f"{_SUBJECTS}:study_inputs")(
-            bound.get("study", bound.get("options", {}))
-        )
-        return subject | varied
+        study = bound.get("study", bound.get("options", {}))
+        study_fields: dict[str, Any] = load(f"{_SUBJECTS}:study_inputs")(study)
+        return subject | study_fields
 
 
 def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
@@ -64,10 +66,10 @@ def subject_inputs(kind: str, subject: Any) -> dict[str, Any]:
 
 @contextmanager
 def libraries() -> Iterator[None]:
-    """Name the package to install if an import in the body fails.
+    """Name the package to install where an import in the body fails.
 
-    Raises `ModuleNotFoundError`: with the package to install; `host.extras.MissingExtra`, which names its
-    extra, as it is.
+    Raises `ModuleNotFoundError` with the package to install. `host.extras.MissingExtra`, which is one and
+    names an extra, passes unchanged.
     """
     try:
         yield
@@ -78,7 +80,7 @@ def libraries() -> Iterator[None]:
 
 
 def _read(module: str, kind: str, file: Path) -> Any:
-    """Read a file as a class of a library, which is loaded now."""
+    """Read a file as a class of a library, and import the library for it."""
     with libraries():
         result = load(f"{module}:{kind}")
     return result.from_netcdf(file)
@@ -89,20 +91,18 @@ def _signature(subject: str, *further: Parameter) -> Signature:
 
 
 def _study_offer(study: Study) -> Offer:
-    varied = (
-        Parameter(
-            "study", Parameter.POSITIONAL_OR_KEYWORD, default={} if study.takes.bare else Parameter.empty
-        )
-        if study.takes.from_file
-        else Parameter("options", Parameter.VAR_KEYWORD)
-    )
+    if study.takes.from_file:
+        default: Any = {} if study.takes.bare else Parameter.empty
+        further = Parameter("study", Parameter.POSITIONAL_OR_KEYWORD, default=default)
+    else:
+        further = Parameter("options", Parameter.VAR_KEYWORD)
 
     def read(file: Path) -> Any:
         with libraries():
             stored = study.run.file
         return stored.read(file)
 
-    signature = _signature(study.argument, varied)
+    signature = _signature(study.argument, further)
     return Offer(study.name, study.description, signature, study.takes.subject, read)
 
 

@@ -1,4 +1,9 @@
-"""Processes as a client offers them: call one, submit to it, map it over many."""
+"""Processes as a client offers them: call one, submit to it, map it over many.
+
+The types are those of `lineofaction.gearbox.study`: P the parameters of a call, T its result, F its figures.
+`Steps` are generators that a driver of the client runs, blocking or awaiting. `outlasting` repeats steps
+while the service is away.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +25,7 @@ from lineofaction.gearbox.problems import BadInput, ServiceError
 from lineofaction.gearbox.study import F, P, T
 
 CONCURRENCY = 8
-"""Jobs of a `map` that are under way at once."""
+"""Largest number of jobs of a `map` that are under way at once, unless the caller sets another."""
 
 
 def _at_least_one(concurrency: int) -> int:
@@ -131,9 +136,9 @@ class Process(_Calls[P, T, F]):
         Parameters
         ----------
         subjects : iterable
-            Cases or scenes, or what the process takes first; at most 200.
+            Cases or scenes, or another first argument of the process; at most 200.
         **options
-            Of the process, the same for all.
+            Options of the process, the same for all subjects.
         """
         state = self._client.driver.run(self._entered(subjects, options))
         return Batch(self._client, state, self._offer.read)
@@ -143,18 +148,18 @@ class Process(_Calls[P, T, F]):
     ) -> Iterator[Job[T, F]]:
         """Yield the ended job of every subject, in order.
 
-        What the cache holds is not asked for again while the service has the version that gave it. A loop
+        What the cache holds is not computed again while the service has the version that gave it. A loop
         that is left early dismisses the jobs under way; an error notes which of them continue. Raises
-        `BadInput`: a subject cannot be used; that of a job which failed is raised by its `result`.
+        `BadInput`: a subject cannot be used. The error of a failed job is raised by the `result` of the job.
 
         Parameters
         ----------
         subjects : iterable
-            Cases or scenes, or what the process takes first; taken as they are needed.
+            Cases or scenes, or another first argument of the process; taken as they are needed.
         concurrency : int
             Jobs that are entered and not yet yielded, at most.
         **options
-            Of the process, the same for all.
+            Options of the process, the same for all subjects.
         """
         mapping, driver = _Mapping(self._client, self._offer, self._job), self._client.driver
         try:

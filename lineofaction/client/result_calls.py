@@ -1,4 +1,8 @@
-"""Calls on stored results: files, figures, and answers that the service computes from them."""
+"""Calls on stored results: files, figures, and answers that the service computes from them.
+
+Calls are operations and listings of `lineofaction.client.surface`: `Steps` are those to one result, `Items`
+those that yield several.
+"""
 
 from __future__ import annotations
 
@@ -46,7 +50,8 @@ class LiveOptions(TypedDict, total=False):
     """Whether the answer also has the loads and pressures of a pair of teeth on its way through the mesh."""
     tolerance_class: int
     """Class of ISO 1328-1:2013 within which pairs are drawn at one torque, for the member `band` of the
-    answer. Every answer solves some of the pairs; repeat the request until `solved` is `of`.
+    answer. Every answer solves some of the pairs; repeat the request until the member `solved`, their number,
+    equals the member `of`, the number of all pairs.
     """
     preview: bool
     """Whether the answer has every other position only and no errors, at a half to a third of the cost."""
@@ -171,11 +176,12 @@ class ResultCalls(Surface):
 
     @operation
     def motion(self, key: str, number: int | None = None) -> Steps[MotionBody]:
-        """Return the motions that a result holds by name, and the one of a number, counted from 0.
+        """Return the names of the motions that a result has, and the motion of a number, counted from 0.
 
-        Modes of a scene, deflections under its load cases, velocities of a housing: how a shaft moves along
-        its axis, and each node of the housing's surface. Raises `BadInput`: no such motion, or a result
-        without any; `NotFound`, `QueueFull`, `LiveUnavailable`, `Unreachable`, `ServiceError`.
+        Motions are modes of a scene, deflections under its load cases, and velocities of a housing. A motion
+        has the displacements of each shaft along its axis and of the nodes of the housing's surface. Raises
+        `BadInput`: no such motion, or a result without any; `NotFound`, `QueueFull`, `LiveUnavailable`,
+        `Unreachable`, `ServiceError`.
         """
         from service.schemas.answers import MotionBody  # noqa: PLC0415 (start-up time)
 
@@ -207,7 +213,9 @@ class ResultCalls(Surface):
             "misalignment_um": misalignment_um,
             "center_distance_change_mm": center_distance_change_mm,
         }
-        lists = {name: [of] if isinstance(of, int | float) else of for name, of in columns.items()}
+        lists = {
+            name: [column] if isinstance(column, int | float) else column for name, column in columns.items()
+        }
         numbers = {name: [float(value) for value in values] for name, values in lists.items()}
         points = schemas.validated(QueryInput, numbers).model_dump(mode="json")
         reader, path = schemas.QueryOutput.model_validate, f"/v1/databases/{key}/query"
@@ -224,7 +232,7 @@ class ResultCalls(Surface):
         key : str
             Content hash of the database.
         torque_n_m : sequence of float
-            Increasing, at most twice the highest of the case.
+            Torques in increasing order, at most twice the highest of the case.
         **options
             See `LiveOptions`.
 
@@ -236,7 +244,7 @@ class ResultCalls(Surface):
         Raises
         ------
         BadInput
-            Named by the fields of the request.
+            A value is refused; the error names the field of the request.
         NotAnalyzed
             The compliance is not in the cache of the service: repeat with `condense`.
         NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError

@@ -1,4 +1,9 @@
-"""The base of the client's operations, each written once: one client blocks in it, the other awaits it."""
+"""The base of the client's operations, each written once: one client blocks in it, the other awaits it.
+
+An operation is written as a generator of steps (`lineofaction.client.steps`): a step is a request or a pause.
+The driver of a blocking client performs the steps and returns the result; that of an awaiting client awaits
+them.
+"""
 
 from __future__ import annotations
 
@@ -58,18 +63,20 @@ class Awaiting(Surface):
 
 
 class _Method:
-    """A method made of a method that is a generator of steps, which a verb of the driver performs.
+    """A descriptor that makes a method of a generator of steps.
 
-    On the class it is the generator, for other operations to ``yield from``.
+    As an attribute of an object it is a method whose steps the driver of the object performs. As an attribute
+    of a class it is the generator itself, for other operations to ``yield from``.
     """
 
     _verb: str
+    """Name of the method of the driver that performs the steps."""
 
     def __init__(self, steps: Callable[..., Any]) -> None:
         self._steps = steps
 
     def _of(self, surface: Any) -> Callable[..., Any]:
-        """Return the generator of a class, the method of an object."""
+        """Return the generator if `surface` is None, else the method of `surface`."""
         steps = self._steps
         if surface is None:
             return steps
@@ -96,7 +103,7 @@ class Operation(_Method, Generic[P, T]):
     @overload
     def __get__(self, surface: Awaiting, owner: type) -> Callable[P, Coroutine[Any, Any, T]]: ...
     def __get__(self, surface: Any, owner: type) -> Callable[..., Any]:
-        """Return the generator of a class, the method of an object."""
+        """Return the generator for the class, and the method for an object."""
         return self._of(surface)
 
 
@@ -115,7 +122,7 @@ class Listing(_Method, Generic[P, T]):
     @overload
     def __get__(self, surface: Awaiting, owner: type) -> Callable[P, AsyncIterator[T]]: ...
     def __get__(self, surface: Any, owner: type) -> Callable[..., Any]:
-        """Return the generator of a class, the method of an object."""
+        """Return the generator for the class, and the method for an object."""
         return self._of(surface)
 
 

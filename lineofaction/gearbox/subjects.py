@@ -1,4 +1,4 @@
-"""Cases and scenes made ready: files of the caller written out."""
+"""Cases and scenes from models, tables or files, with the content of the files that they name."""
 
 from __future__ import annotations
 
@@ -81,8 +81,8 @@ def _table(field: str, source: object) -> dict[str, Any]:
     if isinstance(source, Mapping):
         return dict(source)
     remedy = "A file is given as pathlib.Path."
-    said = source if isinstance(source, str) else repr(source)
-    raise BadInput.of(field, said[:80], f"a Path, a dictionary or a model of a {field}", remedy)
+    text = source if isinstance(source, str) else repr(source)
+    raise BadInput.of(field, text[:80], f"a Path, a dictionary or a model of a {field}", remedy)
 
 
 def case_of_mesh(mesh: MeshInput, field: str, folder: Path) -> schemas.Case | None:
@@ -108,7 +108,7 @@ def with_case(mesh: MeshInput, field: str, folder: Path) -> MeshInput:
 
 
 def with_absolute_paths(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInput:
-    """Return the scene with its cases written out, and the files that it still names by their whole paths."""
+    """Return the scene with its cases written out; other files that it names get absolute paths."""
     with_cases = with_inline_cases(scene, folder)
     meshes = tuple(_in_folder(mesh, "database_file", folder) for mesh in with_cases.meshes)
     housings = tuple(_in_folder(part, "modes_file", folder) for part in with_cases.housings)
@@ -137,6 +137,6 @@ def _portable_scene(scene: schemas.SceneInput, folder: Path) -> schemas.SceneInp
 
 
 def without_modes_files(scene: schemas.SceneInput) -> schemas.SceneInput:
-    """Return the scene with the matrices of its files of modes alone."""
+    """Return the scene without its files of modes; the housings keep their matrices."""
     housings = tuple(part.model_copy(update={"modes_file": None}) for part in scene.housings)
     return scene.model_copy(update={"housings": housings})

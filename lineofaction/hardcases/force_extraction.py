@@ -35,13 +35,13 @@ def _square_wave_ste() -> Sequence[Measured]:
     table = table_of(position, _FORCE, ste, np.zeros(64))
     x = np.linspace(0.0, 1.0, 20_001)
     curve = table.ste(x, 2500.0)
-    over = max(
+    overshoot = max(
         float(curve.max() / (2500.0 * COMPLIANCE)) - 1.0, 1.0 - float(curve.min() / (1250.0 * COMPLIANCE))
     )
     depth = np.linspace(0.0, 1.2 * ste.max(), 400)
     force = table.force_at(x[::50, None], depth).force
     return (
-        Measured("overshoot over the wave", over, maximum=1e-12),
+        Measured("overshoot over the wave", overshoot, maximum=1e-12),
         *_inverse(table, x),
         Measured(
             "least change of force as teeth approach, N", float(np.diff(force, axis=1).min()), minimum=-1e-9
@@ -94,9 +94,9 @@ def _lift_off() -> Sequence[Measured]:
     ste = gap[:, None] + COMPLIANCE * _FORCE**0.9
     table = table_of(position, _FORCE, ste, gap)
     x = np.linspace(0.0, 1.0, 501)
-    first = table.ste(x, 0.0)
-    below, at, above = (table.force_at(x, first + step) for step in (-1e-12, 0.0, 1e-12))
-    near = table.force_at(x, first + 1e-9)
+    lift_off = table.ste(x, 0.0)
+    below, at, above = (table.force_at(x, lift_off + step) for step in (-1e-12, 0.0, 1e-12))
+    near = table.force_at(x, lift_off + 1e-9)
     return (
         Measured(
             "force at and below lift-off, N", float(max(below.force.max(), at.force.max())), maximum=0.0
@@ -126,7 +126,7 @@ def _queries_outside() -> Sequence[Measured]:
     x = np.linspace(0.0, 1.0, 101)[:-1]
     ste = table.ste(x, 2500.0)
     far = np.abs(table.ste(x + 1e6, 2500.0) / ste - 1.0).max()
-    behind = np.abs(table.ste(x - 12345.0, 2500.0) / ste - 1.0).max()
+    back = np.abs(table.ste(x - 12345.0, 2500.0) / ste - 1.0).max()
     top = table.ste(x, _FORCE[-1])
     beyond = table.force_at(x, 2.0 * top)
     inside = table.force_at(x, 0.99 * top)
@@ -136,7 +136,7 @@ def _queries_outside() -> Sequence[Measured]:
     )
     return (
         Measured("a million pitches away, relative change", float(far), maximum=1e-9),
-        Measured("12345 pitches back, relative change", float(behind), maximum=1e-11),
+        Measured("12345 pitches back, relative change", float(back), maximum=1e-11),
         Measured("beyond the top, off the straight continuation", off(beyond.force, straight), maximum=1e-9),
         Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), minimum=float(x.size)),
         Measured("flags inside", float(np.count_nonzero(inside.validity)), maximum=0.0),
@@ -205,11 +205,11 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     force = rng.uniform(0.0, float(table.force[-1]), x.size)
     deflection = table.ste(x, force)
     sample = table.force_at(x, deflection)
-    # what one rounding of the deflection changes, at the steepest of the table
+    # change of the force by some roundings of the deflection, at the largest stiffness of the table
     steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
     rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
-    off = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]
-    return (Measured("force of the STE of a force, off by", float(off.max()), maximum=1e-9),)
+    difference = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]
+    return (Measured("force of the STE of a force, off by", float(difference.max()), maximum=1e-9),)
 
 
 def _slope_error(table: SteDatabase) -> Measured:
@@ -218,10 +218,10 @@ def _slope_error(table: SteDatabase) -> Measured:
     x, force = rng.uniform(0.0, 1.0, 500), rng.uniform(100.0, 4900.0, 500)
     deflection = table.ste(x, force)
     step = 1e-6 * deflection
-    sides = [table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0)]
+    below, above = (table.force_at(x, deflection + sign * step).force for sign in (-1.0, 1.0))
     stiffness = table.force_at(x, deflection).stiffness
-    off = np.abs((sides[1] - sides[0]) / (2.0 * step) - stiffness) / stiffness.max()
-    return Measured("stiffness off the difference of forces", float(off.max()), maximum=1e-3)
+    difference = np.abs((above - below) / (2.0 * step) - stiffness) / stiffness.max()
+    return Measured("stiffness off the difference of forces", float(difference.max()), maximum=1e-3)
 
 
 def _refused(table: SteDatabase, position: float, deflection: float) -> bool:

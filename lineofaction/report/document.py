@@ -410,7 +410,7 @@ def _printed(page: Page, text: str, output: Path) -> bytes:
 
 def facts(result: Any) -> dict[str, Any]:
     """Return the figures of a study's result in the units of their names, as its verb prints them as JSON."""
-    figures: dict[str, Any] = _study_of(result).run.figures(result)
+    figures: dict[str, Any] = study_of(result).run.figures(result)
     return figures
 
 
@@ -430,7 +430,7 @@ def write(result: Any, file: Path | str) -> Path:
     if hasattr(result, "to_netcdf") and path.suffix == ".nc":
         result.to_netcdf(path)
         return path
-    study = _study_of(result)
+    study = study_of(result)
     if path.suffix == ".nc":
         study.run.file.write(result, path)
     elif path.suffix == ".json":
@@ -444,7 +444,8 @@ def write(result: Any, file: Path | str) -> Path:
     return path
 
 
-def _study_of(result: Any) -> Study:
+def study_of(result: Any) -> Study:
+    """Return the study that makes results of this type; raises `BadInput`: none does."""
     for study in STUDIES.values():
         kind = study.run.file.result
         if isinstance(result, tuple if get_origin(kind) is tuple else kind):

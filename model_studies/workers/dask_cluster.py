@@ -35,6 +35,7 @@ MAX_RESULTS = 64
 """Number of results of `cluster_cached` tasks that stay in a cluster. A gear over its face has up to 100 MB.
 """
 _PREFIX = "kept-"
+"""First characters of the names of stored results; the time and the key of the task follow."""
 CONNECT_S = 10.0
 """Longest wait for the answer of a scheduler, s."""
 
@@ -43,7 +44,7 @@ CONNECT_S = 10.0
 class ByDask:
     """A Dask cluster: tasks of workers that die are run again by others.
 
-    The client stays the caller's to close; after `patience` seconds without any worker the run is given up.
+    The caller closes the client. A run ends with `WorkersLost` after `patience` seconds without any worker.
     """
 
     client: Client
@@ -52,10 +53,10 @@ class ByDask:
     _sent: dict[int, tuple[object, str, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
-        """Submit all tasks and yield their results in order; unread results are left.
+        """Submit all tasks and yield their results in order; results that nobody reads are released.
 
-        A task is named by its content: what several callers want at the same time is done once, and what is
-        `cluster_cached` is done once while the cluster lasts.
+        A task has a name by its content: equal tasks of several callers at the same time are done once. The
+        results of a `cluster_cached` function stay in the cluster for later callers.
         """
         import dask  # noqa: PLC0415 (an extra)
 
@@ -65,7 +66,7 @@ class ByDask:
             digest, packed = self._send(shared)
             name = f"{function.__module__}.{function.__qualname__}"
             keys = [f"{name}-{digest}-{Packed.of(item).digest}" for item in items]
-            # one graph: a submission each costs the scheduler as much as the task
+            # all tasks in one graph: a submission for each costs the scheduler as much as a task
             futures = self.client.map(partial(do_task, function), items, packed=packed, key=keys)
         return self._in_order(futures, keep=getattr(function, "cluster_cached", False))
 
@@ -80,16 +81,19 @@ class ByDask:
             # a task of its own, not scattered data: the scheduler makes it again where its worker died
             future = self.client.submit(_itself, packed, key=f"shared-{packed.digest}")
             known = self._sent[id(shared)] = (shared, packed.digest, future)
-        return known[1:]
+        _, digest, future = known
+        return digest, future
 
     def _in_order(self, futures: Sequence[Any], *, keep: bool) -> Iterator[Any]:
-        """Yield the results; let go of the rest when the caller stops or a task fails."""
+        """Yield the results; release the others when the caller stops or a task fails."""
         count = 0
         try:
             earlier_keys = {key for _, key in self._published()} if keep else set()
             while count < len(futures):
-                for done in self._results(futures, count):
-                    yield done.result if futures[count].key in earlier_keys else self.cost.add(done)
+                for task in self._results(futures, count):
+                    if futures[count].key not in earlier_keys:  # a stored result costs nothing again
+                        self.cost.add(task)
+                    yield task.result
                     count += 1
             if keep:
                 self._publish({future.key: future for future in futures})
@@ -98,22 +102,23 @@ class ByDask:
                 future.release()
 
     def _published(self) -> list[tuple[str, str]]:
-        """Return names of kept results, the oldest first, and the keys of their tasks."""
+        """Return names of stored results, the oldest first, and the keys of their tasks."""
         names: tuple[str, ...] = ()
-        with suppress(Exception):  # a scheduler that is gone ends the tasks, which say so
+        with suppress(Exception):  # where the scheduler is gone, the tasks raise it
             names = self.client.list_datasets()  # type: ignore[no-untyped-call]
         return [(name, name.partition(" ")[2]) for name in sorted(names) if name.startswith(_PREFIX)]
 
     def _publish(self, futures: Mapping[str, Any]) -> None:
-        """Leave results with the workers, which write to disk what their memory has no room for."""
+        """Store results in the cluster; workers write to disk what exceeds their memory."""
         published, now = self._published(), f"{_PREFIX}{time.time():.3f}"
         new: dict[Any, Any] = {
             f"{now} {key}": futures[key] for key in futures.keys() - {key for _, key in published}
         }
-        older: list[Any] = [name for name, _ in published]
-        with suppress(Exception):  # all results are here: who asks for them later makes them again
+        oldest_first: list[Any] = [name for name, _ in published]
+        excess = max(0, len(oldest_first) + len(new) - MAX_RESULTS)
+        with suppress(Exception):  # the caller has all results; without a store they are computed again later
             self.client.publish_dataset(new)
-            self.client.unpublish_dataset(older[: max(0, len(older) + len(new) - MAX_RESULTS)])
+            self.client.unpublish_dataset(oldest_first[:excess])
 
     def _results(self, futures: Sequence[Any], first: int) -> list[Any]:
         """Wait for a result as long as a worker exists; return it with those ready after it."""
@@ -127,7 +132,7 @@ class ByDask:
             try:
                 if self._ended(futures[first]):
                     return self._fetched(futures[first : first + _AT_ONCE])
-            except TimeoutError:  # of the task itself, or its result did not come over in time
+            except TimeoutError:  # raised by the task itself, or its result did not arrive in time
                 if futures[first].status == "error":
                     raise
             except KilledWorker:
@@ -141,7 +146,7 @@ class ByDask:
                 raise WorkersLost(f"{alone}: {so_far}. Start workers there, and run it again.")
 
     def _fetched(self, futures: Sequence[Any]) -> list[Any]:
-        """Return the result of the first, and of those behind it that are ready, by one message."""
+        """Return the result of the first future and those of the next ones that are ready, by one message."""
         ready = list(takewhile(lambda future: future.status == "finished", futures)) or [futures[0]]
         gather = partial(self.client.gather, asynchronous=True)
         results: list[Any] = self.client.sync(gather, ready, callback_timeout=self.patience)  # type: ignore[no-untyped-call]
@@ -159,7 +164,7 @@ class ByDask:
         return True
 
     def _workers(self) -> bool:
-        """Whether the scheduler has any; one that does not answer ends the futures by itself."""
+        """Whether the cluster has a worker; False where the scheduler does not answer."""
         try:
             return bool(self.client.nthreads())  # type: ignore[no-untyped-call]
         except (OSError, TimeoutError):
@@ -181,8 +186,8 @@ def _itself(packed: Packed) -> Packed:
 def dask_workers(scheduler: str) -> ByDask:
     """Connect to a Dask scheduler.
 
-    `scheduler`: its address, ``tcp://host:port``, or the file in which it left it, as schedulers of batch
-    systems do (``dask scheduler --scheduler-file``); all its workers have this program installed, in this
+    `scheduler`: its address, ``tcp://host:port``, or the file into which it wrote its address, as schedulers
+    of batch systems do (``dask scheduler --scheduler-file``). All workers must have this program in this
     version. Raises `MissingExtra`: Dask is not installed; `WorkersLost`: no scheduler answers there.
     """
     try:
@@ -205,11 +210,11 @@ def connection(address: str, *, asynchronous: bool = False) -> Client:
     require("dask")
     from distributed import Client, Security  # noqa: PLC0415 (an extra)
 
-    mine = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
-    if address.startswith(("tls://", "wss://")) and mine["ssl_context"] is None:
+    security = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
+    if address.startswith(("tls://", "wss://")) and security["ssl_context"] is None:
         files = "CA_FILE, DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT and ...CLIENT__KEY"
         raise OSError(f"it wants certificates: name their files in DASK_DISTRIBUTED__COMM__TLS__{files}")
-    if mine["require_encryption"] and not address.startswith(("tls://", "wss://")):
+    if security["require_encryption"] and not address.startswith(("tls://", "wss://")):
         raise OSError("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION is set: its address begins with tls://")
     options: dict[str, Any] = {"asynchronous": asynchronous, "timeout": CONNECT_S, "set_as_default": False}
     return Client(address, **options)  # type: ignore[no-untyped-call]

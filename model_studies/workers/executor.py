@@ -46,6 +46,7 @@ class ByExecutor:
     cost: RunCost = field(default_factory=RunCost, compare=False)
     _folder: _PassedFiles = field(default_factory=_PassedFiles, compare=False, repr=False)
     _packed: dict[int, tuple[object, Packed]] = field(default_factory=dict, compare=False, repr=False)
+    """Shared inputs and their pickles, by `id`; holding an input keeps its `id` from being used again."""
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Submit all tasks and yield their results in order; unread results are cancelled."""
@@ -57,6 +58,7 @@ class ByExecutor:
         return self._in_order(futures)
 
     def _pack(self, shared: object) -> Packed:
+        """Pickle the shared input of tasks, once for successive runs with the same object."""
         known = self._packed.get(id(shared))
         if known is not None:
             return known[1]
@@ -75,10 +77,11 @@ class ByExecutor:
         try:
             for count, future in enumerate(futures):
                 try:
-                    done = future.result()
+                    task = future.result()
                 except BrokenExecutor as error:
                     raise _lost(count, len(futures)) from error
-                yield self.cost.add(done)
+                self.cost.add(task)
+                yield task.result
         finally:
             for future in futures:
                 future.cancel()
@@ -100,6 +103,6 @@ def local_processes(count: int) -> Iterator[ByExecutor]:
             raise
 
 
-def _lost(done: int, of: int) -> WorkersLost:
+def _lost(done: int, total: int) -> WorkersLost:
     reason = "A process of the pool ended during the run; it may have run out of memory"
-    return WorkersLost(f"{reason}: {done} of {of} tasks were done.")
+    return WorkersLost(f"{reason}: {done} of {total} tasks were done.")

@@ -3,36 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 R = TypeVar("R")
 
 
 @dataclass
 class RunCost:
-    """Cost of remote tasks so far, without work that was lost with its worker: nobody can tell.
-
-    The CPU time is that of the threads that did them, or of all threads of a worker that does them in its
-    main one as those of a pool do, and of the processes they started; the memory the largest of any of their
-    processes; `lost` says why they were lost and the rest was done here.
-    """
+    """Cost of remote tasks so far; the cost of a task that was lost with its worker is not known."""
 
     tasks: int = 0
+    """Number of tasks."""
     cpu_seconds: float = 0.0
+    """CPU time of the threads that did the tasks, and of the processes that these started. A worker that does
+    tasks in its main thread, as those of a pool do, counts all its threads.
+    """
     peak_memory_bytes: int = 0
+    """Largest memory of a process of the workers."""
     lost: str = ""
+    """Reason why the workers were lost, after which this process did the remaining tasks; else empty."""
 
     def since(self, before: RunCost) -> RunCost:
-        """Return the cost since an earlier reading of the same cost; the peak is that of the whole time."""
+        """Return the cost since an earlier reading; the largest memory remains that since the beginning."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
         return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
-    def add(self, done: TaskResult[R]) -> R:
-        """Count a task, and return its result."""
+    def add(self, task: TaskResult[Any]) -> None:
+        """Count the cost of a task."""
         self.tasks += 1
-        self.cpu_seconds += done.cpu_seconds
-        self.peak_memory_bytes = max(self.peak_memory_bytes, done.peak_memory_bytes)
-        return done.result
+        self.cpu_seconds += task.cpu_seconds
+        self.peak_memory_bytes = max(self.peak_memory_bytes, task.peak_memory_bytes)
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,11 @@ class Issuer:
     Parameters
     ----------
     url : str
-        The issuer, as its tokens name it.
+        Address of the issuer, as its tokens have it.
     keys_url : str, optional
         Address of the keys; default: the address in the issuer's configuration, on its own host.
     clock : callable
-        Seconds, steady; replaced by tests.
+        Function that returns seconds of a monotonic clock; tests replace it.
     """
 
     def __init__(
@@ -44,7 +44,8 @@ class Issuer:
     ) -> None:
         self.url, self._keys_url, self._clock = url, keys_url, clock
         self._keys: dict[str, Json] = {}
-        self._fetched = self._tried = -float("inf")
+        self._fetched = -float("inf")  # time of the last success
+        self._tried = -float("inf")  # time of the last attempt
         self._lock = asyncio.Lock()
         self._renewal: asyncio.Task[None] | None = None
 
@@ -57,10 +58,10 @@ class Issuer:
         if not self._good(identifier):
             await self._renew(identifier)
         elif self._age > FRESH_S and (self._renewal is None or self._renewal.done()):
-            self._renewal = asyncio.create_task(self._renew(identifier))  # nobody waits for it
+            self._renewal = asyncio.create_task(self._renew(identifier))  # the caller takes the known key
         if self._good(identifier):
             return self._keys[identifier]
-        if self._tried > self._fetched:
+        if self._tried > self._fetched:  # the last attempt failed
             raise IssuerUnavailable("The issuer of access tokens does not answer. Try again later.")
         raise Unauthorised.of("The token is signed with a key that its issuer does not publish.")
 
@@ -69,10 +70,11 @@ class Issuer:
         return self._clock() - self._fetched
 
     def _good(self, identifier: str) -> bool:
+        """Whether a key is known and still valid."""
         return identifier in self._keys and self._age <= STALE_S
 
     async def _renew(self, identifier: str) -> None:
-        """Fetch the keys, unless another caller has just done so or it was just tried."""
+        """Fetch the keys, unless another caller has just fetched them or the last attempt is too recent."""
         async with self._lock:
             fresh = self._good(identifier) and self._age <= FRESH_S
             if fresh or self._clock() - self._tried < PAUSE_S:
@@ -86,7 +88,7 @@ class Issuer:
                 self._fetched = self._tried
 
     def _fetch(self) -> dict[str, Json]:
-        """Return the published keys that sign."""
+        """Return the published keys for signatures, by their identifiers."""
         with httpx2.Client(timeout=_TIMEOUT_S, follow_redirects=False) as http:
             keys = _document(http, self._keys_url or self._discovered(http))["keys"]
         return {key["kid"]: key for key in keys if "kid" in key and key.get("use", "sig") == "sig"}
@@ -106,7 +108,7 @@ def _host(url: str) -> tuple[str, str]:
 
 
 def _document(http: httpx2.Client, url: str) -> Json:
-    """Return the JSON object at an address; raise ValueError of anything else."""
+    """Return the JSON object at an address; raise ValueError or TypeError for other content."""
     with http.stream("GET", url) as answer:
         answer.raise_for_status()
         content = b""

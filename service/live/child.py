@@ -74,17 +74,22 @@ def _listen(stream: BinaryIO, orders: queue.SimpleQueue[Frame], stop: _Stop) -> 
 
 
 class _Stopped(BaseException):
-    """The work is of no use any more; nothing but `_Stop` catches it."""
+    """The service wants no answer to the order in work; `_Stop` alone catches this."""
 
 
 class _Stop:
-    """Stops the work on one order in the main thread, and none that came after it."""
+    """Stops the work on one order in the main thread, and on no later one.
+
+    Orders have numbers from 1 in the order in which they arrive.
+    """
 
     def __init__(self) -> None:
-        self._begun, self._at_work, self._requested = 0, False, 0
+        self._begun = 0  # number of the order in work, or of the last one
+        self._at_work = False
+        self._requested = 0  # number of the order to stop
 
     def stoppable(self, order: Frame) -> Frame:
-        """Do the work on the next order."""
+        """Do the work on the next order; return its answer, or one of the kind "stopped"."""
         self._begun += 1
         answer = Frame("stopped")
         try:

@@ -1,8 +1,8 @@
 """Turns of questions that wait for an answer: each access key has a line.
 
-A key has its own line, so that whoever floods a service waits behind itself alone. In its line a slider,
-which asks again as it moves, has one place: a newer question takes the place of the one that waits, and stops
-the one that is answered, unless what that computes serves the newer one too.
+With its own line, a caller that floods the service waits only behind itself. A slider of a page, which sends
+a question at each move, has one place in its line. A newer question of the slider replaces the one that
+waits. It also stops the one that is being answered, unless the newer question profits from that work.
 """
 
 from __future__ import annotations
@@ -28,8 +28,7 @@ class Asker:
     key: str = NOBODY
     """Name of the access key."""
     slider: str | None = None
-    """Name that the caller gives to questions of which only the newest counts; each key has names of its own.
-    """
+    """Name of a slider, of whose questions only the newest counts. Keys do not share names."""
     submits: bool = False
     """Whether a submission waits for the answer. Such a question has a line of its own, before all others."""
 
@@ -57,9 +56,9 @@ class Question:
 
 @dataclass(frozen=True)
 class Limits:
-    """Most questions of one key and of all keys.
+    """Largest numbers of questions of one key and of all keys.
 
-    Without keys all callers count as one, for whom only `in_all` holds.
+    In a service without keys only `in_all` limits the callers.
     """
 
     answered: int = 1
@@ -69,7 +68,7 @@ class Limits:
     submissions: int = 8
     """Most questions of a key for which submissions wait, answered and waiting."""
     in_all: int = 20
-    """Most questions of all keys, answered and waiting; without keys all callers count as one key."""
+    """Most questions of all keys, answered and waiting."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class _Line:
 
 
 class Turns:
-    """Questions that wait and that are answered. Not for several threads: its user has a lock.
+    """Questions that wait or are being answered. It is not safe for threads: its user must hold a lock.
 
     Parameters
     ----------
@@ -102,15 +101,20 @@ class Turns:
         Raises
         ------
         TooManyHeld
-            As many of its key wait as may.
+            The key has its largest number of questions.
         QueueFull
-            As many wait as may in all.
+            All keys together have their largest number.
         """
         line, slider = _line_of(question), question.asker.slider
-        name = f"#{next(self._number)}" if slider is None else f" {slider}"
+        name = (
+            f"#{next(self._number)}" if slider is None else f" {slider}"
+        )  # a slider cannot have a number's name
         waiting = self._lines.get(line, OrderedDict())
         if name in waiting:
-            older, waiting[name] = waiting[name], question  # a slider that never rests keeps its turn
+            older, waiting[name] = (
+                waiting[name],
+                question,
+            )  # in the same turn, or a slider in motion never has one
             older.refuse(Superseded("A later request of the same caller replaced it."))
         else:
             self._refuse_beyond(line)
@@ -134,13 +138,13 @@ class Turns:
         del self._answered[id(question)]
 
     def empty(self) -> Iterator[Question]:
-        """Yield all that wait, and let them wait no longer."""
+        """Remove all waiting questions and yield them."""
         while self._lines:
             _, waiting = self._lines.popitem()
             yield from waiting.values()
 
     def _take(self, line: _Line, name: str) -> None:
-        """Take a question out of its line, which goes behind all others."""
+        """Remove a question from its line, and put the line behind all others."""
         del self._lines[line][name]
         self._lines.move_to_end(line)
         if not self._lines[line]:
@@ -162,8 +166,8 @@ class Turns:
 
     def _make_obsolete(self, newer: Question) -> None:
         for question in self._answered.values():
-            serves = question.lasting and question.subject == newer.subject
-            if newer.asker.slider is not None and question.asker == newer.asker and not serves:
+            helps_newer = question.lasting and question.subject == newer.subject
+            if newer.asker.slider is not None and question.asker == newer.asker and not helps_newer:
                 question.obsolete = True
 
 

@@ -26,31 +26,31 @@ def bound_of(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class Durations:
-    """Computations of one process that ended in one way: seconds from first start to end, and attempts.
-
-    The buckets say how many took at most so many seconds (the last bound is ``+Inf``).
-    """
+    """Durations of the computations of one process with one outcome, from the first start to the end."""
 
     process: str
     outcome: str
     buckets: tuple[tuple[str, int], ...]
+    """Upper bounds in seconds, the last one ``+Inf``, each with the number of computations up to it."""
     seconds: float
+    """Sum of the durations."""
     attempts: int
+    """Sum of the attempts."""
 
 
 @dataclass(frozen=True)
 class Workload:
-    """The load at an instant.
-
-    Computations by state, those that wait or run by state and process, the age of the oldest waiting one (0:
-    none does), and results as kind, number and bytes.
-    """
+    """The load at an instant."""
 
     states: dict[str, int]
+    """Number of computations by state."""
     queue: dict[tuple[str, str], int]
+    """Number of computations that wait or run, by state and process."""
     oldest_waiting_s: float
+    """Age of the oldest waiting computation; 0: none waits."""
     durations: tuple[Durations, ...]
     results: tuple[tuple[str, int, int], ...]
+    """Kind, number and bytes of the stored results."""
 
 
 class WorkloadReader:
@@ -101,12 +101,13 @@ def _durations(connection: Connection) -> tuple[Durations, ...]:
     names = dict.fromkeys((row.process, row.outcome) for row in rows)
     histograms = []
     for process, outcome in names:
-        mine = [row for row in rows if (row.process, row.outcome) == (process, outcome)]
-        bounds = sorted({bound_of(b) for b in BOUNDS_S} | {row.le for row in mine}, key=float)
+        own_rows = [row for row in rows if (row.process, row.outcome) == (process, outcome)]
+        # the classes of this version, and those of other versions that are stored
+        bounds = sorted({bound_of(b) for b in BOUNDS_S} | {row.le for row in own_rows}, key=float)
         buckets = tuple(
-            (bound, sum(row.number for row in mine if float(row.le) <= float(bound))) for bound in bounds
+            (bound, sum(row.number for row in own_rows if float(row.le) <= float(bound))) for bound in bounds
         )
-        seconds, attempts = sum(row.seconds for row in mine), sum(row.attempts for row in mine)
+        seconds, attempts = sum(row.seconds for row in own_rows), sum(row.attempts for row in own_rows)
         histograms.append(Durations(process, outcome, buckets, seconds, attempts))
     return tuple(histograms)
 

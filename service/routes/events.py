@@ -32,7 +32,7 @@ router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
 
 
 class _TooManyStreams(QueueFull):
-    """Problem: the service serves as many event streams as it bears."""
+    """Problem: the service already serves its largest number of event streams."""
 
     type = "urn:lineofaction:problem:too-many-streams"
     title = "Too many event streams"
@@ -56,8 +56,8 @@ class _TooManyStreams(QueueFull):
 async def job_events(job_id: str, context: Ctx, last_event_id: LastEvent = None) -> Response:
     """Send the status now and whenever it changes; the stream ends after the final one.
 
-    Who reconnects gets the current status, unless it is that of the last event. Comments keep the connection
-    open.
+    A caller that reconnects gets the current status, unless it is that of the last event that arrived.
+    Comments in the stream keep the connection open.
     """
     job = await run_in_threadpool(context.submissions.find, job_id)
     event = await run_in_threadpool(event_of, job, context.registry)
@@ -78,7 +78,7 @@ def event_of(job: Job, registry: Registry) -> JobEvent:
 
 
 class _Stream(StreamingResponse):
-    """A stream that is counted as long as it is sent, however that ends."""
+    """A stream that leaves the count of open streams when it ends for any reason."""
 
     def __init__(self, streams: Streams, content: AsyncIterator[bytes], headers: dict[str, str]) -> None:
         super().__init__(content, media_type=EVENT_STREAM, headers=headers)
@@ -99,17 +99,17 @@ class _Latest:
         self._loop, self._changed = asyncio.get_running_loop(), asyncio.Event()
 
     def tell(self, event: JobEvent | None) -> None:
-        """Take an event, in any thread; who has not sent the one before sends this one instead."""
+        """Replace the event, from any thread; a coroutine that has not read the former one reads this one."""
 
-        def take() -> None:
+        def replace() -> None:
             self.event = event
             self._changed.set()
 
         with contextlib.suppress(RuntimeError):  # the loop was closed
-            self._loop.call_soon_threadsafe(take)
+            self._loop.call_soon_threadsafe(replace)
 
     async def changed(self, patience_s: float) -> bool:
-        """Wait for the next event; False: there is none yet."""
+        """Wait for the next event; return False if none came within `patience_s`."""
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(patience_s):
                 await self._changed.wait()
@@ -119,6 +119,7 @@ class _Latest:
 
 
 async def _changes(context: Context, job: Job, event: JobEvent, sent: str | None) -> AsyncIterator[bytes]:
+    """Yield events from `event` on, except the one with the id `sent`, which the caller has."""
     if event.last:
         yield event.text
         return

@@ -37,7 +37,7 @@ from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of,
 from service.store.retries import optional, retried
 
 USE_NOTED_EVERY_S = 3600.0
-"""A result that is read all the time is noted as used this often."""
+"""Seconds between two notes of the use of a result that is read all the time."""
 results = Table(
     "result",
     metadata,
@@ -55,7 +55,7 @@ results = Table(
 
 
 class Mark(NamedTuple):
-    """The last line of a page; the next one begins behind it, whether the line still exists or not."""
+    """The last line of a page. The next page begins behind it, even if the line was removed since."""
 
     created: str
     """RFC 3339 in UTC with microseconds."""
@@ -222,7 +222,7 @@ class ResultStore:
         return [(Mark(row.created, at_address(row.key)[1]), _read(row)) for row in rows]
 
     def verified(self, key: str, kind: str | None = None) -> StoredResult:
-        """Return the result of a kind, or of whichever it is, after comparing its bytes with its digest.
+        """Return the result of a key after comparing its bytes with its digest; without `kind`, of any kind.
 
         Raises
         ------
@@ -253,7 +253,7 @@ class ResultStore:
 
     def note_use(self, key: str, kind: str) -> None:
         """Note that a result was requested; cheap, and written once an hour."""
-        last = self._noted.get((key, kind), -USE_NOTED_EVERY_S)
+        last = self._noted.get((key, kind), -USE_NOTED_EVERY_S)  # long ago by a clock that begins at 0
         if time.monotonic() - last >= USE_NOTED_EVERY_S:
             self._note_use(key, kind)
 
@@ -268,7 +268,7 @@ class ResultStore:
 
     @retried
     def without_headline(self, keys: Collection[str], kind: str, limit: int) -> list[IndexLine]:
-        """Return up to `limit` lines of these keys for which nothing was ever noted as a headline."""
+        """Return up to `limit` lines of these keys that never got a headline, not even an empty one."""
         addresses = [address_of(self.project, key) for key in keys]
         mine = results.c.key.in_(addresses), results.c.kind == kind, results.c.headline == ""
         with reading(self._engine) as connection:
@@ -290,7 +290,10 @@ class ResultStore:
 
     @retried
     def strike(self, line: IndexLine, *, unused_since: str | None = None) -> bool:
-        """Remove a line from the index, if it is still that one and, given an instant, was not used since."""
+        """Remove a line from the index, if it still names the same file and was not used since an instant.
+
+        Return whether it was removed.
+        """
         mine = [results.c.key == line.address, results.c.kind == line.kind, results.c.file == line.file]
         if unused_since is not None:
             mine.append(results.c.used < unused_since)

@@ -95,6 +95,7 @@ DEPEND_ON_OTHERS = (
         "end_bore_diameter_mm",
         "tip_diameter_mm",
         "root_radius_coefficient",
+        "sector_teeth",
     ),
     *("thickness_allowance_um", "tip_rounding_mm", "tip_chamfer_mm", "pitches", "tolerance", "time_budget_s"),
     *(figure.field for figure in (*figures(FlankModification, Kind.LENGTH), *figures(DrawingStarts))),

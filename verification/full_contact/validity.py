@@ -59,6 +59,8 @@ def _of_gear(gear: Toothing) -> str | None:
     """Return why the meshes of sections cannot hold a gear; None if they can."""
     if gear.web is not None:
         return "rim, web and hub: one section stands for the whole face"
+    if gear.sector_teeth is not None:
+        return "sector: the whole gear is meshed"
     if gear.seat != CLAMPED:
         return "seat of the bore: it is rigid"
     if not gear.pitch_deviation.neutral or gear.deviates:

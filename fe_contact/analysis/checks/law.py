@@ -17,7 +17,7 @@ _DIGITS = 6
 
 @dataclass(frozen=True)
 class LawCheck:
-    """The worst place of a table under a law."""
+    """The grid point of a table at which a law is nearest to be broken, or is broken most."""
 
     law: str
     quantity: str
@@ -30,8 +30,9 @@ class LawCheck:
     unit: str
     """Unit of value and bound; empty for numbers."""
     ratio: float
-    """Distance of the value from the far bound over the distance of the bounds. Above 1, or where it is NaN,
-    the law is broken.
+    """Part of its range that the value uses; above 1 or NaN: the law is broken. Between two bounds it is the
+    distance of the value from their middle over half of their distance. With one bound it is value over
+    bound, or bound over value.
     """
 
     @property
@@ -62,12 +63,15 @@ class LawCheck:
 
 @dataclass(frozen=True)
 class Law:
-    """Quantity that a law bounds: names of law and quantity, unit in messages, factor from SI to the unit."""
+    """A law that bounds a quantity."""
 
     name: str
     quantity: str
+    """`name`, `quantity`: Names of the law and of the quantity."""
     unit: str = ""
+    """Unit of the quantity in messages."""
     per_si: float = 1.0
+    """Value in this unit of one SI unit."""
 
     def between(
         self,
@@ -76,22 +80,26 @@ class Law:
         high: FloatArray | float,
         location: Callable[..., str],
     ) -> LawCheck:
-        """Hold values (...) between bounds that broadcast; `location` names the place of an index."""
+        """Check that values (...) lie between two bounds.
+
+        Bounds are broadcast to the values. `location` returns the text of a grid point from its indices.
+        """
         low, high = np.broadcast_to(low, value.shape), np.broadcast_to(high, value.shape)
-        middle, room = 0.5 * (low + high), 0.5 * (high - low)
-        off = value - middle
-        ratio = np.divide(np.abs(off), room, out=np.full(value.shape, np.inf), where=room > 0.0)
-        ratio = np.where(off == 0.0, 0.0, ratio)
-        bound = np.where(off < 0.0, low, high)
+        middle, half_range = 0.5 * (low + high), 0.5 * (high - low)
+        distance = value - middle
+        infinite = np.full(value.shape, np.inf)
+        ratio = np.divide(np.abs(distance), half_range, out=infinite, where=half_range > 0.0)
+        ratio = np.where(distance == 0.0, 0.0, ratio)
+        bound = np.where(distance < 0.0, low, high)
         return self._worst(value, bound, ratio, location)
 
     def below(self, value: FloatArray, bound: FloatArray | float, location: Callable[..., str]) -> LawCheck:
-        """Hold values (...) below bounds > 0 that broadcast."""
+        """Check that values (...) lie below bounds > 0; the ratio is value over bound."""
         bound = np.broadcast_to(bound, value.shape)
         return self._worst(value, bound, value / bound, location)
 
     def above(self, value: FloatArray, bound: FloatArray | float, location: Callable[..., str]) -> LawCheck:
-        """Hold values (...) above bounds > 0 that broadcast; the ratio is bound over value."""
+        """Check that values (...) lie above bounds > 0; the ratio is bound over value."""
         bound = np.broadcast_to(bound, value.shape)
         ratio = np.divide(bound, value, out=np.full(value.shape, np.inf), where=value > 0.0)
         return self._worst(value, bound, ratio, location)
@@ -99,15 +107,16 @@ class Law:
     def _worst(
         self, value: FloatArray, bound: FloatArray, ratio: FloatArray, location: Callable[..., str]
     ) -> LawCheck:
-        at = np.unravel_index(int(np.argmax(np.where(np.isnan(ratio), np.inf, ratio))), ratio.shape)
+        worst = int(np.argmax(np.where(np.isnan(ratio), np.inf, ratio)))
+        index = np.unravel_index(worst, ratio.shape)
         return LawCheck(
             law=self.name,
             quantity=self.quantity,
-            location=location(*at),
-            value=float(value[at]) * self.per_si,
-            bound=float(bound[at]) * self.per_si,
+            location=location(*index),
+            value=float(value[index]) * self.per_si,
+            bound=float(bound[index]) * self.per_si,
             unit=self.unit,
-            ratio=float(ratio[at]),
+            ratio=float(ratio[index]),
         )
 
 

@@ -15,7 +15,7 @@ from bounds import engineering
 from fe_contact.analysis.database.compute_database import compute_pass
 from fe_contact.analysis.database.refinement import Refinement, next_pass
 from fe_contact.analysis.database.run_passes import Pass, of_all_passes
-from fe_contact.analysis.estimates.tolerance_shares import bought_shares, error_shares
+from fe_contact.analysis.estimates.tolerance_shares import error_shares, reducible_shares
 from fe_contact.analysis.request.model_choice import Decision, decide
 from fe_contact.analysis.request.request import Checked
 from fe_contact.errors import FeContactError
@@ -126,8 +126,8 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
     if at_nodes is not None and at_nodes <= 1.0:  # the errors that finer meshes lower meet the tolerance
         return _interval_reason(table)
     # errors at nodes that work lowers; the others, those of the model, stay whatever is refined
-    bought, _ = bought_shares(error_shares(table, tolerance), last.decision.checked.request)
-    measured = next_pass(last.decision, bought)
+    reducible, _ = reducible_shares(error_shares(table, tolerance), last.decision.checked.request)
+    measured = next_pass(last.decision, reducible)
     behind = last.decision.behind
     if behind and last.refinement is None and (isinstance(measured, str) or measured.expected > 1.0):
         return _behind_trial(behind, last)
@@ -136,7 +136,7 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
 
 def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
     """Return the pass that was expected to follow a trial, where one step from the trial is not enough."""
-    expected = behind.mesh.option.error.bought / behind.checked.request.options.allowed.relative
+    expected = behind.mesh.option.error.reducible / behind.checked.request.options.allowed.relative
     name = f"{behind.checked.model_name}, {behind.mesh.option.name}"
     return Refinement(behind, "trial", (f"{trial.name} -> {name}",), expected)
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from bounds import engineering
 from fe_contact.analysis.request.model_choice import Decision, next_model
-from fe_contact.options import BETWEEN, LEVELS
+from fe_contact.options import LEVELS, MEDIUM
 from fe_contact.planning.discretization import (
     FINER_SLICES,
     SLICE_ORDER,
@@ -119,7 +119,7 @@ class _Resolution:
     def _next_level(self, *, across_face: bool) -> _Resolution | None:
         if self.level == LEVELS[-1] or not self.level_left:
             return None
-        higher = "standard" if self.level == BETWEEN else LEVELS[LEVELS.index(self.level) + 1]
+        higher = "standard" if self.level == MEDIUM else LEVELS[LEVELS.index(self.level) + 1]
         part = MESH_STEP["face" if across_face else "plane"][self.level]
         finer = self._with(_MESH, part, f"mesh {self.level} -> {higher}")
         finer = replace(finer, level=higher, level_left=self.level_left - 1)
@@ -222,7 +222,7 @@ def _of_model(model: Decision, begun: _Resolution) -> Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
     step = f"model {begun.decision.checked.model_name} -> {model.checked.model_name}"
     tolerance = model.checked.request.options.allowed.relative
-    expected = float(np.hypot(model.mesh.option.error.bought / tolerance, begun.shares[_POSITION].max()))
+    expected = float(np.hypot(model.mesh.option.error.reducible / tolerance, begun.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (step,), expected)
 
 

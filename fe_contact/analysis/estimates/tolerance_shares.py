@@ -52,21 +52,22 @@ def _with_bias(table: SteDatabase, curve_error: FloatArray, bias: PlaneBias | No
     return errors
 
 
-def bought_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
-    """Part the errors at nodes, each (6, ...), into errors that work lowers and errors that it does not.
+def reducible_shares(shares: FloatArray, request: Request) -> tuple[FloatArray, FloatArray]:
+    """Split the errors at nodes into those that more computation lowers and those that it does not.
 
-    Those of the method last; so do those of the plane, where the caller chose it.
+    Both are (6, ...), with zeros for the others. The error of the method cannot be lowered. Nor can that of
+    the plane where the caller chose the model.
     """
     lasting = (METHOD, PLANE) if request.model_chosen else (METHOD,)
-    lasts = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))
+    is_lasting = np.isin(AT_NODES, lasting).reshape(-1, *[1] * (shares.ndim - 1))  # (6, 1, ...)
     at_nodes = shares[: len(AT_NODES)]
-    return np.where(lasts, 0.0, at_nodes), np.where(lasts, at_nodes, 0.0)
+    return np.where(is_lasting, 0.0, at_nodes), np.where(is_lasting, at_nodes, 0.0)
 
 
 def used_at_nodes(shares: FloatArray, request: Request) -> FloatArray:
     """Return the part of the tolerance (F, M, D) that errors at nodes use of mean or peak-to-peak."""
-    bought, _ = bought_shares(shares, request)
-    return np.asarray(all_sources(np.concatenate([bought, shares[len(SOURCES) :]])).max(axis=0))
+    reducible, _ = reducible_shares(shares, request)
+    return np.asarray(all_sources(np.concatenate([reducible, shares[len(SOURCES) :]])).max(axis=0))
 
 
 def interval_goal(
@@ -92,7 +93,7 @@ def tolerance_receipt(table: SteDatabase, allowed: AllowedError, request: Reques
         every axis that takes the table beyond the tolerance.
     """
     shares = error_shares(table, allowed)
-    _, lasting = bought_shares(shares, request)
+    _, lasting = reducible_shares(shares, request)
     if table.metadata.receipt.get("bias"):
         lasting[AT_NODES.index(PLANE)] = 0.0
     nodes = used_at_nodes(shares, request)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from fe_contact.analysis.flanks.flank_scene import FlankScene, flank_scene
 from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.contact.flank_slope import rolls_at
@@ -57,7 +58,7 @@ class FlankErrors:
 
 @brief
 @dataclass(frozen=True)
-class LoadDistribution:
+class LoadDistribution(Plottable):
     """One load on P positions, N tooth pairs and K stretches of the common face, several a slice."""
 
     position: FloatArray

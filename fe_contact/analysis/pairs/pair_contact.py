@@ -212,6 +212,8 @@ def pair_contact(
     coarse: bool = False,
     distance_changes: FloatArray | None = None,
     report: Report = unreported,
+    *,
+    coarse_next: bool = False,
 ) -> PairContact:
     """Compute or fetch the compliance of both gears; identical gears are computed once.
 
@@ -226,6 +228,8 @@ def pair_contact(
         Changes of the center distance in m at which the same compliance will be used.
     report : callable
         Called with the fraction done over the face, by predicted cost; in the plane it is not called.
+    coarse_next : bool
+        Whether the coarse compliance follows: in the plane one process meshes for both.
     """
     made, gears = plan.discretization, plan.bodies(pair)
     if coarse:
@@ -238,7 +242,8 @@ def pair_contact(
         return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))
     recipes = made.coarse_recipes if coarse else made.recipes
     teeth = _teeth(pair, distance_changes)  # those that can touch at once
-    pinion, wheel = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
+    later = made.coarse_recipes if coarse_next else None
+    pinion, wheel = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache, later=later)
     flat = pinion, wheel
     if made.finite_width is None or coarse:
         return PairContact(pair, plan, plane=flat)

@@ -27,9 +27,9 @@ from model_studies.progress import Report, unreported
 def problems_in_parts(
     point: OperatingPoint, position: FloatArray, pitches: IntArray | None
 ) -> Iterator[ContactProblem]:
-    """Yield the contact of positions (P,) in [0, 1) in parts of the base pitches (T,), pitch by pitch.
+    """Yield the contact of positions (P,) in [0, 1) of each base pitch (T,), several base pitches at a time.
 
-    None stands for the first pitch. Where all teeth are alike there is one part of one pitch.
+    `pitches` None stands for the first base pitch. Where all teeth are alike, one base pitch is all.
     """
     contact, model = point.contact, point.model
     if pitches is None or model.period == 1:
@@ -58,7 +58,7 @@ class SolvedContact:
 
     @classmethod
     def of(cls, pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> SolvedContact:
-        """Return all that there is of a solution, edges left aside; see `contact_fields`."""
+        """Return a solved contact with all arrays of `contact_fields`; tip edges are not assessed."""
         fields = contact_fields(pair, problem, solution)
         return cls(problem, solution, fields, np.zeros(solution.load.size))
 
@@ -74,7 +74,7 @@ def solved_in_parts(
 ) -> tuple[SolvedContact, ...]:
     """Solve positions (P,) in the base pitches (T,) at sets of normal forces in N, each by itself.
 
-    Of the first set all arrays of a table are stored, of others those of support loads.
+    The first set has all arrays of a table; the others have only those of support loads.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def solved_in_parts(
         solutions = solve_sets(problem, sets)
         depth = edge_depth(point, problem, solutions[0]) if edges else np.zeros(sets[0].size)
         first = parts[0][0].problem if parts else _first_pitch(problem)
-        stored_rows = 0 if parts else first.candidates.position.size
+        stored_rows = 0 if parts else first.candidates.position.size  # forces of the first base pitch alone
         part = []
         for number, solution in enumerate(solutions):
             stored = (support_fields if number else contact_fields)(point.contact.pair, problem, solution)
@@ -104,7 +104,7 @@ def solved_in_parts(
 
 
 def _first_pitch(problem: ContactProblem) -> ContactProblem:
-    """Return a problem of several base pitches in the first of them."""
+    """Return the part of a problem of several base pitches that lies in the first of them."""
     candidates, rows = problem.candidates, np.arange(len(problem.compliance))
     if candidates.position.size == rows.size:
         return problem
@@ -118,7 +118,7 @@ def _first_pitch(problem: ContactProblem) -> ContactProblem:
 
 
 def _one_after_another(parts: Sequence[SolvedContact]) -> SolvedContact:
-    """Put parts of the base pitches of one set of loads together."""
+    """Join the parts of the base pitches of one set of loads."""
     first, solutions = parts[0], [part.solution for part in parts]
     if len(parts) == 1:
         return first

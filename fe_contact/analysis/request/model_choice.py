@@ -71,7 +71,9 @@ class Decision:
         """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
         plan = replace(self.checked.plan(level, slices), nodes=nodes)
         request, model = self.checked.request, self.checked.model
-        error = expected_error(request.pair, plan, expected_curves(self.checked), bound=request.model_chosen)
+        error = expected_error(
+            request.pair, plan, expected_curves(self.checked), model_chosen=request.model_chosen
+        )
         work = effort(request.pair, plan, model, request.alignments)
         option = MeshOption(level, plan.discretization.slices, error, work)
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
@@ -128,7 +130,7 @@ def _trial(
         for option, known in zip(_options(model, curves), options, strict=True)
         if known.effort <= TRIED_WORK * max(works)
     ]
-    return min(cheap, key=lambda trial: trial[1].error.bought, default=None)
+    return min(cheap, key=lambda trial: trial[1].error.reducible, default=None)
 
 
 def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = False) -> list[MeshOption]:
@@ -136,7 +138,7 @@ def _options(checked: Checked, curves: ExpectedCurves | None, *, usual: bool = F
     request, options = checked.request, checked.request.options
     options = replace(options, tolerance=None) if usual else options
     arguments = request.pair, request.load, options, checked.model, request.alignments
-    return mesh_options(*arguments, curves, bound=request.model_chosen)
+    return mesh_options(*arguments, curves, model_chosen=request.model_chosen)
 
 
 def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decision:
@@ -241,7 +243,7 @@ def _rechecked(request: Request) -> Checked:
 def _mesh(checked: Checked, curves: ExpectedCurves | None, cache: Path | None) -> MeshChoice:
     request = checked.request
     arguments = request.pair, request.load, request.options, checked.model, request.alignments
-    return chosen_mesh(*arguments, cache, curves, bound=request.model_chosen)
+    return chosen_mesh(*arguments, cache, curves, model_chosen=request.model_chosen)
 
 
 def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
@@ -252,7 +254,7 @@ def _best(choices: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshC
     by_time = choices[0][0].request.options.time_budget is not None
     if good and not by_time:
         return _said(min(good, key=lambda choice: choice[1].option.effort))
-    return _said(min(good or choices, key=lambda choice: choice[1].option.error.bought))
+    return _said(min(good or choices, key=lambda choice: choice[1].option.error.reducible))
 
 
 def _said(choice: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:

@@ -1,4 +1,4 @@
-"""Limits of a plane model: all that acts across the face."""
+"""Limits of a plane model, all that acts across the face, and what only a plane model has."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from fe_contact.geometry import FlankModification
 def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequence[LedgerEntry]) -> None:
     """Refuse parts of a request that act across the face where the model is a plane.
 
-    That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse.
+    That is helix, flanks that vary along the face, shafts, misalignment; and what effects refuse. In three
+    dimensions sectors between cut planes are refused.
     """
     if model.across_face:
+        _refuse_sectors(scene)
         return
     pair, remedy = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
@@ -33,6 +35,13 @@ def refuse_beyond_plane(scene: ContactScene, model: ContactModel, ledger: Sequen
     for entry in ledger:
         if entry.on:
             scene.effect(entry.name).refuse_plane(scene)
+
+
+def _refuse_sectors(scene: ContactScene) -> None:
+    for name, gear in scene.gears.items():
+        if gear.sector_teeth is not None:
+            bound = "left out for a model in three dimensions"
+            raise InputError(f"{name}.sector_teeth", gear.sector_teeth, bound, "Its rings are whole.")
 
 
 def _refuse_varying_flanks(field: str, along_face: FlankModification, remedy: str) -> None:

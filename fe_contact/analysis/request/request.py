@@ -150,7 +150,7 @@ class Checked:
         """Return the plan with the mesh and slices that the accuracy asks for; see `chosen_mesh`."""
         request = self.request
         wish = request.pair, request.load, request.options, self.model
-        choice = chosen_mesh(*wish, request.alignments, cache, bound=request.model_chosen)
+        choice = chosen_mesh(*wish, request.alignments, cache, model_chosen=request.model_chosen)
         return self.plan(choice.level, choice.slices)
 
     def predicted(self, plan: Plan, cache: Path | None, *, with_errors: bool = True) -> Prediction:

@@ -35,7 +35,7 @@ from fe_contact.analysis.studies.full_contact_record import (
 )
 from fe_contact.errors import MeshError, SolveError, chosen, integer
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
-from fe_contact.options import BETWEEN, AnalysisOptions, TableAxes
+from fe_contact.options import MEDIUM, AnalysisOptions, TableAxes
 from fe_contact.planning.cost_model import effort
 from fe_contact.ste import SteDatabase
 from model_studies import Outcome, Progress, against_finest, knee_above, run_fidelities, silent
@@ -187,7 +187,7 @@ def chosen_fidelity(checked: Checked) -> str | None:
     """
     choice = decide(checked)
     level, model = choice.mesh.level, choice.checked.model
-    if level == BETWEEN:
+    if level == MEDIUM:
         return None
     if model.across_face:
         return f"3d_{level}"

@@ -18,7 +18,7 @@ from lineofaction.gearbox.input_file import InputFile
 if TYPE_CHECKING:
     from lineofaction.cli import export
 else:
-    export = Later("cli.export")
+    export = Later("cli.export")  # imported at the first use of a name: help needs only the arguments
 
 verbs = typer.Typer()
 

@@ -1,6 +1,7 @@
-"""Housings of a scene file in the terms of dynamics: by their matrices, or reduced from their solids.
+"""Housings of a scene file as those of dynamics: by their matrices, or reduced from their solids.
 
-Measured ones are not among them: they do not act back on the shafts.
+Measured housings have no counterpart in dynamics, because they do not act back on the shafts; they are
+checked here.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ _NUMBERED = re.compile(r"^housings\[(\d+)\]")
 def solid_file(housing: HousingInput) -> tuple[str, str, bytes]:
     """Return the field of the file of a solid, the ending of its name, and its content.
 
-    Raises `BadInput`: another kind of file, damaged content, or a mesh that names further files, which are
-    not here.
+    Raises `BadInput`: another kind of file, damaged content, or a mesh that refers to further files, which
+    the scene does not contain.
     """
     field, suffixes = ("step_file", STEP_SUFFIXES) if housing.step_file else ("mesh_file", MESH_SUFFIXES)
     content = housing.step_file or housing.mesh_file
@@ -106,7 +107,7 @@ def reduced_in(scene: SceneInput, home: Path, progress: Progress = silent) -> di
 def housings_in(
     scene: SceneInput, home: Path, folder: Path, progress: Progress = silent
 ) -> dict[str, ReducedHousing]:
-    """Return the housings of a scene file by name: solids reduced, modes from their files in `folder`."""
+    """Return the reduced housings of a scene by name, of solids and of files of modes in `folder`."""
     reduced = reduced_in(scene, home, progress)
     files = {part.name: part.modes_file for part in scene.housings if part.modes_file is not None}
     if not files:
@@ -117,7 +118,7 @@ def housings_in(
 
 
 def check_measured(scene: SceneInput) -> None:
-    """Refuse measured housings that cannot be, before their files are read.
+    """Check measured housings before their files are read.
 
     Raises `BadInput`: a file is of another kind or damaged, or a seat is that of a shaft in a turning frame.
     """
@@ -140,7 +141,10 @@ def check_measured(scene: SceneInput) -> None:
 
 @contextmanager
 def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
-    """Give housings in errors of dynamics, which has no measured ones, their numbers in the file."""
+    """Replace the numbers of housings in errors of dynamics by those in the file.
+
+    The numbers differ because dynamics has no measured housings.
+    """
     numbers = [index for index, part in enumerate(housings) if not part.is_measured]
     try:
         yield
@@ -151,9 +155,10 @@ def numbered_as_written(housings: Sequence[HousingInput]) -> Iterator[None]:
 
 @identity_cached
 def housings_of(pairs: tuple[tuple[HousingInput, ReducedHousing | None], ...]) -> tuple[Housing, ...]:
-    """Return housings, those with solids reduced; scenes with the same solids share them.
+    """Return the housings of dynamics, without measured ones.
 
-    Measured ones are left out.
+    A pair is a housing of the file and the reduction of its solid, or None. Scenes with the same pairs share
+    the result.
     """
     return tuple(_housing_of(index, *pair) for index, pair in enumerate(pairs) if not pair[0].is_measured)
 
@@ -163,20 +168,24 @@ def _housing_of(index: int, housing: HousingInput, reduced: ReducedHousing | Non
         return _of_matrices(index, housing)
     from dynamics.housings import scene_housing  # noqa: PLC0415 (start-up time)
 
-    assert reduced is not None  # whoever makes the scene reduces them
+    assert reduced is not None  # callers reduce all solids first
     with named(f"housings[{index}]"):
         try:
             return scene_housing(reduced, housing.name, housing.bushings)
         except InputError as error:
             if error.field != "stiffness":
                 raise
+            # a singular stiffness matrix of a solid comes from its feet
             remedy = "Fix a foot, or give mounts on three feet that are not in line."
             bound = "such that they hold the housing in every direction"
             raise InputError("feet", [foot.name for foot in housing.feet], bound, remedy) from None
 
 
 def placeholder(index: int, housing: HousingInput) -> Housing:
-    """Return a housing on placeholders for the matrices of a solid, whose file is looked into."""
+    """Return a housing; a solid is not reduced, but gets placeholders for its matrices.
+
+    Raises `BadInput`: the file of the solid cannot be read.
+    """
     if not housing.is_solid:
         return _of_matrices(index, housing)
     try:

@@ -71,9 +71,10 @@ def scene_parts(
     seats: Mapping[int, str],
     meshes: Sequence[tuple[str, StageCase]],
 ) -> SceneParts:
-    """Return the components of a scene's parts, its meshes in the order of `shafts.stages`.
+    """Return the components of a scene's parts.
 
-    A carrier is a shaft of them only if the component of its rotor is a shaft of its own.
+    `meshes` (name and case of each) stand in the order of `shafts.stages`. A planet carrier is among the
+    shafts only if the file has a shaft component for it.
     """
     of_meshes = {
         name: _MeshPart(stage.stage.id, case.name, _face_sense(layout, flow, stage, case))
@@ -96,8 +97,8 @@ def scene_parts(
 def _face_sense(layout: Layout, flow: PowerFlow, stage: GearStage, case: StageCase) -> int:
     """Return the sense of the case's face positions along u of gear 1's shaft, 1 or -1.
 
-    They count against the scene's z if the case's driving gear turns about +z; a ring gear that drives is
-    pushed back by it.
+    Face positions count against the scene's z if the driving gear of the case turns about +z. Where a ring
+    gear drives in the scene, the driving gear of the case is its pinion, whose force is opposite.
     """
     driver, _ = case.driving(stage)
     relative = flow.relative_speed(stage, 0 if driver.id == stage.gears[0].id else 1)

@@ -51,6 +51,7 @@ class StageCase:
     def driving(self, stage: GearStage) -> tuple[Part, Part]:
         """Return driver and driven gear of a stage, which may be the stage of an equal planet."""
         first, second = stage.gears
+        # the stage of an equal planet has another planet gear: then the gear that both stages share tells
         if self.driver == second.id or (self.driven == first.id and self.driver != first.id):
             return second, first
         return first, second
@@ -59,10 +60,10 @@ class StageCase:
     def all_of(
         unit: GearUnit, torques: Mapping[int, tuple[float, ...]], drivers: Mapping[int, int] | None = None
     ) -> tuple[StageCase, ...]:
-        """Return a case for each cylindrical stage; of stages with equal cases, as of planets, the first.
+        """Return a case for each cylindrical stage; stages with equal cases, as of planets, share the first.
 
-        A stage that cannot be computed has no case, and the account has the reason; so have bevel and worm
-        stages.
+        Bevel and worm stages have no case, nor has a stage that cannot be computed; the account gives the
+        reason.
 
         Parameters
         ----------
@@ -71,7 +72,7 @@ class StageCase:
             have the sign of the gear's rotation. A stage without torques gets three load levels, and the
             account says so.
         drivers : mapping of int to int, optional
-            The driving gear by stage; else as the file marks it, else gear 1 of the stage.
+            Id of the driving gear by stage. Default: the gear that the file marks, or else gear 1.
         """
         for stage in unit.of_type(*OTHER_STAGES):
             stage.say("", "refused", "no cylindrical stage: its loads stand in its place")
@@ -102,9 +103,9 @@ def _pair(stage: Part, torques: tuple[float, ...], driver: int | None) -> Toothe
     meshing = Meshing.of(stage, driver, torques)
     loaded = [LoadedFlank.of(meshing, gear) for gear in (meshing.pinion, meshing.wheel)]
     gears = [ToothingData.of(flank) for flank in loaded]
-    between = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
-    offset = float(between @ meshing.z)
-    distance = _center_distance(stage, between - offset * meshing.z)
+    center_vector = frame_of(meshing.wheel).origin - frame_of(meshing.pinion).origin
+    offset = float(center_vector @ meshing.z)
+    distance = _center_distance(stage, center_vector - offset * meshing.z)
     pair = ToothedPair(meshing, gears[0], gears[1], distance, offset, torques)
     _ = pair.working_pressure_angle  # raises if there is none
     return pair

@@ -154,7 +154,9 @@ def _part_field(fact: Declared, part: type) -> tuple[Any, Any]:
 def _model_of(part: Any) -> Any:
     name, doc = f"{part.__name__}Input", str(part.__doc__).partition("\n")[0]
     members: Any = declared_in(part)
-    return create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **members)
+    model = create_model(name, __base__=BoundaryModel, __module__=__name__, __doc__=doc, **members)
+    globals()[name] = model  # pickle finds a class by its name in its module
+    return model
 
 
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:

@@ -23,7 +23,7 @@ _DEFAULTS = {
 _RING_ONLY = tuple(figure for figure in RING if figure.name not in declarations(Gear))
 _GEAR_ONLY = tuple(figure for figure in figures(Gear) if figure.name not in declarations(RingGear))
 _IS_RING = {"required": ["internal"], "properties": {"internal": {"const": True}}}
-_RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat"))
+_RING_HAS = both(required("rim_diameter_mm"), absent("bore_diameter_mm", "blank", "seat", "sector_teeth"))
 _GEAR_HAS = both(required("bore_diameter_mm"), absent(*(figure.field for figure in _RING_ONLY)))
 
 
@@ -78,7 +78,8 @@ class WheelInput(ToothingInput):
             refuse(
                 "bore_diameter_mm", self.bore_diameter_mm, bound, "A ring gear is held by rim_diameter_mm."
             )
-        for name in ("blank", "seat"):
-            if getattr(self, name) is not None:
+        for name in ("blank", "seat", "sector_teeth"):
+            if (value := getattr(self, name)) is not None:
                 remedy = "The rim of a ring gear is solid, and held rigidly all round."
-                refuse(name, "given", "left out with internal = true", remedy)
+                written = value if isinstance(value, int) else "given"
+                refuse(name, written, "left out with internal = true", remedy)

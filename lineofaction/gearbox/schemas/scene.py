@@ -156,7 +156,7 @@ class SceneInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _parts_exist(self) -> Self:
-        """Names are unique, and every part names parts that exist."""
+        """Refuse names that are not unique, and references to parts that do not exist."""
         for kind in _with_field("name"):
             names = [part.name for part in getattr(self, kind)]
             for index, name in enumerate(names):
@@ -189,6 +189,7 @@ _KINDS: dict[str, type[BaseModel]] = {
 
 
 def _with_field(name: str) -> Iterator[str]:
+    """Yield the kinds of parts that have a field of this name."""
     yield from (kind for kind, part in _KINDS.items() if name in part.model_fields)
 
 
@@ -205,17 +206,17 @@ def _references() -> dict[str, dict[str, str]]:
     return {kind: on_shafts.get(kind, {}) | further.get(kind, {}) for kind in on_shafts | further}
 
 
-def _named(scene: SceneInput, named: str) -> Iterator[tuple[str, str]]:
+def _named(scene: SceneInput, target_kind: str) -> Iterator[tuple[str, str]]:
     """Yield the fields by which parts name parts of a kind, and the names."""
     for kind, fields in _references().items():
         for index, part in enumerate(getattr(scene, kind)):
-            for field, of in fields.items():
-                if of == named and getattr(part, field) is not None:
+            for field, referenced_kind in fields.items():
+                if referenced_kind == target_kind and getattr(part, field) is not None:
                     yield f"{kind}[{index}].{field}", getattr(part, field)
 
 
 def _refuse_complaint(complaint: ComplaintInput, shafts: list[str], bearings: list[str]) -> None:
-    """Refuse a complaint about parts that there are not, or at a torque of its own."""
+    """Refuse a complaint that names unknown parts, or that has a torque: the loads of the scene apply."""
     for name, known in (("shaft", shafts), ("final_shaft", shafts), ("bearing", bearings)):
         if (value := getattr(complaint, name)) is not None:
             _refuse_unknown(f"complaint.{name}", value, known)

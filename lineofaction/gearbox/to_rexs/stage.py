@@ -43,7 +43,8 @@ def exported(
     document : Document
         Document as read, in any version.
     cases : sequence of StageCase
-        Cases of the document; a database belongs to the stage with the pair of its case, and to equal stages.
+        Cases of the stages of the document. A database belongs to the stage whose case has the same pair, and
+        to its equal stages.
     torque : float, optional
         Torque on gear 1, N m; by default the largest of each table.
     """
@@ -61,16 +62,18 @@ def _stage_results(
 ) -> tuple[Attribute, ...]:
     """Return the attributes of a ``cylindrical_stage``.
 
-    REXS has no attribute of the transmission error: it stands in custom ones, along the transverse line of
-    action, > 0 where the driven gear lags, over positions of the driving gear in transverse base pitches; 0:
-    the reference pair touches at the pitch point.
-    The table is of the same gears, the torque on gear 1, N m; the largest stored by default.
+    REXS has no attribute for the transmission error, so that it gets custom ones. It is the displacement
+    along the transverse line of action, > 0 where the driven gear lags. It is given over positions of the
+    driving gear in transverse base pitches; at 0 the reference pair touches at the pitch point.
+
+    `database` is a table of the gears of `pair`. `torque` is that on gear 1, N m; by default the largest of
+    the table.
     """
-    at = np.arange(POSITIONS * database.period) / POSITIONS
+    position = np.arange(POSITIONS * database.period) / POSITIONS
     load = float(database.torque[-1]) if torque is None else torque
     with boundary_errors():
-        curve = database.curve(torque=load, at=at)
-        stiffness = np.asarray(database.force_at(at, curve.ste).stiffness)
+        curve = database.curve(torque=load, at=position)
+        stiffness = np.asarray(database.force_at(position, curve.ste).stiffness)
     return (*_contact_ratios(pair), *_mesh(curve, stiffness))
 
 

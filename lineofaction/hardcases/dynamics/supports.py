@@ -23,11 +23,26 @@ from lineofaction.hardcases.scene import Measured, Scenes
 
 SCENES = Scenes("dynamics")
 
-_SOFT, _HARD, _TORQUE, _RIPPLE = 1e5, 1e12, 1.0, 1e-8
-
-_LENGTH, _SHAFT = 0.2, Inertia(2.0, 1e-3, 8e-3)
-
-_MASS, _WALL, _CLEARANCE, _SPEED, _TOLERANCE, _BOUNCES = 2.0, 5e8, 20e-6, 0.05, 1e-9, 20
+_SOFT, _HARD = 1e5, 1e12
+"""Stiffnesses of the unlike bushings, N/m."""
+_TORQUE = 1.0
+"""Torque on the shafts with unlike bushings, N m."""
+_RIPPLE = 1e-8
+"""Amplitude of the mesh's transmission error, m."""
+_LENGTH = 0.2
+"""Length of every shaft, m."""
+_SHAFT = Inertia(mass=2.0, polar=1e-3, transverse=8e-3)
+_DISC = Inertia(mass=2.0, polar=0.02, transverse=0.01)
+_WALL = 5e8
+"""Stiffness of the disc's bearing beyond its clearance, N/m."""
+_CLEARANCE = 20e-6
+"""Distance of the disc from the middle of its bearing to either side, m."""
+_SPEED = 0.05
+"""Speed at which the disc leaves a side of its bearing, m/s."""
+_TOLERANCE = 1e-9
+"""Tolerance of the integrators, m."""
+_BOUNCES = 20
+"""Impacts of the disc in a run."""
 
 
 @SCENES.add(
@@ -42,16 +57,18 @@ def _unlike_bushings() -> Sequence[Measured]:
     scene = _on_bushings()
     runs = run_both(scene)
     force = _TORQUE / BASE_RADIUS
-    first = runs.implicit.bearing_force[:, :2, 0]
-    across = np.hypot(first[:, 0], first[:, 1])
+    start_force = runs.implicit.bearing_force[:, :, 0]  # (bushing, direction x y z) at the first sample
+    radial = np.hypot(start_force[:, 0], start_force[:, 1])
     system = assemble(scene)
     start = static_equilibrium(system)
-    aside = float(start.displacement @ system.arrays.stiffness @ start.displacement) / force
-    expected = 2.0 * force / 4.0 * (1.0 / _SOFT + 1.0 / _HARD)
+    # the work of the mesh force over the distance by which the gears move apart strains the bushings: F s =
+    # x' K x
+    distance = float(start.displacement @ system.arrays.stiffness @ start.displacement) / force
+    expected = force / 2.0 * (1.0 / _SOFT + 1.0 / _HARD)
     return (
         *common_figures(runs, scene),
-        Measured("share of the load on a bushing, off 1/2", float(np.abs(across / force - 0.5).max()), 1e-6),
-        Measured("gears moved apart over the closed form, off one", abs(aside / expected - 1.0), 1e-6),
+        Measured("share of the load on a bushing, off 1/2", float(np.abs(radial / force - 0.5).max()), 1e-6),
+        Measured("gears moved apart over the closed form, off one", abs(distance / expected - 1.0), 1e-6),
         Measured("steps, implicit", float(runs.implicit.statistics.accepted)),
         Measured("steps, explicit", float(runs.explicit.statistics.accepted)),
     )
@@ -83,28 +100,33 @@ def _on_bushings() -> Scene:
 )
 def _unloaded_in_clearance() -> Sequence[Measured]:
     """Throw an unloaded disc to and fro in the clearance of its bearing."""
-    natural = math.sqrt(_WALL / _MASS)
+    natural = math.sqrt(_WALL / _DISC.mass)
     duration = 0.5 * _BOUNCES * cycle(2.0 * _CLEARANCE, _SPEED, natural)
-    grown = _TOLERANCE * 2.0 * _CLEARANCE * natural / _SPEED * _BOUNCES**2 / 2.0
+    # An error of one tolerance in the depth of an impact, _SPEED / natural, changes the speed by this part of
+    # it.
+    speed_error = _TOLERANCE * natural / _SPEED
+    # The flight after the k-th impact is off by k of these; over n impacts that is n^2 / 2 of them.
+    path_error = 2.0 * _CLEARANCE * speed_error * _BOUNCES**2 / 2.0
     paths, energies = [], []
     for method in METHODS:
         system = assemble(_disc(duration, Integration(method, _TOLERANCE)))
         run, path = _thrown_between_supports(system)
         paths.append(path)
         exact = _CLEARANCE + bounce(run.time, 2.0 * _CLEARANCE, _SPEED, natural)
-        energies.append((rms(path - exact), abs(float(np.diff(run.stored.sum(axis=1))[0] - run.work.sum()))))
+        at_start, at_end = run.stored.sum(axis=1)
+        energies.append((rms(path - exact), abs(float(at_end - at_start - run.work.sum()))))
     start = static_equilibrium(assemble(_disc(duration, Integration())))
     return (
         Measured("equilibrium of the unloaded disc found", float(start.status.usable), minimum=1.0),
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            rms(paths[0] - paths[1]) / (2.0 * grown), maximum=1.0,
+            rms(paths[0] - paths[1]) / (2.0 * path_error), maximum=1.0,
         ),
-        Measured("off the closed form, likewise", max(off for off, _ in energies) / grown, maximum=1.0),
+        Measured("off the closed form, likewise", max(off for off, _ in energies) / path_error, maximum=1.0),
         Measured(
             "energy lost over twenty impacts, over a tolerance per impact",
-            max(lost for _, lost in energies) / (0.5 * _MASS * _SPEED**2)
-            / (2.0 * _TOLERANCE * natural / _SPEED * _BOUNCES), maximum=1.0,
+            max(lost for _, lost in energies) / (0.5 * _DISC.mass * _SPEED**2)
+            / (2.0 * speed_error * _BOUNCES), maximum=1.0,
         ),
     )  # fmt: skip
 
@@ -115,16 +137,16 @@ def _disc(duration: float, integration: Integration) -> Scene:
     scene = torsional(spring(), speed=10.0 * RPM, duration=duration, outputs=outputs, integration=integration)
     return replace(
         scene,
-        shafts=(*scene.shafts, Shaft("disc", _LENGTH, (0.0, 0.0, 0.4), Inertia(_MASS, 0.02, 0.01))),
+        shafts=(*scene.shafts, Shaft("disc", _LENGTH, origin=(0.0, 0.0, 2.0 * _LENGTH), inertia=_DISC)),
         bushings=(Bushing("seat", "disc", _LENGTH / 2.0),),
         couplings=(Coupling("joint", "shaft 1", "disc", 100.0),),
-        rolling_contacts=(RollingContact("seat", _WALL, 1.0, _CLEARANCE, damping=0.0),),
+        rolling_contacts=(RollingContact("seat", _WALL, exponent=1.0, clearance=_CLEARANCE, damping=0.0),),
         effects={"lateral": "on", "bearing_clearance": "on"},
     )
 
 
 def _thrown_between_supports(system: System) -> tuple[Trajectory, FloatArray]:
-    """Let the disc leave the side of its bearing at the speed given; return the run and its place across."""
+    """Let the disc leave a side of its bearing at `_SPEED`; return the run and the disc's x over time, m."""
     start = static_equilibrium(system)
     across = system.freedoms.name.index("disc.x")
     displacement = start.displacement.copy()

@@ -23,13 +23,13 @@ COLORS = (palette.BLUE, palette.VERMILLION)
 POSITIONS = ("position", "angle_deg")
 ORDERS = ("mesh_order", "order")
 """Names of the first column: base pitches, degrees of the driving gear; mesh orders, orders of its shaft."""
-VALUES = {
+VALUES = {  # units by the name of the second column
     "transmission_error_um": "µm",
     "amplitude_um": "µm",
     "amplitude_n": "N",
     "amplitude_m_per_s2": "m/s²",
 }
-PER_PITCH = 256
+PER_PITCH = 256  # values of an averaged ripple in a base pitch
 NEAR = 0.1  # distance from an order within which a line belongs to it, in orders
 _FEWEST = 8  # samples in a base pitch
 _REMEDY = (
@@ -55,7 +55,7 @@ class Difference:
 
     @property
     def error(self) -> float:
-        """Root of the sum of both errors squared: each holds on its own. NaN where one is not stated."""
+        """Root of the sum of both errors squared, which are independent; NaN where one is not stated."""
         return math.hypot(self.first.error, self.second.error)
 
     @property
@@ -78,18 +78,18 @@ class Difference:
 
     @property
     def between(self) -> str:
-        """Both values, and by how much the second differs: a signed number alone reads as a value."""
+        """Text of both values and their difference; a signed number alone would read as a value."""
         before, after = (number(estimate.value, 3) for estimate in (self.first, self.second))
         return f"{before} to {after} {self.first.unit}, by {self._bare}"
 
     @property
     def written(self) -> str:
-        """The difference with its error, both to the last digit that counts."""
+        """Text of the difference with its error, both to the last significant digit."""
         return f"{self._bare} {self.first.unit}"
 
     @property
     def _bare(self) -> str:
-        """The same without the unit."""
+        """Text of the difference with its error, without the unit."""
         if math.isnan(self.error):
             return number(self.value, 3)
         return f"{to_error(self.value, self.error, '+')} ± {error_text(self.value, self.error)}"
@@ -98,8 +98,8 @@ class Difference:
 def differences_table(differences: Sequence[Difference], names: Sequence[str]) -> Table:
     """Tabulate differences, each with its verdict."""
     rows = tuple(
-        (one.name, one.where, _estimate(one.first), _estimate(one.second), one.written, one.finding)
-        for one in differences
+        (item.name, item.where, _estimate(item.first), _estimate(item.second), item.written, item.finding)
+        for item in differences
     )
     head = ("quantity", "at", *names, "second less first", "finding")
     return Table("Differences with their errors", head, rows)
@@ -145,15 +145,14 @@ def _estimate(value: Estimate) -> str:
 
 @dataclass(frozen=True)
 class MeasuredCurve:
-    """A measured transmission error, averaged over its base pitches.
-
-    `ripple` (PER_PITCH,) is their mean at equal steps of one, less the mean of all, µm; `spread` the standard
-    deviation of single base pitches about it, µm: pitch errors, run-out and noise.
-    """
+    """A measured transmission error, averaged over its base pitches."""
 
     ripple: FloatArray
+    """Mean of all base pitches at equal steps from position 0, less its own mean, µm. Shape (PER_PITCH,)."""
     spread: float
+    """Standard deviation of single base pitches from `ripple`, µm: pitch errors, run-out and noise."""
     pitches: int
+    """Number of base pitches."""
 
 
 @dataclass(frozen=True)
@@ -183,13 +182,14 @@ def read_measured(path: Path, teeth: int) -> MeasuredCurve | MeasuredOrders:
     names, rows = _rows(path)
     if len(names) != 2 or names[0] not in (*POSITIONS, *ORDERS) or names[1] not in VALUES:
         raise BadInput.of("measured", ", ".join(names), "columns of a known name", _REMEDY)
-    over, values = rows.T
+    abscissa, values = rows.T
     if names[0] in ORDERS:
-        mesh = over if names[0] == "mesh_order" else over / teeth
+        mesh = abscissa if names[0] == "mesh_order" else abscissa / teeth
         return MeasuredOrders(mesh, values, VALUES[names[1]])
     if names[1] != "transmission_error_um":
         raise BadInput.of("measured", names[1], '"transmission_error_um" over a position', _REMEDY)
-    return averaged(path, over if names[0] == "position" else over * teeth / 360.0, values)
+    position = abscissa if names[0] == "position" else abscissa * teeth / 360.0
+    return averaged(path, position, values)
 
 
 def _rows(path: Path) -> tuple[list[str], FloatArray]:
@@ -222,7 +222,7 @@ def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCu
         raise BadInput.of("measured", sampled, bound, f"Check the first column of {path}.")
     grid = np.ceil(position[0] * PER_PITCH) + np.arange(pitches * PER_PITCH)
     folded = np.interp(grid / PER_PITCH, position, values).reshape(pitches, PER_PITCH)
-    folded = np.roll(folded, int(grid[0]) % PER_PITCH, axis=1)
+    folded = np.roll(folded, int(grid[0]) % PER_PITCH, axis=1)  # the first column at a whole base pitch
     single = folded - folded.mean(axis=1, keepdims=True)
     ripple = single.mean(axis=0)
     spread = float(np.sqrt(np.mean((single - ripple) ** 2)))
@@ -231,30 +231,33 @@ def averaged(path: Path, position: FloatArray, values: FloatArray) -> MeasuredCu
 
 @dataclass(frozen=True)
 class Aligned:
-    """A measured curve moved onto a computed one.
-
-    `ripple` (PER_PITCH,) is measured, from position 0, µm; `shift` by which it was moved towards larger
-    positions, base pitches in [0, 1); `rms` of what is left between both, µm; `correlation` of both.
-    """
+    """A measured curve shifted onto a computed one."""
 
     measured: MeasuredCurve
     ripple: FloatArray
+    """Measured ripple after the shift, from position 0, µm. Shape (PER_PITCH,)."""
     shift: float
+    """Shift towards larger positions, base pitches in [0, 1)."""
     rms: float
+    """Root mean square of the difference of both curves after the shift, µm."""
     correlation: float
+    """Correlation of both curves after the shift."""
 
 
 def aligned_to(measured: MeasuredCurve, computed: FloatArray) -> Aligned:
-    """Move a measured ripple by the phase at which it is most like `computed` (PER_PITCH,), µm.
+    """Shift a measured ripple to where its circular correlation with `computed` (PER_PITCH,), µm, is largest.
 
-    The zero of a measured position is that of an encoder; the phase is taken from the circular correlation.
+    The shift must be found, because the zero of a measured position is that of an encoder.
     """
-    other = computed - computed.mean()
-    products = np.fft.irfft(np.fft.rfft(other) * np.conj(np.fft.rfft(measured.ripple)), PER_PITCH)
-    steps = int(np.argmax(products))
+    target = computed - computed.mean()
+    correlations = np.fft.irfft(np.fft.rfft(target) * np.conj(np.fft.rfft(measured.ripple)), PER_PITCH)
+    steps = int(np.argmax(correlations))
     ripple = np.roll(measured.ripple, steps)
-    sizes = float(np.linalg.norm(ripple) * np.linalg.norm(other))
-    correlation = float(np.dot(ripple, other)) / sizes if sizes > 0.0 else 0.0
+    sizes = float(np.linalg.norm(ripple) * np.linalg.norm(target))
     return Aligned(
-        measured, ripple, steps / PER_PITCH, float(np.sqrt(np.mean((ripple - other) ** 2))), correlation
+        measured,
+        ripple,
+        shift=steps / PER_PITCH,
+        rms=float(np.sqrt(np.mean((ripple - target) ** 2))),
+        correlation=float(np.dot(ripple, target)) / sizes if sizes > 0.0 else 0.0,
     )

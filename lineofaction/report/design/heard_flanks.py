@@ -38,14 +38,14 @@ def _levels_figure(result: HeardOptimization) -> Figure:
 
 
 def _panel(result: HeardOptimization, load: int) -> Panel:
-    order, bars = np.arange(len(result.lines), dtype=float), []
+    line, bars = np.arange(len(result.lines), dtype=float), []
     designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
     minimum = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
-    floor = 5.0 * np.floor(minimum / 5.0 - 0.5)
+    floor = 5.0 * np.floor(minimum / 5.0 - 0.5)  # whole 5 dB, at least 2.5 dB below the lowest bar
     for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):
-        at, level, error = order + side * _WIDTH, design.level[load], design.level_error[load]
-        bars.append(Bars(name, at, level, floor, _WIDTH, color))
-        bars.append(Bars("error", at, level + error, level - error, 0.4 * _WIDTH, palette.INK, veiled=True))
+        x, level, error = line + side * _WIDTH, design.level[load], design.level_error[load]
+        bars.append(Bars(name, x, level, floor, _WIDTH, color))
+        bars.append(Bars("error", x, level + error, level - error, 0.4 * _WIDTH, palette.INK, veiled=True))
     names = [line if line == "all" else f"order {line}" for line in result.lines]
     return Panel(Axis.of_names(names), Axis(result.unit), bars=tuple(bars), title=_loads(result)[load])
 
@@ -56,15 +56,15 @@ def _levels_table(result: HeardOptimization) -> Table:
     before, after = result.start, result.optimum
     for load, torque in enumerate(_loads(result)):
         for line, name in enumerate(result.lines):
-            at = load, line
+            index = load, line
             rows.append(
                 (
                     torque,
                     name,
-                    f"{before.level[at]:.1f}",
-                    f"{after.level[at]:.1f}",
-                    f"{after.level[at] - before.level[at]:+.1f}",
-                    number(before.level_error[at] + after.level_error[at], 2),
+                    f"{before.level[index]:.1f}",
+                    f"{after.level[index]:.1f}",
+                    f"{after.level[index] - before.level[index]:+.1f}",
+                    number(before.level_error[index] + after.level_error[index], 2),
                 )
             )
     return Table(f"Levels without scatter, {result.unit}", head, tuple(rows))

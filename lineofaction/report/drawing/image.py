@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from functools import cache
 from io import BytesIO
 from textwrap import fill
@@ -104,8 +104,8 @@ def svg(figure: Figure) -> bytes:
 
 def _image(figure: Figure, form: str, metadata: dict[str, str | None], across: int = 1) -> bytes:
     """Return the bytes of a file of the `form` "png" or "svg"; a metadata entry of None is left out."""
-    sheet = panel_sheet(rewritten(figure.content, drawable), across)
-    sheet.suptitle(drawable(figure.title), x=0.01, ha="left", size=12, weight="bold", color=palette.INK)
+    sheet = Sheet(layout="constrained")
+    draw_figure(sheet, figure, across)
     FigureCanvasAgg(sheet)
     if any(panel.equal for panel in figure.content):
         # Equal units change the height of a panel when it is drawn: a first pass gives the layout that
@@ -135,22 +135,50 @@ def _glyphs() -> frozenset[int]:
     return frozenset(get_font(findfont(FontProperties())).get_charmap())
 
 
+def draw_figure(sheet: Sheet, figure: Figure, across: int = 1) -> list[Axes]:
+    """Draw a figure with its title on an empty sheet; return the axes of its panels."""
+    axes = panel_axes(sheet, rewritten(figure.content, drawable), across)
+    sheet.suptitle(drawable(figure.title), x=0.01, ha="left", size=12, weight="bold", color=palette.INK)
+    return axes
+
+
 def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
-    """Draw panels in rows of at most `across`, and return the sheet.
+    """Draw panels in rows of at most `across`, and return the sheet."""
+    sheet = Sheet(layout="constrained")
+    panel_axes(sheet, panels, across)
+    return sheet
+
+
+def panel_axes(sheet: Sheet, panels: tuple[Panel, ...], across: int = 1) -> list[Axes]:
+    """Draw panels in rows of at most `across` on an empty sheet; return the axes of each.
 
     Curves of one name share one entry in the legend below the panels. A single entry needs no legend.
     """
     rows = panel_rows(panels, across)  # indices of the panels of every row
     heights = [max(_height(panels[index], len(row)) for index in row) for row in rows]
-    sheet = Sheet(figsize=(_WIDTH, sum(heights) + _LEGEND_HEIGHT), layout="constrained")
+    sheet.set_size_inches(_WIDTH, sum(heights) + _LEGEND_HEIGHT)
     grid = sheet.add_gridspec(len(rows), max(map(len, rows)), height_ratios=heights)
     axes: list[Axes] = [
         sheet.add_subplot(grid[row, :] if len(columns) == 1 else grid[row, column])
         for row, columns in enumerate(rows)
         for column in range(len(columns))
     ]
-    wide = {row[0] for row in rows if len(row) == 1}
-    handles: dict[str, Any] = {}  # the first curve of every name
+    handles = draw_panels(panels, axes, {row[0] for row in rows if len(row) == 1})
+    if len(handles) > 1:
+        sheet.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower left",
+            ncols=_legend_columns(list(handles)),
+            frameon=False,
+            fontsize=9,
+        )
+    return axes
+
+
+def draw_panels(panels: Sequence[Panel], axes: Sequence[Axes], wide: Container[int]) -> dict[str, Any]:
+    """Draw panels, of which some are as `wide` as the sheet; return the first curve of every name."""
+    handles: dict[str, Any] = {}
     names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         if panel.shade is not None:
@@ -166,18 +194,9 @@ def panel_sheet(panels: tuple[Panel, ...], across: int = 1) -> Sheet:
         else:
             _label_narrow(ax, panel)
         # the panel below, of the same width, has the same label
-        if repeats_below(panels, index) and {index, index + 1} <= wide:
+        if repeats_below(panels, index) and index in wide and index + 1 in wide:
             ax.set_xlabel("")
-    if len(handles) > 1:
-        sheet.legend(
-            handles.values(),
-            handles.keys(),
-            loc="outside lower left",
-            ncols=_legend_columns(list(handles)),
-            frameon=False,
-            fontsize=9,
-        )
-    return sheet
+    return handles
 
 
 def _label_narrow(ax: Axes, panel: Panel) -> None:

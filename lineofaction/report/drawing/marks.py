@@ -24,12 +24,19 @@ from lineofaction.report.drawing.page import Page, Section
 
 NAME = "complaint"
 Marks = Mapping[str, Any]
-"""``axes``: values by the labels of axes; ``order``: by which results count; ``bearing``; ``words``."""
+"""Marks of a complaint, as `Complaint.marks` makes them.
+
+``axes``: value of the complaint on each axis, by the label of the axis. ``order``: order of the complaint as
+the result counts orders. ``meshes``: order, speed of the driving gear and torque by mesh, for plots whose
+orders count by that mesh. ``bearing``: the bearing complained of. ``words``: the complaint as a sentence.
+"""
 DRIVER = "speed of the driving gear, rpm"
 TORQUE = "torque on the driving gear, N m"
 """Labels of axes of runs and tables."""
 BOLDER = 2.0
 """Width of the complaint's order over the usual width of the line."""
+LABEL_END = 0.98
+"""End of the label of a horizontal line, in parts of the panel's width."""
 
 
 def marks_of(result: Any) -> Marks | None:
@@ -40,6 +47,7 @@ def marks_of(result: Any) -> Marks | None:
 def of_run(marks: Marks, mesh: str) -> Marks:
     """Return the marks in the plots of a run or a table, whose orders, speeds and torques are of a mesh."""
     mesh_marks = marks["meshes"].get(mesh, {})
+    # the other axes are speeds of shafts, which these plots do not have
     axes = {label: value for label, value in marks["axes"].items() if label == "frequency, Hz"}
     if mesh_marks:
         axes |= {"mesh order": mesh_marks["order"]}
@@ -50,10 +58,13 @@ def of_run(marks: Marks, mesh: str) -> Marks:
 
 def order_label(order: float, metadata: Mapping[str, Any]) -> str:
     """Return an order, with its name if it is no harmonic of the first mesh: "0.5789 (pinion 11)"."""
-    text, turning = f"{order:.4g}", metadata.get("turning")
-    if turning is None or np.isclose(order, round(order), rtol=1e-6):
+    text, unit_orders = (
+        f"{order:.4g}",
+        metadata.get("turning"),
+    )  # orders of meshes and of turns of shafts, by name
+    if unit_orders is None or np.isclose(order, round(order), rtol=1e-6):
         return text
-    name = order_name(order, turning["mesh"], turning["shaft"])
+    name = order_name(order, unit_orders["mesh"], unit_orders["shaft"])
     return f"{text} ({name})" if name else text
 
 
@@ -95,20 +106,21 @@ def marked(figure: Figure, marks: Marks) -> Figure:
 
 def _marked_panel(panel: Panel, marks: Marks) -> Panel:
     references = tuple(
-        Reference(f"{NAME}, {_value_label(axis, value)}", value, direction, 0.98)
+        Reference(f"{NAME}, {_value_label(axis, value)}", value, direction, at=LABEL_END)
         for axis, direction, value in _values(panel, marks)
         if _reaches(panel, axis, direction, value)
     )
     order = f"{marks['order']:.4g}"
-    names = f"order {order}", f"{order}×"
+    names = f"order {order}", f"{order}×"  # curves of an order are named so, then perhaps " (pinion 11)"
     lines = tuple(_bold(line) if line.name.partition(" (")[0] in names else line for line in panel.lines)
     return replace(panel, references=(*panel.references, *references), lines=lines)
 
 
 def _value_label(axis: Axis, value: float) -> str:
-    """Name a value in the unit of its axis, or after an axis without one."""
+    """Return a value with the unit of its axis, or after the label of an axis without a unit."""
     size, unit = engineering(value, 4), unit_of(axis.label)
-    return f"{axis.label} {size}" if unit == axis.label else f"{size} {unit}"
+    has_unit = unit != axis.label  # `unit_of` returns a label without a comma as it is
+    return f"{size} {unit}" if has_unit else f"{axis.label} {size}"
 
 
 def _bold(line: Line) -> Line:
@@ -116,10 +128,14 @@ def _bold(line: Line) -> Line:
 
 
 def _values(panel: Panel, marks: Marks) -> list[tuple[Axis, Literal["vertical", "horizontal"], float]]:
-    """Return the axes that have a value of the complaint, with the line across the panel that it is."""
+    """Return axis, direction of the line and value of each axis of a panel on which the complaint lies."""
     axes: tuple[tuple[Axis, Literal["vertical", "horizontal"]], ...]
     axes = ((panel.x, "vertical"), (panel.y, "horizontal"))
-    return [(axis, way, marks["axes"][axis.label]) for axis, way in axes if axis.label in marks["axes"]]
+    return [
+        (axis, direction, marks["axes"][axis.label])
+        for axis, direction in axes
+        if axis.label in marks["axes"]
+    ]
 
 
 def _reaches(panel: Panel, axis: Axis, direction: str, value: float) -> bool:

@@ -37,7 +37,7 @@ for (const group of document.querySelectorAll(".player")) {
 
 
 def _player(figure: Figure) -> str:
-    """Return the players of a plot's sound; in place of files that are too large a sentence."""
+    """Return the players of a plot's sound, or a sentence where its files are too large for the page."""
     if figure.sound is None:
         return ""
     files = figure.sound.files
@@ -50,8 +50,8 @@ def _player(figure: Figure) -> str:
         for track, file in zip(figure.sound.tracks, files, strict=True)
     )
     title = escape(f"Sound: {figure.title}", quote=True)
-    about = json.dumps(sound_json(figure.sound), allow_nan=False).replace("<", "\\u003c")
-    script = f'<script type="application/json">{about}</script>'
+    content = json.dumps(sound_json(figure.sound), allow_nan=False).replace("<", "\\u003c")
+    script = f'<script type="application/json">{content}</script>'
     return f'<div class="player" role="group" aria-label="{title}">{tracks}{caption}{script}</div>'
 
 
@@ -59,13 +59,13 @@ def sound_json(sound: Sound) -> Json:
     """Return the data of a sound for the script of the page."""
     tracks = [
         {
-            "name": one.name,
-            "query": one.query,
-            "time": numbers(one.time),
-            "along": numbers(one.along),
-            "mesh_hz": None if one.mesh_frequency is None else numbers(one.mesh_frequency),
+            "name": track.name,
+            "query": track.query,
+            "time": numbers(track.time),
+            "along": numbers(track.along),
+            "mesh_hz": None if track.mesh_frequency is None else numbers(track.mesh_frequency),
         }
-        for one in sound.tracks
+        for track in sound.tracks
     ]
     return {"caption": sound.caption, "tracks": tracks}
 
@@ -86,18 +86,17 @@ class Part(IntEnum):
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with the figures and tables under it.
-
-    `text` introduces them in a sentence; `folded` tables are shown when requested, and in print; `part` is
-    where in a report it belongs.
-    """
+    """A heading with the figures and tables under it."""
 
     title: str
     text: str = ""
+    """Sentence before the figures and tables."""
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
     folded: tuple[Table, ...] = ()
+    """Tables that are closed until the reader opens them; a print shows them."""
     part: Part = Part.RESULTS
+    """Part of a report that the section belongs to."""
 
 
 @dataclass(frozen=True)
@@ -111,51 +110,58 @@ class Headline:
 
 @dataclass(frozen=True)
 class TitleBlock:
-    """Subject of a report, by name; `verdicts` on requirements; `corner` stands on every page."""
+    """The title block of a report."""
 
     rows: tuple[tuple[str, str], ...]
+    """Names and texts of its fields."""
     verdicts: tuple[str, ...] = ()
+    """Sentences on requirements that are met or not."""
     corner: str = ""
+    """Text in the upper corner of every printed page."""
 
 
 @dataclass(frozen=True)
 class Page:
-    """The contents of a report; `alarms` are warnings to be read before any number.
-
-    `records` are what its results were made from and with, by the names of their files.
-    """
+    """The contents of a report."""
 
     title: str
     lead: str
     headlines: tuple[Headline, ...]
     sections: tuple[Section, ...]
     alarms: tuple[str, ...] = ()
+    """Warnings to be read before any number."""
     block: TitleBlock | None = None
     records: Mapping[str, Any] = field(default_factory=dict)
+    """Inputs, figures and versions behind the results, by the names of their files."""
 
 
 def html(page: Page, images: dict[str, bytes], *, still: bool = False) -> str:
-    """Write `page`; `images` are the PNG bytes of every figure by its key; `still`: they alone are shown."""
+    """Return a page as HTML.
+
+    `images` are the PNG bytes of every figure by its key. With `still`, the page shows these images in place
+    of interactive plots; without it, a browser without scripts does.
+    """
     body = "\n".join(
         _section(section, index, images, still=still) for index, section in enumerate(page.sections, start=1)
     )
     has_sound = any(figure.sound for section in page.sections for figure in section.figures)
     style = _margins(page) + _text("page.css") + (_text(STYLE_SHEET) if has_sound else "")
     library = "" if still else f'<script type="text/plain" id="library">{_library()}</script>\n'
-    drawn = "" if still else f"<script>\n{_text('page.js')}</script>"
-    rule = "<style>.still { display: block; } figure:has(.still) h3 { display: none; }</style>"
-    seen = rule if still else f"<noscript>{rule}<style>.plot {{ display: none; }}</style></noscript>"
+    plot_script = "" if still else f"<script>\n{_text('page.js')}</script>"
+    images_shown = "<style>.still { display: block; } figure:has(.still) h3 { display: none; }</style>"
+    no_plots = "<style>.plot { display: none; }</style>"
+    display = images_shown if still else f"<noscript>{images_shown}{no_plots}</noscript>"
     return "\n".join(
         [
             '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{style}</style>',
-            f"{seen}\n{library}</head>\n<body>",
+            f"{display}\n{library}</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
             _header(page),
             f'<main id="main">\n{body}\n</main>',
             "<footer>Written by lineofaction. This page needs no network.</footer>",
-            drawn,
+            plot_script,
             f'<script type="module">{_text(SCRIPT)}{_JOINED}</script>' if has_sound else "",
             "</body>\n</html>\n",
         ]
@@ -211,8 +217,8 @@ def _section(section: Section, index: int, images: dict[str, bytes], *, still: b
     open_tables = (_table(table, below=section.title) for table in section.tables)
     tables = "\n".join([*open_tables, *map(_folded, section.folded)])
     title = escape(section.title)
-    aside = section.part is Part.RECEIPT or not (section.figures or section.tables)
-    print_class = ' class="unprinted"' if aside else ""
+    is_screen_only = section.part is Part.RECEIPT or not (section.figures or section.tables)
+    print_class = ' class="unprinted"' if is_screen_only else ""
     head = f'<section{print_class} aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
     return f"{head}\n{text}{figures}{tables}</section>"
 
@@ -236,7 +242,7 @@ def _figure(figure: Figure, image: bytes, *, still: bool) -> str:
 
 
 def _embedded(figure: Figure) -> str:
-    """JSON that cannot close the script element it stands in."""
+    """Return the plot as JSON without "<", which could close the script element around it."""
     text = json.dumps(plotly_figure(figure), separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c")
 
@@ -257,13 +263,14 @@ def _table(table: Table, below: str = "") -> str:
     )
     name = escape(table.caption, quote=True)
     short = " short" if len(table.rows) <= _ROWS_OF_A_PAGE else ""
+    # the head of a column of numbers may break between its words, other cells count in full
     heads = (
         max(cell.split(), key=len, default="") if n else cell
         for n, cell in zip(numeric, table.head, strict=True)
     )
     width = sum(max(map(len, column)) for column in zip(heads, *table.rows, strict=True))
-    joined = width <= _ACROSS_A_PAGE
-    rows = "".join(_row(row, marks, joined) for row in table.rows)
+    fits = width <= _ACROSS_A_PAGE
+    rows = "".join(_row(row, marks, unbroken=fits) for row in table.rows)
     short += " narrow" if short and width <= _HALF_OF_A_PAGE else ""
     caption = "" if table.caption == below else f"<caption>{escape(table.caption)}</caption>"
     return (
@@ -273,15 +280,18 @@ def _table(table: Table, below: str = "") -> str:
     )
 
 
-def _row(row: Sequence[str], marks: Sequence[str], joined: bool) -> str:
-    """Write a row, whose short cells are not broken where they are `joined`."""
-    attrs = [m or ' class="w"' * (joined and len(cell) <= _SHORT) for m, cell in zip(marks, row, strict=True)]
+def _row(row: Sequence[str], marks: Sequence[str], *, unbroken: bool) -> str:
+    """Return a row; with `unbroken`, its short cells stay on one line."""
+    attrs = [
+        mark or ' class="w"' * (unbroken and len(cell) <= _SHORT)
+        for mark, cell in zip(marks, row, strict=True)
+    ]
     cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(attrs[1:], row[1:], strict=True))
     return f'<tr><th scope="row"{attrs[0]}>{escape(row[0])}</th>{cells}</tr>'
 
 
 def numeric_columns(table: Table) -> list[bool]:
-    """Return of each column whether it holds numbers alone, which stand to the right."""
+    """Return whether each column has only numbers, which stand to the right."""
     columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
     return [all(map(is_number, column)) for column in columns]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,20 +24,45 @@ Study = Frontier | SceneFrontier
 
 @dataclass(frozen=True)
 class _Peer:
-    """n points of a program that is no fidelity of the study: CPU seconds, relative errors by their names.
-
-    `name` stands in the legend, `titles` and `mark` in the table, `note` beside each point. A line joins the
-    points unless its `width` is 0.
-    """
+    """Points in the plot of a program that is no fidelity of the study."""
 
     name: str
+    """Name in the legend."""
     titles: tuple[str, ...]
+    """Names of the n points in the table."""
     time: FloatArray
+    """CPU seconds. Shape (n,)."""
     errors: Mapping[str, FloatArray]
+    """Relative errors by the names of the figures. Shape (n,) each."""
     mark: str
+    """Text of all points in the last column of the table."""
     color: str
     width: float
+    """Width of the line that joins the points; 0: no line."""
     note: str = ""
+    """Text beside each point in the plot."""
+
+
+class _ErrorPanel(NamedTuple):
+    """A panel of the plot and its column of the table, for one kind of error."""
+
+    figure: str
+    """Attribute of a result that is the error."""
+    title: str
+    axis: str
+    """Label of the axis of errors."""
+    head: str
+    """Head of the column."""
+
+
+class _Family(NamedTuple):
+    """Fidelities that have one color in the plot."""
+
+    name: str
+    """Name in the legend."""
+    members: tuple[str, ...]
+    """Values of the attribute `member` of the results that belong to it."""
+    color: str
 
 
 def _peers(study: Frontier) -> list[_Peer]:
@@ -86,26 +111,29 @@ def _peer_caption(study: Frontier) -> str:
 
 @dataclass(frozen=True)
 class _Look:
-    """The look of an accuracy study.
-
-    `key`, `title`, the label of `time`, `panels` (error, title, label, head of its column) and `families`
-    (name, members, color) make the plot; `member` is the attribute of a result that tells its family. The
-    table has a caption and `further` columns behind the errors. `chosen` says what that mark means, `lead`
-    what was compared, `caption` how to read the plot, `peers` what stands beside.
-    """
+    """The texts, panels and columns that show an accuracy study."""
 
     key: str
     title: str
+    """`key`, `title`: Key and title of the plot."""
     time: str
-    panels: tuple[tuple[str, str, str, str], ...]
+    """Label of the axis of time."""
+    panels: tuple[_ErrorPanel, ...]
     member: str
-    families: tuple[tuple[str, tuple[str, ...], str], ...]
+    """Attribute of a result by which it belongs to a family."""
+    families: tuple[_Family, ...]
     further: tuple[tuple[str, Callable[[Any], str]], ...]
+    """Head and text of the columns of the table behind the errors."""
     table: str
+    """Caption of the table."""
     chosen: str
+    """Meaning of the mark "chosen"."""
     lead: Callable[[Any], str]
+    """Text on what was compared."""
     caption: Callable[[Any], str]
+    """Caption of the plot."""
     peers: Callable[[Any], Sequence[_Peer]] = lambda _study: ()
+    """Points of other programs in the plot."""
 
 
 def _case_caption(study: Frontier) -> str:
@@ -130,18 +158,20 @@ _CASE = _Look(
     title="Error of each fidelity over its CPU time, this case",
     time="CPU time of the table, s",
     panels=(
-        ("mean_error", "Mean", "error of the mean, %", "mean error, %"),
-        ("peak_to_peak_error", "Peak to peak", "error of peak to peak, %", "peak-to-peak error, %"),
+        _ErrorPanel("mean_error", "Mean", "error of the mean, %", "mean error, %"),
+        _ErrorPanel(
+            "peak_to_peak_error", "Peak to peak", "error of peak to peak, %", "peak-to-peak error, %"
+        ),
     ),
     member="name",
     families=(
-        ("closed forms", ("iso6336", "thin_slices"), palette.ORANGE),
-        (
+        _Family("closed forms", ("iso6336", "thin_slices"), palette.ORANGE),
+        _Family(
             "2-D finite elements",
             ("plane_strain", "corrected_draft", "corrected", "corrected_fine"),
             palette.BLUE,
         ),
-        ("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
+        _Family("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
     ),
     further=(("memory, MiB", lambda result: number(result.peak_memory_bytes / 2**20, 3)),),
     table="Accuracy study",
@@ -155,14 +185,14 @@ _SCENE = _Look(
     title="Error of each fidelity over its CPU time, this scene",
     time="CPU time of the run, s",
     panels=(
-        ("rms_error", "Transmission error, rms", "error of the rms, %", "DTE rms error, %"),
-        (
+        _ErrorPanel("rms_error", "Transmission error, rms", "error of the rms, %", "DTE rms error, %"),
+        _ErrorPanel(
             "transmission_error_orders",
             "Transmission error, orders",
             "error of the orders, %",
             "DTE orders error, %",
         ),
-        (
+        _ErrorPanel(
             "bearing_force_orders",
             "Bearing forces, orders",
             "error of the orders, %",
@@ -171,9 +201,9 @@ _SCENE = _Look(
     ),
     member="family",
     families=(
-        ("fewer effects", ("model",), palette.ORANGE),
-        ("fewer position nodes", ("table",), palette.GREEN),
-        ("step tolerance", ("steps",), palette.BLUE),
+        _Family("fewer effects", ("model",), palette.ORANGE),
+        _Family("fewer position nodes", ("table",), palette.GREEN),
+        _Family("step tolerance", ("steps",), palette.BLUE),
     ),
     further=(),
     table="Accuracy study of the scene",
@@ -196,20 +226,20 @@ def _frontier_figure(study: Study) -> Figure:
         *(result.cpu_seconds for result in study.results),
         *(time for peer in peers for time in peer.time),
     ]
-    across = Axis(look.time, "log", (0.5 * min(times), 3.0 * max(times)))
+    time_axis = Axis(look.time, "log", (0.5 * min(times), 3.0 * max(times)))  # room for texts beside points
     return Figure(
         key=look.key,
         title=look.title,
         caption=look.caption(study),
         alternative=_quickest(study),
-        content=tuple(_panel(study, look, peers, across, *panel[:3]) for panel in look.panels),
+        content=tuple(_panel(study, look, peers, time_axis, panel) for panel in look.panels),
         table=_frontier_table(study),
     )
 
 
 def _frontier_table(study: Study) -> Table:
     look = _look_of(study)
-    figures = [figure for figure, *_ in look.panels]
+    figures = [panel.figure for panel in look.panels]
     rows = [
         (
             result.title,
@@ -231,7 +261,7 @@ def _frontier_table(study: Study) -> Table:
         for peer in look.peers(study)
         for k, title in enumerate(peer.titles)
     ]
-    heads = [*(head for *_, head in look.panels), *(head for head, _ in look.further)]
+    heads = [*(panel.head for panel in look.panels), *(head for head, _ in look.further)]
     return Table(look.table, ("fidelity", "CPU time, s", *heads, "mark"), tuple(rows))
 
 
@@ -249,30 +279,29 @@ def _frontier_page(study: Study) -> Page:
     return Page("Error over CPU time", look.lead(study), tuple(heads), (section,))
 
 
-def _panel(
-    study: Study, look: _Look, peers: Sequence[_Peer], across: Axis, figure: str, title: str, label: str
-) -> Panel:
+def _panel(study: Study, look: _Look, peers: Sequence[_Peer], time_axis: Axis, panel: _ErrorPanel) -> Panel:
     """Return one panel: points by family, peers, and the marks."""
-    drawn = [(result, 100.0 * getattr(result, figure)) for result in study.results]
+    drawn = [(result, 100.0 * getattr(result, panel.figure)) for result in study.results]
     drawn = [(result, error) for result, error in drawn if error > 0.0]
     lines = []
-    for name, members, color in look.families:
-        points = [(r.cpu_seconds, error) for r, error in drawn if getattr(r, look.member) in members]
+    for family in look.families:
+        points = [(r.cpu_seconds, error) for r, error in drawn if getattr(r, look.member) in family.members]
         if points:
             time, errors = np.array(points).T
-            lines.append(Line(name, time, errors, color, width=0, markers=True))
+            lines.append(Line(family.name, time, errors, family.color, width=0, markers=True))
     notes = [Note(r.cpu_seconds, error, _marked_name(study, r.name)) for r, error in drawn]
     for peer in peers:
-        errors = 100.0 * peer.errors.get(figure, np.zeros(0))
+        errors = 100.0 * peer.errors.get(panel.figure, np.zeros(0))
         if np.any(errors > 0.0):
             lines.append(Line(peer.name, peer.time, errors, peer.color, width=peer.width, markers=True))
             notes += [Note(*point, peer.note) for point in zip(peer.time, errors, strict=True) if peer.note]
     if not lines:
-        return Panel(across, Axis(label, "log"), title=title)
+        return Panel(time_axis, Axis(panel.axis, "log"), title=panel.title)
     values = np.concatenate([line.y for line in lines])
     limits = 0.6 * float(values.min()), 1.7 * float(values.max())  # room for the outermost points' texts
-    along = Axis(label, "log", limits)
-    return Panel(across, along, tuple(lines), title=title, notes=placed(notes, across, along, limits))
+    error_axis = Axis(panel.axis, "log", limits)
+    placed_notes = placed(notes, time_axis, error_axis, limits)
+    return Panel(time_axis, error_axis, tuple(lines), title=panel.title, notes=placed_notes)
 
 
 def _mark(study: Study, name: str) -> str:

@@ -37,6 +37,8 @@ HEADROOM = (
 )
 MIN_TOP = 1.0  # least top of the plot, Hz
 ROOM = 0.03  # share of the width for the name of an order; orders that end closer have no name
+NOTE_TOP = 0.97  # height up to which the name of an order stands, over that of the plot
+NOTE_DROP = 0.985  # height of the name of an order over that of its line, where they begin
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
     "backward whirl": (palette.VERMILLION, "dash"),
@@ -60,7 +62,7 @@ def _housing(modes: ModalAnalysis) -> tuple[Figure, ...]:
             "modal_housing",
             f"The housing in mode {mode + 1} at rest, {number(modes.natural_frequency[mode], 4)} Hz",
             shape,
-            None,
+            unit=None,  # a mode has no size
         )
         for mode, shape in zip(lowest, shapes, strict=True)
         if shape is not None
@@ -113,21 +115,24 @@ def _order_notes(modes: ModalAnalysis, speed: FloatArray, top: float) -> Iterato
     for mesh in _different(modes):
         rate, last = float(modes.mesh_frequency[mesh, -1] / speed[-1]), np.inf
         for order in range(1, int(modes.metadata["orders"]) + 1):
-            end = min(float(speed[-1]), 0.97 * top / (order * rate))
+            end = min(float(speed[-1]), NOTE_TOP * top / (order * rate))
             if end <= speed[0] or last - end < ROOM * width:
                 continue
             last, name = end, f"{order}x {modes.mesh[mesh]}" if several else f"{order}x"
-            yield Note(end - ROOM * width, order * rate * end * 0.985, name)
+            yield Note(end - ROOM * width, NOTE_DROP * order * rate * end, name)
 
 
 def _modes(modes: ModalAnalysis, speed: FloatArray) -> Iterator[Line]:
-    """Return points of every mode by its sense of whirl; points between two speeds have the first's."""
+    """Return the curve of every mode in parts by its sense of whirl.
+
+    Between two speeds a curve has the sense of the lower one.
+    """
     for name, (color, dash) in WHIRLS.items():
         for mode in range(modes.frequency.shape[1]):
             at_whirl = np.array([whirl_name(w) == name for w in modes.whirl[:, mode]])
             if not np.any(at_whirl):
                 continue
-            drawn = at_whirl | np.append(False, at_whirl[:-1])
+            drawn = at_whirl | np.append(False, at_whirl[:-1])  # up to the next speed
             frequency = np.where(drawn, modes.frequency[:, mode], np.nan)
             yield Line(name.removeprefix("whirl "), speed, frequency, color, dash, 1.6)
 

@@ -28,10 +28,11 @@ from lineofaction.report.presentation import dynamics_presentation
 from lineofaction.report.response.excitations import excitation_figures, excitation_table, omitted_orders
 
 MIN_SHARE = 1e-3
-"""Least share that is listed."""
-
-MAX_ORDERS, MAX_PEAKS, PRINTED_PEAKS = 6, 15, 4
-"""Peaks of a quantity on the page and on a terminal."""
+"""Least share of the lost power that is listed, %."""
+MAX_ORDERS = 6
+"""Largest number of orders in a plot."""
+MAX_PEAKS, PRINTED_PEAKS = 15, 4
+"""Largest numbers of peaks of a quantity on the page and on a terminal."""
 WITH_MESHES = (
     "Peak amplitudes of the mesh orders about the static equilibrium, linear: stiffness varies with "
     "position, no loss of contact. Last: the least mesh force; negative means that flanks lift off."
@@ -40,23 +41,23 @@ WITHOUT_MESHES = "Peak amplitudes of the orders of the leading shaft about the s
 
 
 def _loses_power(response: ForcedResponse) -> bool:
-    """Whether any part loses power; files of older versions do not know."""
+    """Whether any part loses power; False for files of older versions, which do not hold the power."""
     return bool(np.any(_total(response) > 0.0))
 
 
 def _power_table(response: ForcedResponse) -> Table:
     """List where the power goes at the speed at which most is lost."""
     power, total = response.power, _total(response)
-    at = int(np.argmax(total))
-    by_part = np.sum(power.loss[:, at], axis=1)
+    speed = int(np.argmax(total))
+    by_part = np.sum(power.loss[:, speed], axis=1)
     rows = []
     for kind, lost in power.by_kind().items():
         same_kind = [part for part, name in enumerate(power.kind) if name == kind]
         maximum = max(same_kind, key=lambda part: by_part[part])
-        share = 100.0 * float(lost[at] / total[at])
+        share = 100.0 * float(lost[speed] / total[speed])
         if abs(share) >= MIN_SHARE:
-            rows.append((kind, power.sink[maximum], number(lost[at], 3), number(share, 3)))
-    title = f"Power lost at {number(float(response.speed[at]) / RPM, 4)} rpm, all orders"
+            rows.append((kind, power.sink[maximum], number(lost[speed], 3), number(share, 3)))
+    title = f"Power lost at {number(float(response.speed[speed]) / RPM, 4)} rpm, all orders"
     return Table(title, ("lost in", "most in", "W", "%"), tuple(rows))
 
 
@@ -64,7 +65,7 @@ def _power_figure(response: ForcedResponse) -> Figure:
     table = _power_table(response)
     kinds = {row[0] for row in table.rows}
     lost = response.power.by_kind()
-    # a kind keeps the color of its place among all
+    # lines are made for all kinds, so that a kind keeps its color whichever others are drawn
     lines = tuple(
         line for line in category_lines(response.speed / RPM, list(lost), lost.values()) if line.name in kinds
     )
@@ -91,18 +92,18 @@ def _total(response: ForcedResponse) -> FloatArray:
 
 def _response_figure(response: ForcedResponse, mesh: int = 0) -> Figure:
     x, speed, quantities = _speed_axis(response), response.speed / RPM, _quantities(response, mesh)
-    size = np.max(quantities[1 if response.mesh else 0][1], axis=0) if quantities else np.empty(0)
-    drawn = drawn_orders(response.order[: size.size], size, MAX_ORDERS, response.metadata)
+    largest = np.empty(0)  # amplitude of each order
+    if quantities:
+        _, amplitude = quantities[1 if response.mesh else 0]  # the mesh force, or else the bearing force
+        largest = np.max(amplitude, axis=0)
+    drawn = drawn_orders(response.order[: largest.size], largest, MAX_ORDERS, response.metadata)
     names, panels = [f"order {order_label(response.order[h], response.metadata)}" for h in drawn], []
     for label, amplitude in quantities:
         panels.append(Panel(x, Axis(label), category_lines(speed, names, amplitude[:, drawn].T)))
     if response.mesh:
         line = Line("least mesh force", speed, response.least_mesh_force[mesh], palette.INK, width=1.4)
-        panels.append(
-            Panel(
-                x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
-            )
-        )
+        lift_off = Reference("flanks part", 0.0, "horizontal", at=0.12)
+        panels.append(Panel(x, Axis("least mesh force, N"), (line,), (lift_off,)))
     return Figure(
         key="response",
         title="Forced response to transmission errors and loads" if response.mesh else "Forced response",
@@ -171,17 +172,18 @@ def _headlines(response: ForcedResponse) -> tuple[Headline, ...]:
     parting, force = response.speed[~response.in_contact] / RPM, _bearing_force(response)
     forces = [("mesh force of", response.mesh, np.abs(response.mesh_force))]
     forces += [("force on bearing", response.bearing, force)]
-    headlines = [_largest(what, names, size, response) for what, names, size in forces if size.size]
+    headlines = [_largest(quantity, names, size, response) for quantity, names, size in forces if size.size]
     if not parting.size:
         return tuple(headlines)
     at = f"{parting.size} of {response.speed.size} speeds"
     return (headlines[0], Headline("flanks part at", at, f"from {number(parting[0], 4)} rpm on"))
 
 
-def _largest(what: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
-    """Name the part of the largest amplitude (part, speed, order) with its order and speed."""
+def _largest(quantity: str, names: Sequence[str], size: FloatArray, response: ForcedResponse) -> Headline:
+    """Return a headline on the largest amplitude of `size` (part, speed, order), with its order and speed."""
     part, s, h = map(int, np.unravel_index(int(np.argmax(size)), size.shape))
-    return Headline(f"largest {what} {names[part]}", f"{number(size[part, s, h], 3)} N", _at(response, s, h))
+    value = f"{number(size[part, s, h], 3)} N"
+    return Headline(f"largest {quantity} {names[part]}", value, _at(response, s, h))
 
 
 def _at(response: ForcedResponse, speed: int, order: int) -> str:
@@ -207,7 +209,7 @@ def _text(response: ForcedResponse) -> Iterator[Table | str]:
         "first-order theory: the other excitation changes "
         f"amplitudes by up to {engineering(worst, 2)} % of the largest"
     )
-    yield from (f"{what}: {text}" for what, text in omitted_orders(response.metadata))
+    yield from (f"{name}: {text}" for name, text in omitted_orders(response.metadata))
     yield from _omission_text(response)
     if _loses_power(response):
         yield _power_table(response)
@@ -219,11 +221,12 @@ def _omission_text(response: ForcedResponse) -> Iterator[str]:
     """Yield a sentence on unlisted orders: their part in the largest bearing force of all orders."""
     if response.bearing_floor.size:
         square, floor = response.bearing_mean_square, response.bearing_floor
-        at = np.unravel_index(int(np.argmax(square)), square.shape)
-        rms = float(np.sqrt(square[at]))
-        remark = f"{number(float(np.sqrt(floor[at])), 3)} N of it in the orders not listed"
-        error = rms - float(np.sqrt(max(square[at] - response.bearing_floor_error[at], 0.0)))
-        where = f"{response.bearing[at[0]]} at {number(float(response.speed[at[1]]) / RPM, 4)} rpm"
+        bearing, speed = np.unravel_index(int(np.argmax(square)), square.shape)
+        rms = float(np.sqrt(square[bearing, speed]))
+        remark = f"{number(float(np.sqrt(floor[bearing, speed])), 3)} N of it in the orders not listed"
+        floor_error = response.bearing_floor_error[bearing, speed]
+        error = rms - float(np.sqrt(max(square[bearing, speed] - floor_error, 0.0)))
+        where = f"{response.bearing[bearing]} at {number(float(response.speed[speed]) / RPM, 4)} rpm"
         yield f"largest rms force of all orders: {with_error(rms, error, 'N')} on {where}, {remark}"
 
 

@@ -36,29 +36,40 @@ from lineofaction.report.response.mode_lines import (
 )
 from lineofaction.report.run.view import SCALES, Signal, along_direction, decibels, run_axis, validity
 
-LINES, MAP_DEPTH = 220, 60.0
-POINTS, SHORTEST, OVERLAP, DEPTH = 400, 16, 0.75, 80.0
+LINES = 220
+"""Largest number of lines of a map over its height."""
+MAP_DEPTH, DEPTH = 60.0, 80.0
+"""Ranges of levels below the largest one in maps and in curves, dB."""
+POINTS, SHORTEST, OVERLAP = 400, 16, 0.75
+"""Blocks of orders: their usual number, their least length in base pitches, and their overlap."""
 MAPPED, NAMED = 10, 5
-"""Mesh orders of an order map, as far as the output holds them, and how many of them are cut unless named."""
+"""Numbers of mesh orders in an order map, and of order cuts where the caller names none."""
 BLOCKS, ORDERS = 90, 8
+"""Numbers of blocks and of mesh orders of a Campbell diagram."""
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
 MIN_PITCHES = 64  # least base pitches of a run whose orders are shown
 
 
 def level_map(along: FloatArray, line: FloatArray, amplitude: FloatArray, top: float) -> HeatMap:
-    """Return levels below the largest on an even grid of the axis; the loudest of the lines in each cell.
+    """Return levels relative to the largest one on a grid; a cell has the largest amplitude of its lines.
 
-    `along` (B,) is speed or time of the blocks, rising or falling; `line` (K,) are frequencies or orders,
-    equally spaced from 0, of which those above 0 and up to `top` are shown; `amplitude` is (B, K).
+    Parameters
+    ----------
+    along : (B,) array
+        Speed or time of the blocks, rising or falling.
+    line : (K,) array
+        Frequencies or orders at equal steps from 0; those above 0 and up to `top` are drawn.
+    amplitude : (B, K) array
+        Amplitude of each line of each block.
     """
     drawn = np.flatnonzero((line > 0.0) & (line <= top))
-    group = max(int(np.ceil(drawn.size / LINES)), 1)
+    group = max(int(np.ceil(drawn.size / LINES)), 1)  # lines in a cell
     drawn = drawn[: drawn.size // group * group]
     rows = amplitude[:, drawn].reshape(amplitude.shape[0], -1, group).max(axis=-1)
     order = np.argsort(along)
     even = np.linspace(along.min(), along.max(), along.size)
     middle = 0.5 * (along[order][1:] + along[order][:-1])
-    columns = rows[order][np.searchsorted(middle, even)]
+    columns = rows[order][np.searchsorted(middle, even)]  # of the nearest block
     level = 20.0 * np.log10(np.maximum(columns / max(float(columns.max()), 1e-300), 1e-12))
     z = np.clip(level + MAP_DEPTH, 0.0, None).T
     height = line[drawn].reshape(-1, group).mean(axis=-1)
@@ -73,7 +84,7 @@ def _pitches_passed(run: RunResult, mesh: int = 0) -> float:
 def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
     """Return spectra over mesh orders in blocks of whole base pitches along the run.
 
-    Raises `BadInput`: it has no mesh, or is shorter than one block.
+    Raises `BadInput`: the run has no mesh, or is shorter than one block.
     """
     highest = max((*signal.orders, min(MAPPED, highest_valid_order(run, signal.mesh)), 1))
     travel = _pitches_passed(run, signal.mesh)
@@ -84,13 +95,14 @@ def order_blocks(run: RunResult, signal: Signal) -> Waterfall:
     return order_waterfall(run, signal.quantity.series, pitches, highest, signal.mesh, signal.window, OVERLAP)
 
 
-def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+def levels_over_speed(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure:
     """Draw the overall level and the levels of mesh orders over speed or time, in dB re one unit."""
-    axis, abscissa = run_axis(run, made.time, signal.mesh)
+    axis, abscissa = run_axis(run, blocks.time, signal.mesh)
     cuts = {
-        order: signal.amplitude(made.cut(order)) for order in signal.orders or largest_orders(signal, made)
+        order: signal.amplitude(blocks.cut(order))
+        for order in signal.orders or largest_orders(signal, blocks)
     }
-    overall = signal.magnitude(made.rms)
+    overall = signal.magnitude(blocks.rms)
     largest = max(float(overall.max()), *(float(cut.max()) for cut in cuts.values()))
     floor = largest * 10.0 ** (-DEPTH / 20.0)
     names = [f"{order}×" for order in cuts]
@@ -107,24 +119,24 @@ def levels_over_speed(run: RunResult, signal: Signal, made: Waterfall) -> Figure
         caption="Overall: rms about the mean in blocks of whole base pitches. Orders: "
         f"{signal.scale} values of those named, or of the {NAMED} largest, resampled to equal steps of "
         f"position. {validity(valid, top)}",
-        alternative=_alternative(signal, made, abscissa, unit_of(axis.label)),
+        alternative=_alternative(signal, blocks, abscissa, unit_of(axis.label)),
         content=(Panel(axis, level, lines),),
-        table=_table(signal, made, overall, cuts, (axis, abscissa)),
+        table=_table(signal, blocks, overall, cuts, (axis, abscissa)),
     )
 
 
-def largest_orders(signal: Signal, made: Waterfall) -> tuple[int, ...]:
-    """Return the orders that are largest anywhere in the run, by their number."""
-    orders = range(1, int(made.line[-1]) + 1)
-    largest = sorted(orders, key=lambda order: -float(signal.magnitude(made.cut(order)).max()))
+def largest_orders(signal: Signal, blocks: Waterfall) -> tuple[int, ...]:
+    """Return the orders with the largest peaks over the run, in their order."""
+    orders = range(1, int(blocks.line[-1]) + 1)
+    largest = sorted(orders, key=lambda order: -float(signal.magnitude(blocks.cut(order)).max()))
     return tuple(sorted(largest[:NAMED]))
 
 
-def _alternative(signal: Signal, made: Waterfall, along: FloatArray, unit: str) -> str:
-    overall = signal.magnitude(made.rms)
+def _alternative(signal: Signal, blocks: Waterfall, along: FloatArray, unit: str) -> str:
+    overall = signal.magnitude(blocks.rms)
     worst = int(np.argmax(overall))
-    orders = range(1, int(made.line[-1]) + 1)
-    power = {order: 0.5 * float(signal.magnitude(made.cut(order))[worst]) ** 2 for order in orders}
+    orders = range(1, int(blocks.line[-1]) + 1)
+    power = {order: 0.5 * float(signal.magnitude(blocks.cut(order))[worst]) ** 2 for order in orders}
     order = max(power, key=lambda key: power[key])
     share = min(power[order] / max(float(overall[worst]) ** 2, 1e-300), 1.0)
     return (
@@ -135,7 +147,7 @@ def _alternative(signal: Signal, made: Waterfall, along: FloatArray, unit: str) 
 
 def _table(
     signal: Signal,
-    made: Waterfall,
+    blocks: Waterfall,
     overall: FloatArray,
     cuts: dict[int, FloatArray],
     along: tuple[Axis, FloatArray],
@@ -148,21 +160,21 @@ def _table(
     ]:
         at = int(np.argmax(values))
         level = f"{20.0 * np.log10(max(float(values[at]), 1e-300)):.1f}"
-        hertz = number(order * made.mesh_frequency[at], 4) if order else ""
+        hertz = number(order * blocks.mesh_frequency[at], 4) if order else ""
         rows.append((name, number(values[at], 4), level, number(abscissa[at], 4), hertz))
     head = ("mesh order", f"largest, {signal.unit}", "dB", axis.label, "frequency, Hz")
     return Table("Largest value of each line", head, tuple(rows))
 
 
-def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
-    """Draw spectra over mesh orders side by side: a component that follows the mesh lies level."""
+def order_map(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure:
+    """Draw spectra over mesh orders side by side: a component of the mesh is a horizontal line."""
     valid = highest_valid_order(run, signal.mesh)
     last = max(min(MAPPED, valid), 1)
-    amplitude = signal.amplitude(made.amplitude)[:, made.line <= last]
-    axis, along = run_axis(run, made.time, signal.mesh)
-    shade = level_map(along, made.line[made.line <= last], amplitude, float(last))
+    amplitude = signal.amplitude(blocks.amplitude)[:, blocks.line <= last]
+    axis, along = run_axis(run, blocks.time, signal.mesh)
+    shade = level_map(along, blocks.line[blocks.line <= last], amplitude, float(last))
     names = tuple((float(order), f"{order}×") for order in range(1, last + 1))
-    orders = Axis("mesh order", limits=(0.0, float(made.line[-1])), names=names)
+    orders = Axis("mesh order", limits=(0.0, float(blocks.line[-1])), names=names)
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
     largest = number(amplitude[block, line + 1], 3)
     where = f"{number(along[block], 3)} {unit_of(axis.label)}"
@@ -173,7 +185,7 @@ def order_map(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
         f"largest, down to −{MAP_DEPTH:g} dB. "
         f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
         alternative=f"Largest: {largest} {signal.unit} at order "
-        f"{number(made.line[line + 1], 4)} and {where}.",
+        f"{number(blocks.line[line + 1], 4)} and {where}.",
         content=(Panel(Axis.over(axis.label, shade.x), orders, shade=shade),),
     )
 
@@ -184,48 +196,48 @@ def frequency_blocks(run: RunResult, signal: Signal) -> Waterfall:
     return frequency_waterfall(run, signal.quantity.series, block, 0.5, signal.mesh, signal.window)
 
 
-def campbell(run: RunResult, signal: Signal, made: Waterfall) -> Figure:
+def campbell(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure:
     """Draw spectra of short blocks side by side."""
-    amplitude = signal.amplitude(made.amplitude)
-    axis, along = run_axis(run, made.time, signal.mesh)
+    amplitude = signal.amplitude(blocks.amplitude)
+    axis, along = run_axis(run, blocks.time, signal.mesh)
     valid = highest_valid_order(run, signal.mesh)
-    top = _top_frequency(run, signal, made)
-    modes = mode_lines(run, made.mesh_frequency, top)
+    top = _top_frequency(run, signal, blocks)
+    modes = mode_lines(run, blocks.mesh_frequency, top)
     return Figure(
         key="campbell",
         title=f"Campbell diagram of the {signal.name}",
         caption="Color: amplitude of each block's spectrum, in dB below the largest. Dotted: "
         f"multiples of the mesh frequency. {MODES_CAPTION[whirling(run)]}, one for those that lie together. "
         f"{validity(valid, float(run.mesh_frequency[signal.mesh].max()))}",
-        alternative=_campbell_text(signal, made, amplitude, (axis, along), modes),
-        content=(_panel(made, amplitude, axis, along, top, modes),),
+        alternative=_campbell_text(signal, blocks, amplitude, (axis, along), modes),
+        content=(_panel(blocks, amplitude, axis, along, top, modes),),
         table=mode_table(run, top, ORDERS),
     )
 
 
-def _top_frequency(run: RunResult, signal: Signal, made: Waterfall) -> float:
-    """Return the upper end of the diagram, Hz: above the highest order that the run resolves."""
+def _top_frequency(run: RunResult, signal: Signal, blocks: Waterfall) -> float:
+    """Return the upper end of the diagram, Hz, half an order above the highest valid one."""
     last = max(min(ORDERS, highest_valid_order(run, signal.mesh)), 1)
-    return min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
+    return min((last + 0.5) * float(blocks.mesh_frequency.max()), float(blocks.line[-1]))
 
 
 def _panel(
-    made: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
+    blocks: Waterfall, amplitude: FloatArray, axis: Axis, along: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
-    shade = level_map(along, made.line, amplitude, top)
-    heights = (order * made.mesh_frequency for order in range(1, ORDERS + 1))
+    shade = level_map(along, blocks.line, amplitude, top)
+    heights = (order * blocks.mesh_frequency for order in range(1, ORDERS + 1))
     visible = (np.where(height <= top, height, np.nan) for height in heights)
     lines = [Line("mesh orders", along, height, ORDER_COLOUR, "dot", 1.0) for height in visible]
     lines += [Line(mode.name, along, mode.frequency, mode.color, "dash", 1.4) for mode in modes]
-    notes = [*_order_notes(made, along, top), *_mode_notes(along, modes)]
+    notes = [*_order_notes(blocks, along, top), *_mode_notes(along, modes)]
     x, y = Axis.over(axis.label, shade.x), Axis("frequency, Hz", limits=(0.0, top))
     return Panel(x, y, tuple(lines), shade=shade, notes=placed(notes, x, y, (0.0, top)))
 
 
-def _order_notes(made: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
+def _order_notes(blocks: Waterfall, along: FloatArray, top: float) -> Iterator[Note]:
     """Name every order where it ends."""
     for order in range(1, ORDERS + 1):
-        height = order * made.mesh_frequency
+        height = order * blocks.mesh_frequency
         last = int(np.argmax(np.where(height <= 0.97 * top, height, -1.0)))
         if 0.0 < height[last] <= top:
             yield Note(float(along[last]), float(height[last]), f"{order}×", left=True)
@@ -241,28 +253,28 @@ def _mode_notes(along: FloatArray, modes: list[ModeLine]) -> Iterator[Note]:
 
 def _campbell_text(
     signal: Signal,
-    made: Waterfall,
+    blocks: Waterfall,
     amplitude: FloatArray,
-    over: tuple[Axis, FloatArray],
+    abscissa: tuple[Axis, FloatArray],
     modes: list[ModeLine],
 ) -> str:
-    axis, along = over
+    axis, along = abscissa
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
-    frequency = float(made.line[line + 1])
-    order = frequency / float(made.mesh_frequency[block])
+    frequency = float(blocks.line[line + 1])
+    order = frequency / float(blocks.mesh_frequency[block])
     where = f"at {number(along[block], 3)} {unit_of(axis.label)}"
     text = f"Largest: {number(amplitude[block, line + 1], 3)} {signal.unit} at {number(frequency, 4)} Hz "
     text += f"{where}, mesh order {number(order, 3)}."
     if modes:
-        there = [float(mode.frequency[block]) for mode in modes]
-        near = min(there, key=lambda value: abs(value - frequency))
-        text += f" The nearest natural frequency is {number(near, 4)} Hz."
+        frequencies = [float(mode.frequency[block]) for mode in modes]
+        nearest = min(frequencies, key=lambda value: abs(value - frequency))
+        text += f" The nearest natural frequency is {number(nearest, 4)} Hz."
     return text
 
 
-def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | None:
+def mode_shares(run: RunResult, signal: Signal, blocks: Waterfall) -> Figure | None:
     """Draw the shares of the parts in the kinetic energy of each mode of the diagram; None without modes."""
-    modes = mode_lines(run, made.mesh_frequency, _top_frequency(run, signal, made))
+    modes = mode_lines(run, blocks.mesh_frequency, _top_frequency(run, signal, blocks))
     with_shares = [mode for mode in modes if mode.shares]
     if not with_shares:
         return None
@@ -282,17 +294,18 @@ def mode_shares(run: RunResult, signal: Signal, made: Waterfall) -> Figure | Non
 
 @dataclass(frozen=True)
 class Loudest:
-    """The block of a run with the highest overall level: where on the axis of speed or time, and when, s.
-
-    `overall` is rms about the mean in the signal's unit, `orders` the rms of the mesh orders that were named,
-    or of the largest of the run.
-    """
+    """The block of a run with the highest overall level."""
 
     axis: Axis
+    """Axis of speed or time."""
     where: float
+    """Position of the block on this axis."""
     time: float
+    """Time of the block, s."""
     overall: float
+    """Root mean square about the mean, in the unit of the signal."""
     orders: dict[int, float]
+    """Root mean square of the mesh orders that the view names, or of the largest orders of the run."""
 
 
 def has_orders(run: RunResult, mesh: int = 0) -> bool:
@@ -301,17 +314,17 @@ def has_orders(run: RunResult, mesh: int = 0) -> bool:
 
 
 def loudest(run: RunResult, signal: Signal) -> Loudest | None:
-    """Return the time at which the signal of a run is loudest; None: the run has no orders.
+    """Return the block of a run in which its signal is loudest; None: the run has no orders.
 
-    Raises `BadInput`: it does not vary.
+    Raises `BadInput`: the signal does not vary.
     """
     if not has_orders(run, signal.mesh):
         return None
     if signal.quantity.part == "bearing" and not signal.direction:
         signal = replace(signal, direction=PRINCIPAL)
-    seen = along_direction(run, signal)
-    blocks = order_blocks(seen, signal)
-    axis, along = run_axis(seen, blocks.time, signal.mesh)
+    component = along_direction(run, signal)
+    blocks = order_blocks(component, signal)
+    axis, along = run_axis(component, blocks.time, signal.mesh)
     overall = signal.magnitude(blocks.rms)
     worst = int(np.argmax(overall))
     rms = {

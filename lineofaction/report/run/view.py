@@ -23,6 +23,7 @@ SCALES = {"rms": float(np.sqrt(0.5)), "peak": 1.0}
 """Factors from a peak amplitude to the amplitude of each scale."""
 
 PITCHES = 3
+"""Number of base pitches of a window."""
 STEADY = 0.1
 """Largest change of speed over a run, relative to the highest speed, at which the run counts as steady."""
 ROUNDING = 1e-12  # variation over the largest value below which a series is constant
@@ -30,17 +31,19 @@ ROUNDING = 1e-12  # variation over the largest value below which a series is con
 
 @dataclass(frozen=True)
 class Quantity:
-    """A series of a run that is shown: its field, where it is taken, its noun, and its unit over SI.
-
-    `setting` is that of the scenes whose runs hold it; empty: all do.
-    """
+    """A series of a run that a report can show."""
 
     series: str
+    """Field of the run."""
     part: Literal["bearing", "mesh"]
+    """Kind of part that has the series."""
     noun: str
+    """Name of the quantity with its preposition, before the name of the part."""
     unit: str = "N"
     factor: float = 1.0
+    """Factor from the SI unit to `unit`."""
     setting: str = ""
+    """Setting of a scene without which its run has no such series; empty: all runs have it."""
 
 
 QUANTITIES = {
@@ -61,37 +64,41 @@ QUANTITIES = {
 class RunView:
     """Choices of a reader about the view of a run; the run supplies the fields that are left out.
 
-    - `quantity`, one of `QUANTITIES`: the force on bearings, of a run without them that of the mesh
-    - `bearing`: where the quantity varies most
-    - `mesh`, whose orders are shown, and where quantities of meshes are taken: the first
-    - `orders`, whole mesh orders of the order cuts: the five largest
-    - `window` of the spectra; `scale`: whether amplitudes are effective or peak values
-    - `direction`, one of `DIRECTIONS`, along which a quantity of bearings is taken for orders and sound (the
-      principal one is that in which it varies most): orders of all three components in power, sound along
-      the principal one
+    An empty field is left out.
     """
 
     quantity: str = ""
+    """One of `QUANTITIES`. Default: the force on bearings; of a run without bearings the mesh force."""
     bearing: str = ""
+    """Bearing of a quantity of bearings. Default: the bearing at which the quantity varies most."""
     mesh: str = ""
+    """Mesh whose orders are shown, and mesh of a quantity of meshes. Default: the first mesh."""
     orders: tuple[float, ...] = ()
+    """Whole mesh orders of the order cuts. Default: the five largest."""
     window: str = "hann"
+    """Window of the spectra."""
     scale: str = "rms"
+    """Scale of amplitudes, one of `SCALES`."""
     direction: str = ""
+    """Direction along which a quantity of bearings is shown, one of `DIRECTIONS`. The principal direction is
+    the one in which the quantity varies most. Default: orders sum the power of all three components, and
+    sound follows the principal direction.
+    """
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A series of one run as shown: the row of its first axis, and the scale of amplitudes.
-
-    `part` names the bearing or the mesh, `mesh` is that whose orders are shown, `orders` are those named.
-    """
+    """A series of one run by the choices of a view."""
 
     quantity: Quantity
     row: int
+    """Index of the bearing or mesh in the series."""
     part: str
+    """Name of the bearing or mesh."""
     mesh: int
+    """Index of the mesh whose orders are shown."""
     orders: tuple[int, ...]
+    """Orders that the view names."""
     window: str
     scale: str
     direction: str = ""
@@ -128,14 +135,14 @@ class Signal:
         return {name: row for name, row in zip("xyz", values, strict=True) if np.any(row)}
 
     def amplitude(self, peak: FloatArray) -> FloatArray:
-        """Take the row of peak amplitudes (rows, ...) in the scale; three components are added in power."""
+        """Return the amplitude in the scale from peak amplitudes (rows, ...), see `magnitude`."""
         return np.asarray(SCALES[self.scale] * self.magnitude(peak))
 
     def magnitude(self, values: FloatArray) -> FloatArray:
-        """Take the row of values (rows, ...) in the unit; three components are added in power."""
-        taken = self.quantity.factor * values[self.row]
-        vector = self.quantity.part == "bearing"
-        return np.asarray(np.sqrt(np.sum(taken**2, axis=0)) if vector else np.abs(taken))
+        """Return the size in the unit from values (rows, ...); of a vector the root of the sum of squares."""
+        own_values = self.quantity.factor * values[self.row]
+        is_vector = self.quantity.part == "bearing"
+        return np.asarray(np.sqrt(np.sum(own_values**2, axis=0)) if is_vector else np.abs(own_values))
 
 
 def selected_signal(run: RunResult, view: RunView) -> Signal:
@@ -189,40 +196,39 @@ def _orders(run: RunResult, orders: tuple[float, ...], mesh: int) -> tuple[int, 
 
 
 def run_axis(run: RunResult, time: FloatArray, mesh: int = 0) -> tuple[Axis, FloatArray]:
-    """Return the axis for blocks at `time`: speed where it rises or falls all along, else time."""
+    """Return the axis of blocks at `time` and their values on it: speed if it is monotonic, else time."""
     shaft = run.shaft.index(driving_shaft(run, mesh))
     return speed_axis(time, np.interp(time, run.time, np.abs(run.speed[shaft])))
 
 
 def speed_axis(time: FloatArray, speed: FloatArray) -> tuple[Axis, FloatArray]:
-    """Return the axis of values at speeds (rad/s) over time: the speed if it rises or falls all along."""
+    """Return the axis of values and their values on it: the speed, rad/s, if monotonic, else the time."""
     speed = speed * 30.0 / np.pi
     steps = np.diff(speed)
-    swept = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
-    if swept and np.ptp(speed) > MONOTONE * speed.max():
+    is_monotonic = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
+    if is_monotonic and np.ptp(speed) > MONOTONE * speed.max():
         return Axis("speed of the driving gear, rpm"), speed
     return Axis("time, s"), time
 
 
 def decibels(values: FloatArray, floor: float) -> FloatArray:
-    """Return levels in dB re 1 unit, of nothing below `floor`."""
+    """Return levels in dB re 1 unit; values below `floor` count as `floor`."""
     return np.asarray(20.0 * np.log10(np.maximum(values, max(floor, 1e-300))))
 
 
 @dataclass(frozen=True)
 class Travel:
-    """Motion of a mesh's driving gear over a run: speed (n,) without sign, position (n,) not wrapped.
-
-    Positions are in base pitches, without gears of the shaft in turns.
-    """
+    """Motion of a mesh's driving gear over a run, or of the leading shaft of a run without meshes."""
 
     speed_rpm: FloatArray
+    """Speed without its sign. Shape (n,)."""
     position: FloatArray
+    """Position, not wrapped, in base pitches; of a shaft in turns. Shape (n,)."""
 
     def window(self, target: float) -> slice:
         """Return the samples of a few whole base pitches around the first passing of a speed, rpm.
 
-        Of a run at one speed the last ones, where what began with it has died away.
+        Of a run at one speed they are the last ones: the transients of the start have decayed there.
         """
         traveled, speed = np.abs(self.position - self.position[0]), np.abs(self.speed_rpm)
         passing = int(np.argmax(speed >= target)) or int(np.argmin(np.abs(speed - target)))
@@ -245,7 +251,10 @@ def travel(run: RunResult, mesh: int = 0) -> Travel:
 
 
 def validity(valid_order: int, top: float, of: str = "mesh") -> str:
-    """Say up to which order of a `mesh` or `shaft` a picture holds at its highest frequency `top`, Hz."""
+    """Return a sentence on the highest valid order of a picture, and the highest frequency `top` in Hz.
+
+    `of` is "mesh" or "shaft", by whose turns orders count.
+    """
     return f"Valid to {of} order {valid_order} at the highest {of} frequency, {number(top, 4)} Hz."
 
 
@@ -255,13 +264,13 @@ def counted_by(run: RunResult) -> str:
 
 
 def window_speeds(speed: FloatArray, fractions: tuple[float, ...] = (0.1, 0.4, 0.9)) -> tuple[float, ...]:
-    """Choose speeds to look at: fractions of the highest one that the run passes, rounded but never above it.
+    """Return speeds of windows: rounded fractions of the highest speed of a run, none above it.
 
-    Of a run at one speed, and of one that passes none of them, that at its end.
+    Of a run at one speed, and of a run that passes none of these fractions, it is the speed at its end.
     """
     highest, lowest = float(np.max(np.abs(speed))), float(np.min(np.abs(speed)))
-    chosen = [_rounded(fraction * highest, highest) for fraction in fractions]
-    passed = tuple(dict.fromkeys(value for value in chosen if value > 0.0 and value >= lowest))
+    candidates = [_rounded(fraction * highest, highest) for fraction in fractions]
+    passed = tuple(dict.fromkeys(value for value in candidates if value > 0.0 and value >= lowest))
     return (float(f"{abs(speed[-1]):.4g}"),) if is_steady(speed) or not passed else passed
 
 
@@ -272,21 +281,23 @@ def is_steady(speed: FloatArray) -> bool:
 
 
 def _rounded(value: float, highest: float) -> float:
-    """Round to one digit, to two where that would exceed the highest."""
+    """Return a value with one digit, or with two where one digit would exceed the highest."""
     short = float(f"{value:.1g}")
     return short if short <= highest else float(f"{value:.2g}")
 
 
 def along_direction(run: RunResult, signal: Signal) -> RunResult:
-    """Return the run with the quantity along the signal's direction alone, (rows, 1, T); whole without one.
+    """Return the run with the component of the quantity along the signal's direction, (rows, 1, T).
 
-    Raises `BadInput`: the direction is the principal one of what does not vary.
+    Without a direction the run is unchanged. Raises `BadInput`: the direction is the principal one, and the
+    quantity does not vary.
     """
     if not signal.direction:
         return run
-    values = getattr(run, signal.quantity.series)
-    along = np.einsum("c,bct->bt", _axis(run, signal)[0], values)[:, None]
-    return replace(run, **{signal.quantity.series: along})
+    values = getattr(run, signal.quantity.series)  # (rows, 3, T)
+    axis, _ = _axis(run, signal)
+    component = np.einsum("c,bct->bt", axis, values)[:, None]
+    return replace(run, **{signal.quantity.series: component})
 
 
 def signal_recording(run: RunResult, signal: Signal, sample_rate: int = SAMPLE_RATE) -> Recording:

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from bounds.error_digits import with_error
+from bounds.error_digits import to_error, with_error
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.ste.fields import CENTER_DISTANCE, MISALIGNMENT
 from fe_contact.types import Estimate, IntArray
@@ -286,7 +286,7 @@ def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
 
 
 def _label(line: Line, curve: Curve) -> str:
-    mean, ripple = (um(e.value, 3) for e in (curve.mean, curve.peak_to_peak))
+    mean, ripple = (to_error(1e6 * e.value, 1e6 * e.error) for e in (curve.mean, curve.peak_to_peak))
     return f"{line.name}: mean {mean} µm,\n{ripple} µm peak to peak"
 
 

@@ -1,4 +1,4 @@
-"""Ripple, deviations, pressure and place of the load of a table, over torque and over position."""
+"""Figures of a table over torque: ripple, deviations, flank pressure, and the load along the face."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def ripple_over_torque(database: SteDatabase) -> Figure:
     curves = {load: load_curve(database, load) for load in drawn_loads(database)}
     across, torque = _torque_axis(np.array([curve.torque for curve in curves.values()]))
     value, error = np.stack([um_of(curve.harmonics[:HARMONICS]) for curve in curves.values()], axis=1)
-    known = ~(error >= value)  # also where no error was estimated
+    known = ~(error >= value)  # true also for an error of NaN, which was not estimated
     level = 20.0 * np.log10(np.maximum(value, _DEPTH * value.max()))
     ripple, band = um_of([curve.peak_to_peak for curve in curves.values()])
     line = Line("peak to peak", torque, ripple, palette.BLUE, markers=True, band=band)
@@ -86,12 +86,12 @@ def _harmonics(across: Axis, torque: FloatArray, values: FloatArray, known: Bool
 def _ripple_text(curves: dict[str, Curve]) -> str:
     """Return a sentence on the least and the largest ripple by the names of the curves."""
     ripple = {name: curve.peak_to_peak for name, curve in curves.items()}
-    minimum, maximum = (ripple[end(ripple, key=lambda name: ripple[name].value)] for end in (min, max))
-    where = {name: f"{um(e.value, 3)} µm {name}" for name, e in ripple.items()}
-    ends = [next(where[name] for name, e in ripple.items() if e is end) for end in (minimum, maximum)]
+    lowest, highest = (end(ripple, key=lambda name: ripple[name].value) for end in (min, max))
+    minimum, maximum = ripple[lowest], ripple[highest]
+    least, largest = f"{um(minimum.value, 3)} µm {lowest}", f"{um(maximum.value, 3)} µm {highest}"
     if maximum.value - minimum.value <= minimum.error + maximum.error:
-        return f"Peak to peak, {ends[0]} to {ends[1]}, changes by no more than its errors."
-    return f"Peak to peak is least, {ends[0]}, and largest, {ends[1]}."
+        return f"Peak to peak, {least} to {largest}, changes by no more than its errors."
+    return f"Peak to peak is least, {least}, and largest, {largest}."
 
 
 def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
@@ -106,17 +106,19 @@ def _table(database: SteDatabase, curves: dict[int, Curve]) -> Table:
 
 @dataclass(frozen=True)
 class _Deviation:
-    """An axis with more than one value: its name, its values, and the curves (n, F) at these values."""
+    """A deviation of the alignment that has more than one value in a table."""
 
     name: str
     axis: Axis
-    at: FloatArray
+    values: FloatArray
+    """Values in the unit of `axis`. Shape (n,)."""
     curves: tuple[tuple[Curve, ...], ...]
+    """Curves at each value, by load. Shape (n, F)."""
 
     @property
-    def places(self) -> list[str]:
-        """Name its values."""
-        return [f"{self.name} {number(value, 3)} {unit_of(self.axis.label)}" for value in self.at]
+    def value_names(self) -> list[str]:
+        """Names of the values, with their unit."""
+        return [f"{self.name} {number(value, 3)} {unit_of(self.axis.label)}" for value in self.values]
 
 
 def has_deviations(database: SteDatabase) -> bool:
@@ -144,12 +146,12 @@ def deviation_curves(database: SteDatabase) -> Figure:
 
 def _deviations(database: SteDatabase) -> list[_Deviation]:
     misalignment, change = aligned(database)
-    skew, distance = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
+    misalignments, distance = (database.requested_nodes(axis) for axis in (MISALIGNMENT, CENTER_DISTANCE))
     deviations = []
-    if skew.size > 1:
+    if misalignments.size > 1:
         axis = Axis("misalignment over the common face width, µm")
-        curves = tuple(_curves(database, float(m), change) for m in skew)
-        deviations.append(_Deviation("misalignment", axis, 1e6 * skew, curves))
+        curves = tuple(_curves(database, float(m), change) for m in misalignments)
+        deviations.append(_Deviation("misalignment", axis, 1e6 * misalignments, curves))
     if distance.size > 1:
         axis = Axis("change of the center distance, mm")
         curves = tuple(_curves(database, misalignment, float(d)) for d in distance)
@@ -164,14 +166,14 @@ def _curves(database: SteDatabase, misalignment: float, change: float) -> tuple[
 
 def _panel(database: SteDatabase, deviation: _Deviation) -> Panel:
     value, error = np.stack([um_of([c.peak_to_peak for c in row]) for row in deviation.curves], axis=1)
-    lines = load_lines(database, deviation.at, value, bands=error)
+    lines = load_lines(database, deviation.values, value, bands=error)
     return ripple_panel(deviation.axis, lines)
 
 
 def _deviation_text(database: SteDatabase, deviation: _Deviation) -> str:
-    names = [f"at {name}" for name in deviation.places]
-    said = _ripple_text(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
-    return f"At {load_labels(database)[-1]} {said[0].lower()}{said[1:]}"
+    names = [f"at {name}" for name in deviation.value_names]
+    text = _ripple_text(dict(zip(names, (row[-1] for row in deviation.curves), strict=True)))
+    return f"At {load_labels(database)[-1]} {text[0].lower()}{text[1:]}"
 
 
 def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Table:
@@ -179,7 +181,7 @@ def _deviation_table(database: SteDatabase, deviations: list[_Deviation]) -> Tab
     rows = tuple(
         (name, *(um(row[k].peak_to_peak.value) for k in loads))
         for deviation in deviations
-        for name, row in zip(deviation.places, deviation.curves, strict=True)
+        for name, row in zip(deviation.value_names, deviation.curves, strict=True)
     )
     return Table("Peak to peak, µm", ("deviation", *(labels[k] for k in loads)), rows)
 
@@ -193,9 +195,9 @@ def has_face_load(database: SteDatabase) -> bool:
 def face_load(database: SteDatabase) -> Figure:
     """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
     load, (_, d) = middle_load(database), aligned_index(database)
-    skews = database.requested_rows(MISALIGNMENT)
-    centroid = 1e3 * database.face_centroid[:, load, skews, d]
-    pressure = 1e-6 * database.max_pressure[:, load, skews, d]
+    misalignments = database.requested_rows(MISALIGNMENT)
+    centroid = 1e3 * database.face_centroid[:, load, misalignments, d]
+    pressure = 1e-6 * database.max_pressure[:, load, misalignments, d]
     label, oblique = load_labels(database)[load], database.geometry.base_helix_angle
     waves = ", which fluctuates as the contact lines pass from slice to slice of the model" if oblique else ""
     return Figure(
@@ -279,5 +281,5 @@ def _flanks_table(database: SteDatabase, loads: list[int], pressure: FloatArray,
         (labels[k], number(p, 4), *(number(end, 3) for end in column))
         for k, p, column in zip(loads, pressure, ends.T, strict=True)
     )
-    places = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))
-    return Table("Flanks by load", ("torque", "largest pressure, MPa", *places), rows)
+    heads = (f"{name} centroid, mm" for name in ("least", "mean", "largest"))
+    return Table("Flanks by load", ("torque", "largest pressure, MPa", *heads), rows)

@@ -167,6 +167,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_rounding_mm": 0.2,
         "material": {"youngs_modulus_gpa": 100.0},
         "seat": {"tangential_foundation_n_per_mm3": 1e4},
+        "sector_teeth": 7,
         "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0},
         "shaft": {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0},
         "flank_grid": {

@@ -12,6 +12,7 @@ import pytest
 from small_inputs import small_inputs
 
 from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.registry import change, response, scatter
 from lineofaction.gearbox.studies.change.result import FlankChange
 from lineofaction.gearbox.studies.change.sound_flanks import HeardFlanks
@@ -234,3 +235,10 @@ def test_nine_of_ten_further_pairs_lie_in_the_band() -> None:
             inside = levels(further)[:, 0, 0]
             covered.append(np.mean((inside >= low) & (inside <= high)))
         assert 0.87 <= np.mean(covered) <= 0.93
+
+
+def test_a_scene_without_bearings_is_refused_before_it_is_solved() -> None:
+    """Forces on bearings are what is heard; without one there is no level to compare."""
+    bare = scene() | {"bushings": [], "rolling_bearings": [], "planet_bearings": []}
+    with pytest.raises(BadInput, match=r"scene\.bushings = nothing: must be at least one bearing"):
+        change(bare, {"after": RELIEVED, **QUESTION})

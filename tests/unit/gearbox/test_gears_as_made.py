@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -85,3 +87,9 @@ def test_measured_pitches_replace_those_of_either_kind() -> None:
     made, _ = measured_case(validated(Case, content), text, "p.csv", Inspected("pinion", "right", None))
     assert len(made.pair.pinion.pitch_deviation_um) == 23
     assert made.pair.pinion.single_pitch_deviation_um == ()
+
+
+def test_a_drawn_case_is_pickled_with_its_parts() -> None:
+    """Workers of a cluster get cases by pickle."""
+    made = drawn_case(helical(), 6, 1)
+    assert pickle.loads(pickle.dumps(made)) == made

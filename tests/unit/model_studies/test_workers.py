@@ -134,8 +134,8 @@ def test_a_single_start_is_divided_and_finds_the_same(
         for workers in (InProcess(), pool)
     )
     for mine, theirs in zip(here.runs, there.runs, strict=True):
-        np.testing.assert_array_equal(theirs.place, mine.place)
-        assert replace(theirs, place=mine.place, cpu_seconds=mine.cpu_seconds) == mine
+        np.testing.assert_array_equal(theirs.coordinates, mine.coordinates)
+        assert replace(theirs, coordinates=mine.coordinates, cpu_seconds=mine.cpu_seconds) == mine
     assert there.optimum.objective == here.optimum.objective
     assert there.sensitivity == here.sensitivity
     files = [sorted((tmp_path / alone).glob("designs-*.bin")) for alone in ("True", "False")]
@@ -395,7 +395,9 @@ class DearWorkers:
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:
-            yield self.cost.add(TaskResult(function(shared, item), DEAR, 0))
+            task = TaskResult(function(shared, item), DEAR, 0)
+            self.cost.add(task)
+            yield task.result
 
 
 def test_searches_by_workers_are_in_the_cost_of_an_optimization() -> None:

@@ -9,12 +9,13 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
+from bounds.error_digits import to_error
 from fe_contact.analysis.flanks.load_distribution import LoadDistribution
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 from lineofaction.gearbox.convert.answers import curve_json, metadata_json
-from lineofaction.report.drawing.figure import Panel, number
+from lineofaction.report.drawing.figure import Panel
 from lineofaction.report.flank.flank import line_load_figure
 from lineofaction.report.pair import iso_mesh_stiffness
 from lineofaction.report.ste.curves import (
@@ -74,7 +75,7 @@ def test_the_ripple_is_drawn_in_micrometers_with_its_mean_in_the_label(database:
         np.testing.assert_array_equal(line.x, position)
         np.testing.assert_allclose(line.y, 1e6 * (ste[:, load] - curve.mean.value), rtol=1e-9)
         offsets.append(mapped.y - line.y)
-        numbers = (number(1e6 * e.value, 3) for e in (curve.mean, curve.peak_to_peak))
+        numbers = (to_error(1e6 * e.value, 1e6 * e.error) for e in (curve.mean, curve.peak_to_peak))
         assert line.label == "{}: mean {} µm,\n{} µm peak to peak".format(line.name, *numbers)
         assert mapped.label == line.name
     steps = np.diff(offsets, axis=0)
@@ -164,8 +165,10 @@ def test_a_single_load_is_drawn_without_a_map(database: SteDatabase) -> None:
         if "force" in axes
     }
     (ripple,) = panels_of(replace(database, **cut))
-    mean = 1e6 * database.mean(force=float(database.force[2])).value
-    assert ripple.lines[0].label.startswith(f"100 N m: mean {number(mean, 3)} µm")
+    mean = database.mean(force=float(database.force[2]))
+    assert ripple.lines[0].label.startswith(
+        f"100 N m: mean {to_error(1e6 * mean.value, 1e6 * mean.error)} µm"
+    )
 
 
 def test_ripple_over_torque_is_that_of_the_curves(database: SteDatabase) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.involute import involute_normal
 from fe_contact.mesh.gear_mesh import real_teeth
-from fe_contact.mesh.quadratic_mesh import QuadraticMesh, quadratic_meshes, rotated
+from fe_contact.mesh.quadratic_mesh import Part, QuadraticMesh, quadratic_meshes, rotated
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.tooth_sector import MIRRORED
 from fe_contact.types import FloatArray, IntArray
@@ -76,13 +76,12 @@ def placed_bodies(
         )
         for number, gear in enumerate(gears)
     ]
-    loops = {
-        f"gear {number}": (boundary.toothed, boundary.seat)[:: gear.sign]
+    scale, growth = pair.pinion.normal_module, resolution.inner_growth
+    parts = [
+        Part(f"gear {number}", (boundary.toothed, boundary.seat)[:: gear.sign], scale, growth)
         for number, (boundary, gear) in enumerate(zip(boundaries, gears, strict=True), start=1)
-    }
-    meshes = quadratic_meshes(
-        loops, pair.pinion.normal_module, resolution.inner_growth, QualityLimits(), SECONDS
-    )
+    ]
+    meshes = quadratic_meshes(parts, QualityLimits(), SECONDS)
     bodies = []
     for number, (gear, mesh) in enumerate(zip(gears, meshes, strict=True)):
         strips = {

@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.material import Material
 from fe_contact.mesh.gear_mesh import real_teeth
-from fe_contact.mesh.quadratic_mesh import quadratic_meshes
+from fe_contact.mesh.quadratic_mesh import Part, quadratic_meshes
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.types import FloatArray, IntArray
 from verification.full_contact.condensation.condensed_body import dissected, mesh_graph
@@ -104,10 +104,9 @@ def meshed_section(
     wanted = {tooth: SizedStrip(low, profile.s_tip, at, sizes) for tooth in loaded}
     teeth = real_teeth(gear.teeth, max(TEETH, len(loaded) + 2))
     boundary = gear_boundary(gear, teeth, wanted, resolution)
-    outlines = {"gear": (boundary.toothed, boundary.seat)}
-    (mesh,) = quadratic_meshes(
-        outlines, gear.normal_module, resolution.inner_growth, QualityLimits(), SECONDS
-    )
+    outlines = boundary.toothed, boundary.seat
+    part = Part("gear", outlines, gear.normal_module, resolution.inner_growth)
+    (mesh,) = quadratic_meshes([part], QualityLimits(), SECONDS)
     strips = {}
     for tooth in loaded:
         nodes, s = mesh.boundary[0][boundary.toothed.positions(f"flank {tooth}")], boundary.s[tooth]

@@ -40,10 +40,11 @@ def check_receiver(scene: SceneInput, receiver: HeardInput) -> None:
         raise BadInput.of("heard.microphone_mm", receiver.microphone_mm, bound)
     if pressure or receiver.quantity == SURFACE_VELOCITY:
         housing_of(scene, receiver)
+    known = [part.name for part in (*scene.bushings, *scene.rolling_bearings, *scene.planet_bearings)]
+    if not known:
+        bound = "at least one bearing: what is heard passes through bearings"
+        raise BadInput.of("scene.bushings", None, bound, "Give it bushings or rolling bearings.")
     if receiver.bearing is not None:
-        known = [part.name for part in scene.bushings]
-        known += [part.name for part in scene.rolling_bearings]
-        known += [part.name for part in scene.planet_bearings]
         _require_named("heard.bearing", receiver.bearing, known)
 
 
@@ -81,4 +82,4 @@ def flank_mesh(scene: SceneInput, mesh: str | None) -> MeshInput:
 
 def _require_named(field: str, name: str, known: list[str]) -> None:
     if name not in known:
-        raise BadInput.of(field, name, f"one of {', '.join(known)}" if known else "left out: there is none")
+        raise BadInput.of(field, name, f"one of {', '.join(known)}")

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.types import FloatArray
 from model_studies import in_unit
@@ -54,7 +55,7 @@ def _banded(levels: FloatArray, below: FloatArray, above: FloatArray) -> FloatAr
 
 @brief
 @dataclass(frozen=True)
-class FlankChange:
+class FlankChange(Plottable):
     """Levels of N pairs with the flanks before and after a change, pair by pair with the same deviations."""
 
     mesh: str

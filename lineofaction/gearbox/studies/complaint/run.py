@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import InputError, SolveError
@@ -89,7 +90,7 @@ class OrderForce:
 
 @brief
 @dataclass(frozen=True)
-class AnsweredComplaint:
+class AnsweredComplaint(Plottable):
     """The answer to a complaint: forces and modes near its order."""
 
     complaint: Complaint

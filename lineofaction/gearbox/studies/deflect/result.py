@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import FloatArray, IntArray, Json
 from dynamics.deflection import Deflection
 from dynamics.effects.ledger import mechanism_of
@@ -105,7 +106,7 @@ class Outline:
 
 @brief
 @dataclass(frozen=True)
-class GearboxDeflection:
+class GearboxDeflection(Plottable):
     """The deflection of a gearbox and the results of its meshes at the deflected alignment."""
 
     deflection: Deflection

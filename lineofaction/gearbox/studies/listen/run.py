@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from dynamics.acoustics import Recording, SoundFigures, sound_figures
 from dynamics.acoustics.sound_quality import is_steady
@@ -127,7 +128,7 @@ class Receiver:
 
 @brief
 @dataclass(frozen=True)
-class HeardRun:
+class HeardRun(Plottable):
     """A run through the housings of a scene."""
 
     run: str

@@ -9,6 +9,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.microgeometry.optimization import Outcome, excess, gain_of, outcome_of
 from fe_contact.microgeometry.search import SearchRun
@@ -70,7 +71,7 @@ class HeardDesign:
 
 @brief
 @dataclass(frozen=True)
-class HeardOptimization:
+class HeardOptimization(Plottable):
     """The start and the optimum of a search for the quietest flanks."""
 
     mesh: str

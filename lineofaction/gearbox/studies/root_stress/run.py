@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.analysis.flanks.root_stress import root_stress, stress_seconds
 from fe_contact.analysis.flanks.root_stress_history import ROOTS, RootPassage, RootPeak, RootStressHistory
@@ -38,7 +39,7 @@ class _GearRoots:
 
 @brief
 @dataclass(frozen=True)
-class Roots:
+class Roots(Plottable):
     """Tooth-root stress of both gears at one load and one alignment, in SI units."""
 
     pinion: _GearRoots

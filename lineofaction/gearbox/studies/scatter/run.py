@@ -1,4 +1,4 @@
-"""Tolerance Monte Carlo of a case."""
+"""Tolerance Monte Carlo of a case: its request, its predicted cost, and what a drawing and a limit mean."""
 
 from __future__ import annotations
 
@@ -36,14 +36,16 @@ from lineofaction.gearbox.studies.cost import StudyCost, Work
 from lineofaction.gearbox.studies.scatter import Drawn, Inputs, ScatterFigures, ToleranceInputs
 from lineofaction.gearbox.units import UM, factor, in_um
 
-_TANGENT, _ADDED = 0.4, 1e-9
-"""CPU time of the tangent about a pair over that of its solution, and CPU seconds to add one deviation at one
-point."""
+_TANGENT = 0.4
+"""CPU time of the tangent about a pair over that of its solution."""
+_ADDED = 1e-9
+"""CPU seconds to add one deviation at one point by a tangent."""
 _DRAWN_TEETH = 2.2
-"""CPU time of a pitch between drawn teeth over the time of a pitch of a table: slopes and forms of drawn
-teeth change the contact.
+"""CPU time of a pitch between teeth with drawn deviations over the time of a pitch of a table. Slopes and
+forms of drawn teeth change the contact.
 
-2.1 and 2.4 of a helical pair 23/67, hobbed, over its revolutions, 2.3 of a spur pair 19/28 in the plane.
+Measured: 2.1 and 2.4 for the revolutions of a hobbed helical pair 23/67, 2.3 for a spur pair 19/28 in the
+plane.
 """
 MAX_SAMPLES = 100_000
 """Most samples of a job: its result holds every pair, 10 to 100 MB."""
@@ -54,6 +56,7 @@ _TOLERATED = {
     for figure in figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
 }
 """Figures of the case file that a drawing may bound, by their names in the library."""
+# mesh order, sign, gear and number of its turns: "2", "mesh 2 - pinion 3", "pinion"
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
@@ -122,7 +125,7 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
 
 
 def scatter_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
-    """Return the pair of a case with its tolerances, the pairs analyzed whole, and the limit."""
+    """Return the study of a case: tolerances, number of pairs solved without tangents, and limit."""
     request = tolerance_request(checked, inputs)
     sampling = replace(request.sampling, exact=inputs.exact)
     limit = None if inputs.limit is None else order_limit(inputs.limit)
@@ -171,7 +174,7 @@ def _population_row(text: str) -> tuple[list[str], list[float]]:
 
 
 def _teeth(checked: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
-    """Return by how much the teeth of a gear of the class differ."""
+    """Return the tolerances of the differences between the teeth of a gear of the class."""
     return iso1328_tooth_tolerances(
         checked.pair,
         gear,
@@ -183,7 +186,7 @@ def _teeth(checked: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
 
 
 def tolerance_request(checked: CheckedCase, inputs: ToleranceInputs) -> ToleranceRequest:
-    """Return the pair of a case with the tolerances of its class; none of helices in the plane."""
+    """Return the pair of a case with the tolerances of its class, in a plane without those of helices."""
     pair, case, load = checked.pair, checked.case, checked.case.load
     tolerances = tolerances_of(pair, inputs, across_face=case.accuracy.model not in PLANE)
     torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
@@ -206,7 +209,7 @@ def tolerances_of(pair: ParallelAxes, inputs: ToleranceInputs, *, across_face: b
 
 
 def _drawing_tolerance(text: str) -> tuple[str, float]:
-    """Return the figure and the tolerance in m that ``GEAR.FIGURE=VALUE`` says."""
+    """Return name and tolerance in m of a flank's figure from ``GEAR.FIGURE=VALUE`` of a drawing."""
     name, _, value = (part.strip() for part in text.partition("="))
     if name not in _TOLERATED:
         raise _unknown_figure("drawing", text, name, "For example pinion.profile_slope_um=4.")
@@ -223,9 +226,9 @@ def _unknown_figure(field: str, text: str, name: str, example: str) -> BadInput:
 
 
 def order_limit(text: str) -> OrderLimit:
-    """Return the limit that ``ORDER=VALUE`` says, with a unit."""
+    """Return the limit that ``ORDER=VALUE`` with a unit states."""
     order, _, value = (part.strip() for part in text.partition("="))
-    number = value.rstrip("µμumndBb ")
+    number = value.rstrip("µμumndBb ")  # without the letters of all units
     unit = value.removeprefix(number).strip()
     named = _ORDER.fullmatch(order)
     if named is None or not (int(named[1] or 0) or named[3]):

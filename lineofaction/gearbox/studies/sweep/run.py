@@ -12,6 +12,7 @@ import numpy as np
 
 from bounds import Kind
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import Json
 from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
@@ -181,7 +182,7 @@ QUANTITIES = {
 
 @brief
 @dataclass(frozen=True)
-class SweepResult:
+class SweepResult(Plottable):
     """A sweep, and the quantities that are shown.
 
     `shown` are names of `QUANTITIES` that the sweep has values of.

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bounds import engineering
+from bounds.plottable import Plottable
 from bounds.types import BoolArray, FloatArray, Json
 from dynamics.vibration import (
     Direction,
@@ -41,7 +42,7 @@ _NO_SHAPE = "Responses from seats to points hold no shapes of modes; a housing b
 
 
 @dataclass(frozen=True)
-class MeasuredHousingVibration:
+class MeasuredHousingVibration(Plottable):
     """Vibration of a measured housing over speed, and through which bearings at one speed and order."""
 
     housing: str

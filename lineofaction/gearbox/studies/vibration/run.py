@@ -12,6 +12,7 @@ import numpy as np
 
 from bounds import engineering
 from bounds.brief import brief
+from bounds.plottable import Plottable
 from bounds.types import FloatArray, Json
 from dynamics.housings import ReducedHousing, write_surface
 from dynamics.vibration import (
@@ -57,7 +58,7 @@ _REMEDY = "Give a housing by step_file, mesh_file, modes_file or frf_file: see d
 
 @brief
 @dataclass(frozen=True)
-class HousingVibrationResult:
+class HousingVibrationResult(Plottable):
     """The analysis, and a mode to draw in place of the operating deflection."""
 
     analysis: VibrationAnalysis

@@ -188,3 +188,21 @@ def test_partial_fractions_are_the_factorized_response(monkeypatch: pytest.Monke
     size = np.max(np.abs(found[1].bearing_force))
     np.testing.assert_allclose(found[0].bearing_force, found[1].bearing_force, rtol=0.0, atol=1e-9 * size)
     assert not np.array_equal(found[0].bearing_force, found[1].bearing_force)
+
+
+def test_the_system_of_the_estimates_is_run_where_nothing_is_decided_otherwise() -> None:
+    scene = helical()
+    sizes = estimate_influences(scene)
+    neglected_check.forget_sizes()
+    loose = decide_effects(replace(scene, level_tolerance=2.1 * sizes["axial"].decibels))
+    assert loose.assembled is not None and loose.automatic
+    alone = assemble(loose.scene)
+    assert loose.system().freedoms.name == alone.freedoms.name != loose.assembled[1].freedoms.name
+    choices = dict.fromkeys(sizes, "off") | {"axial": "on", "lateral": "on"}
+    chosen = replace(scene, effects=choices, level_tolerance=0.1)
+    decision = decide_effects(chosen)
+    assert decision.scene is chosen and decision.assembled is not None
+    assert decision.system() is decision.assembled[1]
+    assert np.array_equal(decision.system().arrays.mass, assemble(chosen).arrays.mass)
+    other = replace(decision, scene=replace(chosen, effects={"axial": "off"}))
+    assert other.system().freedoms.name == alone.freedoms.name

@@ -33,7 +33,7 @@ from fe_contact.compliance import (
 from fe_contact.geometry import FlankModification, Gear
 from fe_contact.geometry.tooth_deviations import RunOut
 from fe_contact.material import Material
-from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe
+from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quadratic_mesh
 from host import lock
 
 
@@ -354,3 +354,32 @@ def test_gears_of_one_shape_cost_the_same_and_are_predicted_once(monkeypatch, tm
     shorter = replace(relieved, tip_diameter=2.0 * gear.tip_radius - 0.2 * gear.normal_module)
     assert predict_cost(shorter, recipe).bytes != plain.bytes
     assert len(built) == 2
+
+
+def test_one_process_meshes_a_pair_and_the_coarse_meshes_that_follow(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is in the cache is not meshed, and all is as each gear has it alone, to the last bit."""
+    gears = [make_gear(20), make_gear(22)]
+    fine = [coarse_plane(gear) for gear in gears]
+    rough = [recipe.refined(0.8) for recipe in fine]
+    alone = [
+        flank_compliance(*each) for recipes in (fine, rough) for each in zip(gears, recipes, strict=True)
+    ]
+    sizes: list[int] = []
+    genuine = quadratic_mesh.ask_gmsh
+
+    def counted(request: dict[str, Any], *rest: Any) -> dict[str, Any]:
+        sizes.append(len(request["regions"]))
+        return genuine(request, *rest)
+
+    monkeypatch.setattr(quadratic_mesh, "ask_gmsh", counted)
+    flow.flank_compliance(gears[0], fine[0], cache=tmp_path)
+    sizes.clear()
+    together = [
+        *flow.flank_compliances(gears, fine, cache=tmp_path, later=rough),
+        *flow.flank_compliances(gears, rough, cache=tmp_path),
+    ]
+    assert sizes == [3]
+    untimed = [replace(compliance, seconds={}) for compliance in together]
+    assert all(map(same, untimed, (replace(compliance, seconds={}) for compliance in alone)))

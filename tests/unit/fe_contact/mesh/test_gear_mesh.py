@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
 
+from fe_contact.errors import MeshError
 from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
-from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear, mesh_quality
+from fe_contact.mesh import GearMesh, MeshRecipe, gear_mesh, mesh_gear, mesh_quality, quadratic_mesh
 from fe_contact.mesh.quadratic_mesh import rotated
+from fe_contact.types import Json
 
 GearAndMesh = tuple[Toothing, GearMesh]
 
@@ -138,6 +141,45 @@ def test_a_gear_with_fewer_teeth_than_wanted_has_all_of_them() -> None:
     gear = Gear(teeth=6, normal_module=4e-3, face_width=25e-3, bore_diameter=6e-3, tip_diameter=29e-3)
     mesh = mesh_gear(gear)
     assert mesh.teeth.tolist() == [-2, -1, 0, 1, 2, 3]
+
+
+def test_sectors_meshed_ahead_are_those_of_each_gear_to_the_last_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four meshes of two gears from one process of gmsh; each is taken once."""
+    gears = [Gear(teeth=z, normal_module=4e-3, face_width=25e-3, bore_diameter=2e-3 * z) for z in (20, 31)]
+    levels = [(gear, MeshRecipe.standard(gear).refined(factor)) for gear in gears for factor in (1.0, 0.6)]
+    singly = [mesh_gear(*level) for level in levels]
+    processes: list[object] = []
+    genuine = quadratic_mesh.ask_gmsh
+
+    def counted(request: Json, *rest: Any) -> Json:
+        processes.append(request)
+        return genuine(request, *rest)
+
+    monkeypatch.setattr(quadratic_mesh, "ask_gmsh", counted)
+    gear_mesh.mesh_ahead(levels)
+    for level, alone in zip(levels, singly, strict=True):
+        mesh = mesh_gear(*level)
+        assert np.array_equal(mesh.points, alone.points)
+        assert np.array_equal(mesh.triangles, alone.triangles)
+    assert len(processes) == 1
+    mesh_gear(*levels[0])
+    assert len(processes) == 2
+
+
+def test_sections_that_no_mesh_is_made_of_ahead_are_left_to_gears(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(*_: object) -> Json:
+        raise MeshError("no mesh")
+
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    recipe = MeshRecipe.standard(gear)
+    with monkeypatch.context() as patch:
+        patch.setattr(quadratic_mesh, "ask_gmsh", refused)
+        gear_mesh.mesh_ahead([(gear, recipe), (gear, recipe.refined(0.6))])
+        with pytest.raises(MeshError, match="no mesh"):
+            mesh_gear(gear, recipe)
+    assert len(mesh_gear(gear, recipe).triangles)
 
 
 @pytest.mark.parametrize("level", [0.5, 0.6, 0.7, 1.0])

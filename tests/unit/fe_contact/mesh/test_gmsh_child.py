@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -46,11 +47,11 @@ def polygon_area(loop: np.ndarray) -> float:
 
 
 def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
-    (mesh,) = triangulate([RING], 1.0)
+    (mesh,) = triangulate([RING])
     areas = area(mesh.points, mesh.triangles)
     assert areas.min() > 0.0
     assert areas.sum() == pytest.approx(sum(polygon_area(loop) for loop in RING.loops), rel=1e-12)
-    (mesh,) = triangulate([RING], 1e-3)
+    (mesh,) = triangulate([replace(RING, scale=1e-3)])
     given = np.concatenate(RING.loops)
     assert np.array_equal(mesh.points[: len(given)], given)
     edges = {tuple(sorted(e)) for t in mesh.triangles for e in zip(t, np.roll(t, 1), strict=True)}
@@ -59,21 +60,21 @@ def test_fills_the_polygon_and_keeps_its_points_bit_for_bit() -> None:
 
 @pytest.mark.law
 def test_is_deterministic_and_free_of_scale() -> None:
-    first, again = (triangulate([RING, SQUARE], 1.0)[0] for _ in range(2))
+    first, again = triangulate([RING, SQUARE])[0], triangulate([SQUARE, RING])[1]
     assert np.array_equal(first.points, again.points)
     assert np.array_equal(first.triangles, again.triangles)
-    large = Region(tuple(1024.0 * loop for loop in RING.loops))
-    (scaled,) = triangulate([large], 1024.0)
+    large = Region(tuple(1024.0 * loop for loop in RING.loops), scale=1024.0)
+    (scaled,) = triangulate([large])
     assert np.array_equal(scaled.triangles, first.triangles)
     assert scaled.points == pytest.approx(1024.0 * first.points, rel=1e-14)
 
 
 def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned() -> None:
     square = np.concatenate([np.linspace(a, b, 40, endpoint=False) for a, b in SQUARE_SIDES])
-    slow, fast = (len(triangulate([Region((square,))], 1.0, growth=g)[0].triangles) for g in (0.05, 0.5))
+    slow, fast = (len(triangulate([Region((square,), growth=g)])[0].triangles) for g in (0.05, 0.5))
     assert fast < 0.6 * slow
     code = """print('{"regions": [{"points": [[0,0],[1,0],[1,1],[0,1]], "triangles": [[0,2,1],[0,2,3]]}]}')"""
-    (mesh,) = triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
+    (mesh,) = triangulate([SQUARE], command=(sys.executable, "-c", code))
     assert area(mesh.points, mesh.triangles) == pytest.approx([0.5, 0.5])
 
 
@@ -94,17 +95,17 @@ def test_growth_thins_the_interior_out_and_clockwise_triangles_are_turned() -> N
 )
 def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code: str, complaint: str) -> None:
     with pytest.raises(MeshError, match=complaint):
-        triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
+        triangulate([SQUARE], command=(sys.executable, "-c", code))
 
 
 def test_a_child_that_hangs_is_missing_or_refuses_is_a_mesh_error(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match=r"no answer within 0\.2 s"):
-        triangulate([SQUARE], 1.0, seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)"))
+        triangulate([SQUARE], seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)"))
     with pytest.raises(MeshError, match="cannot be started"):
-        triangulate([SQUARE], 1.0, command=(str(tmp_path / "absent"),))
+        triangulate([SQUARE], command=(str(tmp_path / "absent"),))
     crossed = Region((np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),))
     with pytest.raises(MeshError, match="gmsh"):
-        triangulate([crossed], 1.0)
+        triangulate([crossed])
 
 
 def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
@@ -129,7 +130,7 @@ def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
 def test_the_worker_finds_its_modules_where_a_hook_alone_finds_them(monkeypatch: pytest.MonkeyPatch) -> None:
     paths = [path for path in sys.path if path and Path(path).resolve() != WORKER.parents[2]]
     monkeypatch.setattr(sys, "path", paths)
-    (mesh,) = triangulate([SQUARE], 1.0)
+    (mesh,) = triangulate([SQUARE])
     assert len(mesh.triangles)
 
 

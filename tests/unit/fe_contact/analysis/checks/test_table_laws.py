@@ -19,6 +19,7 @@ from fe_contact.analysis.checks.table_laws import check_laws, require_laws
 from fe_contact.analysis.database import compute_database
 from fe_contact.analysis.request.request_check import check_request
 from fe_contact.analysis.tables import SolvedTable, solve_table
+from fe_contact.contact import solve_contact
 from fe_contact.errors import SolveError
 from fe_contact.geometry import PitchDeviation
 from fe_contact.options import Run
@@ -235,3 +236,20 @@ def test_a_jump_to_the_next_crest_is_no_more_than_its_curvature_makes_it(cache: 
     curve = run.table.static_transmission_error[:, 0, 0, 0]
     assert np.abs(np.diff(curve)).max() > 20e-9  # there is a jump, at nodes 0.1 mm apart
     assert 20e-9 < steps.max() < 0.3e-6
+
+
+def test_a_contact_at_the_edge_of_flanks_that_open_never_softens(cache: Path) -> None:
+    """Hollow flanks touch at the edge of the mate where plain flanks touch inside."""
+    hollow = tuple(ToothFlank(tooth=t, profile_form=-3e-6 * (t % 5)) for t in range(2, 21))
+    pair = GearPair(replace(GEAR, tooth_flanks=hollow), GEAR)
+    made = solved(pair, cache, torques=[100.0], level="draft", positions=256)
+    point, position = made.places.places[0], made.solved[0][0].candidates.position
+    problem = point.contact.problem(point.model, position, np.repeat(np.arange(20), position.size))
+    touch, load = problem.candidates.touch, np.geomspace(0.01, 1.0, 8)
+    solution = solve_contact(problem, load)
+    alone = (solution.force > 0.0).sum(axis=(1, 2)) == load.size
+    opening = (touch.slope != 0.0) & (touch.lever_1 == 1.0) & (touch.lever_2 == 1.0)
+    at_edge = ((solution.force[:, -1] > 0.0) & opening).any(axis=1)
+    tangent = solution.tangent[alone & at_edge]
+    assert len(tangent) > 0
+    assert np.all(np.diff(tangent, axis=1) < 1e-9 * tangent[:, 1:])

@@ -120,13 +120,13 @@ def test_the_mesh_is_the_cheapest_that_nine_runs_of_ten_keep():
     levels = [decision(quiet_pair(), tolerance=AllowedError(t, 0.0), **request) for t in (0.2, 0.1, 0.05)]
     errors = [choice.mesh.option.error for choice in levels]
     for error, tolerance in zip(errors, (0.2, 0.1, 0.05), strict=True):
-        assert error.prudent == pytest.approx(error.bought * math.exp(NINE_OF_TEN * error.scatter))
+        assert error.prudent == pytest.approx(error.reducible * math.exp(NINE_OF_TEN * error.scatter))
         assert error.prudent <= tolerance
     draft = decision(quiet_pair(), level="draft", **request).mesh.option.error
-    doubtful = decision(quiet_pair(), tolerance=AllowedError(1.1 * draft.bought, 0.0), **request)
+    doubtful = decision(quiet_pair(), tolerance=AllowedError(1.1 * draft.reducible, 0.0), **request)
     sure = decision(quiet_pair(), tolerance=AllowedError(1.1 * draft.prudent, 0.0), **request)
     assert (doubtful.mesh.level, sure.mesh.level) == ("medium", "draft")
-    assert draft.probability(draft.bought) == pytest.approx(0.5)
+    assert draft.probability(draft.reducible) == pytest.approx(0.5)
     assert draft.probability(draft.prudent) == pytest.approx(0.9, abs=1e-3)
     assert "in 94 % of runs; others take a second pass, mesh standard at most" in sure.mesh.reason
 

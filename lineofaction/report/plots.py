@@ -1,0 +1,99 @@
+"""Plots of a result by one call: the figures of its report on axes of matplotlib, or by plotly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from io import BytesIO
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from dynamics.results import RunResult
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.problems import BadInput
+from lineofaction.report.document import study_of
+from lineofaction.report.drawing.figure import Figure
+from lineofaction.report.drawing.image import draw_figure, draw_panels, drawable, png
+from lineofaction.report.drawing.interactive import plotly_figure
+from lineofaction.report.drawing.page import Section
+from lineofaction.report.drawing.placing import rewritten
+from lineofaction.report.presentation import presentation_of
+from lineofaction.report.run.page import dynamic_results
+from lineofaction.report.run.view import RunView
+from lineofaction.report.ste.page import static_results
+
+_SYNONYMS = {"harmonics": "spectrum", "orders": "spectrum"}
+"""Words of the trade for words in names of figures."""
+
+
+def plot(result: Any, view: str = "", *, axes: Any = None, interactive: bool = False) -> Any:
+    """Draw a figure of a result's report; see `Plottable.plot`.
+
+    Raises `BadInput`: no figure has this name, or there are not as many axes as panels.
+    """
+    figure = _named(figures_of(result), view)
+    if interactive:
+        return _plotly(figure)
+    if figure.picture is not None:
+        return _picture(figure, axes)
+    if axes is None:
+        return np.array(draw_figure(plt.figure(layout="constrained"), figure), dtype=object)
+    panels = rewritten(figure.content, drawable)
+    given = _given(axes, len(panels))
+    handles = draw_panels(panels, given, range(len(panels)))
+    if len(handles) > 1:
+        given[-1].legend(handles.values(), handles.keys(), frameon=False, fontsize=9)
+    return np.array(given, dtype=object)
+
+
+def figures_of(result: Any) -> tuple[Figure, ...]:
+    """Return the figures of the report on a result, the main one first."""
+    if isinstance(result, SteDatabase):
+        figures = _in_sections(static_results(result))
+        return tuple(sorted(figures, key=lambda figure: figure.key != "ste"))
+    if isinstance(result, RunResult):
+        return _in_sections(dynamic_results(result, RunView()))
+    presentation = presentation_of(study_of(result))
+    first, others = presentation.figure(result), _in_sections(presentation.page(result).sections)
+    return (first, *(figure for figure in others if figure.key != first.key))
+
+
+def _in_sections(sections: Sequence[Section]) -> tuple[Figure, ...]:
+    return tuple(figure for section in sections for figure in section.figures)
+
+
+def _named(figures: Sequence[Figure], view: str) -> Figure:
+    """Return the figure of a name; else the first whose name or title has all words of the view."""
+    if not view:
+        return figures[0]
+    exact = [figure for figure in figures if figure.key == view]
+    words = [_SYNONYMS.get(word, word) for word in view.lower().split()]
+    alike = [f for f in figures if all(word in f"{f.key} {f.title}".lower() for word in words)]
+    if not (exact or alike):
+        names = ", ".join(figure.key for figure in figures)
+        raise BadInput.of("view", view, f"words of one of {names}")
+    return (exact or alike)[0]
+
+
+def _given(axes: Any, panels: int) -> list[Axes]:
+    given = list(np.atleast_1d(np.asarray(axes, dtype=object)).ravel())
+    if len(given) != panels:
+        raise BadInput.of("axes", len(given), f"exactly {panels}, one for each panel of the figure")
+    return given
+
+
+def _plotly(figure: Figure) -> Any:
+    from plotly import graph_objects  # noqa: PLC0415 (a second of imports)
+
+    return graph_objects.Figure(plotly_figure(figure))
+
+
+def _picture(figure: Figure, axes: Any) -> Any:
+    """Show a figure that is a picture as an image."""
+    (ax,) = [plt.figure(layout="constrained").add_subplot()] if axes is None else _given(axes, 1)
+    ax.imshow(plt.imread(BytesIO(png(figure)), format="png"))
+    ax.set_axis_off()
+    ax.set_title(figure.title, loc="left", fontsize=10, fontweight="bold")
+    return np.array([ax], dtype=object)

@@ -1,0 +1,82 @@
+"""Plots by one call: figures of the report on axes, on axes of the caller, by plotly."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, get_args, get_origin
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import lineofaction as loa
+from bounds.plottable import Plottable
+from dynamics.results import RunResult
+from fe_contact.ste import SteDatabase
+from lineofaction.gearbox.registry import STUDIES
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+@pytest.fixture(autouse=True)
+def without_a_screen() -> Iterator[None]:
+    with plt.rc_context():
+        plt.switch_backend("Agg")
+        yield
+        plt.close("all")
+
+
+def _kinds(result: Any) -> tuple[Any, ...]:
+    if get_origin(result) is tuple:
+        return ()  # several results of one study: loa.plot draws them
+    return get_args(result) or (result,)
+
+
+@pytest.mark.parametrize("study", STUDIES.values(), ids=STUDIES)
+def test_every_result_of_a_study_has_plots(study: Any) -> None:
+    for kind in _kinds(study.run.file.result):
+        assert issubclass(get_origin(kind) or kind, Plottable), kind
+
+
+def test_the_first_plot_of_a_table_is_its_curve(database: SteDatabase) -> None:
+    ripple, harris = database.plot()
+    assert ripple.get_ylabel() == "STE less its mean, µm"
+    drawn = max(np.ptp(np.asarray(line.get_ydata())) for line in ripple.get_lines())
+    ste = 1e6 * database.static_transmission_error[:, :, 0, 0]
+    assert drawn == pytest.approx(np.ptp(ste, axis=0).max(), rel=0.01)
+    assert harris.get_title(loc="left") == "Harris map"
+
+
+def test_a_figure_is_found_by_words_of_its_name(database: SteDatabase, run: RunResult) -> None:
+    assert database.plot("harmonics")[0].get_ylabel().startswith("amplitude")
+    assert database.plot("load sharing")[0].get_ylabel().startswith("normal force on a pair")
+    assert run.plot()[-1].get_ylabel() == "transmission error, µm"
+    with pytest.raises(loa.BadInput, match="view = 'no such': must be words of one of ste, "):
+        database.plot("no such")
+
+
+def test_panels_are_drawn_on_the_axes_of_the_caller(database: SteDatabase) -> None:
+    _, axes = plt.subplots(2, 1)
+    assert list(database.plot(axes=axes)) == list(axes)
+    assert all(ax.get_lines() for ax in axes)
+    with pytest.raises(loa.BadInput, match="axes = 1: must be exactly 2"):
+        database.plot(axes=axes[0])
+
+
+def test_an_interactive_plot_has_the_curves_of_the_figure(database: SteDatabase) -> None:
+    drawn = database.plot(interactive=True)
+    assert {"x", "y"} <= set(drawn.data[0].to_plotly_json())
+    assert len(drawn.data) >= len(database.plot()[0].get_lines())
+
+
+def test_a_result_of_a_study_draws_the_figure_of_its_verb() -> None:
+    result = loa.modes(EXAMPLES / "jeffcott_scene.toml")
+    assert result.plot()[0].figure.get_suptitle() == loa.plot(result)[0].figure.get_suptitle() != ""
+
+
+def test_a_library_alone_says_what_draws(database: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(sys.modules, "lineofaction")
+    with pytest.raises(ImportError, match="import lineofaction"):
+        database.plot()
