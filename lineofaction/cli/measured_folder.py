@@ -26,8 +26,8 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.units import UM
 
-_OF_A_CASE = ("profile_slope", "profile_form", "helix_slope", "helix_form")
-"""Traits that are figures of the flanks in a case."""
+_OF_A_CASE = {"profile_slope": -1, "profile_form": 1, "helix_slope": -1, "helix_form": 1}
+"""Sign of traits as figures of the flanks in a case: a slope removes where a deviation is in excess."""
 _PITCH = ("mean", "largest")
 """Figures of a pitch deviation."""
 _SIGNIFICANT = 2.0
@@ -118,10 +118,11 @@ def _rows(people: Population, gear: str) -> Iterator[str]:
     names = [name for name in people.names if name in _OF_A_CASE]
     at = [people.names.index(name) for name in names]
     for name, k in zip(names, at, strict=True):
-        yield f"{gear}.{name}_um={people.mean[k] / UM:.3f}/{np.sqrt(people.between[k, k]) / UM:.3f}"
+        mean, spread = _OF_A_CASE[name] * people.mean[k] / UM, np.sqrt(people.between[k, k]) / UM
+        yield f"{gear}.{name}_um={mean:.3f}/{spread:.3f}"
     for i, one in enumerate(names):
         for j, other in list(enumerate(names))[:i]:
-            correlation = people.correlation[at[i], at[j]]
+            correlation = _OF_A_CASE[one] * _OF_A_CASE[other] * people.correlation[at[i], at[j]]
             if abs(correlation) > _SIGNIFICANT / np.sqrt(len(people.gears) - 1.0):
                 yield f"{gear}.{other}_um*{gear}.{one}_um={correlation:.2f}"
 
