@@ -1,0 +1,1 @@
+"""What validation cases compute that no single function or verb answers."""
