@@ -116,8 +116,6 @@ class Listing:
         return float(specific_sliding(self.upper, self.rolls[end][0])[gear])
 
 
-# The quantities: numbers in mm, degrees or 1, of both gears or of the pair.
-
 Values = Callable[[Listing], Sequence[float]]
 
 
@@ -226,4 +224,4 @@ QUANTITIES: dict[str, Values] = {
     "j_n change A_Ae": lambda listing: [(listing.wider.normal_backlash - listing.upper.normal_backlash) / MM],
     "x_E": _of_gears(lambda gear: gear.generating_shift_coefficient),
 }
-"""By the symbol of the listing."""
+"""Quantities by the symbol of the listing, in mm, degrees or 1."""
