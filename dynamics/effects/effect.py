@@ -1,7 +1,7 @@
-"""An effect of the multibody model: its facts, its decision and its contribution where it is on.
+"""An effect of the multibody model: its properties, its decision and its contribution where it is on.
 
-An effect is one file: a class of a rotor or of a mesh and a line in the registry. The rest of the model knows
-none by name; what an effect does not contribute, the class it derives from leaves as it is.
+An effect is a class in a file of its own, derived from `RotorEffect` or `MeshEffect`, and a line in the
+registry. The rest of the model knows no effect by name. The methods of the base classes contribute nothing.
 """
 
 from __future__ import annotations
@@ -22,11 +22,12 @@ from dynamics.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a rotor or a mesh calls for an effect."""
+    """The decision on an effect in one rotor or mesh."""
 
     on: bool
+    """Whether the rotor or mesh calls for the effect."""
     possible: bool
-    """False: the scene has no such freedom or data, and requesting it changes nothing."""
+    """False: the scene lacks the freedoms or data, and a request for the effect changes nothing."""
     reason: str
     """Reason for the verdict, in words."""
     influence: float
@@ -41,22 +42,22 @@ class Effect:
     cost: ClassVar[str]
     """Cost of the effect, in words."""
     adds: ClassVar[tuple[str, ...]] = ()
-    """Additions of the effect to the model: names of `FREEDOMS` that a rotor gets, names of `additions`."""
+    """Additions of the effect to the model: names of `FREEDOMS` of a rotor, or of the module `additions`."""
     linear: ClassVar[bool] = True
-    """Whether linear theory estimates the influence of the effect; False for effects on impacts, of which it
-    knows nothing.
+    """Whether linear theory estimates the influence of the effect; False for effects on impacts, which it
+    does not have.
     """
     at_rest: ClassVar[bool | None] = None
-    """Whether static deflections follow it. True: wherever the scene has what it needs; False: never, it is
-    one of motion; None: where the scene calls for it, as in a run.
+    """Whether static deflections include the effect. True: in every scene that has the data; False: never,
+    because it acts in motion only; None: where it is on, as in a run.
     """
     compulsory: ClassVar[bool] = False
-    """Whether there are scenes that need the effect, whatever they choose."""
+    """Whether some scenes need the effect even if they switch it off."""
 
     def prepared(self, scene: Scene) -> Scene:
-        """Return `scene` with the changes that the effect, unless it is switched off, makes to its parts.
+        """Return `scene` with the changes of its parts by the effect, which is not switched off.
 
-        Raises `InputError`.
+        Raises `InputError`: the scene does not fit the effect.
         """
         return scene
 
@@ -65,10 +66,7 @@ class Effect:
         return scene
 
     def check(self, mechanism: Mechanism) -> None:
-        """Refuse a mechanism that the effect, if it is not switched off, cannot do with.
-
-        Raises `InputError`.
-        """
+        """Raise `InputError` for a mechanism that the effect, if not switched off, cannot be applied to."""
 
 
 class RotorEffect(Effect):
@@ -83,7 +81,7 @@ class RotorEffect(Effect):
         return [self.called_for(rotor) for rotor in rotors]
 
     def extend(self, mechanism: Mechanism, decision: Sequence[Verdict | None]) -> Mechanism:
-        """Return `mechanism` with what the effect adds to its rotors; verdicts of those where it is on."""
+        """Return `mechanism` with the additions to its rotors; `decision` is None where the effect is off."""
         return mechanism
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
@@ -103,7 +101,7 @@ class MeshEffect(Effect):
         return [self.called_for(mesh) for mesh in meshes]
 
     def extend(self, flanks: Flanks, meshes: Sequence[GearMesh], on: Sequence[int]) -> Flanks:
-        """Return `flanks` with those that the effect adds to the meshes `on`."""
+        """Return `flanks` with further flanks of the meshes `on`, by index."""
         return flanks
 
     def contribute(self, terms: FlankTerms, flank: FlankInSpace) -> FlankTerms:

@@ -30,9 +30,11 @@ RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 MILLIMETER = 1e-3  # meters per unit of gmsh's models
 ELEMENTS_A_TURN = 12  # elements around a full turn of curvature
 DRAWN_A_TURN, DRAWN_ELEMENTS, DRAWN_SMALLEST = 16, 40, 400
-"""Elements of a drawn surface: around a full turn of curvature; across the body at least where it is flat,
-and at most where it is curved.
+"""Elements of a drawn surface around a full turn of curvature; least number of elements across the body where
+it is flat; largest number across the body where it is curved.
 """
+EDGE_POINTS = 17
+"""Points along an edge of a hollow face, of which the ends of the face are found."""
 FRONTAL_DELAUNAY = 6  # number of the algorithm in gmsh
 WORST = 0.05
 """Quality of a tetrahedron (its inverse condition number, 1 if it is regular) below which a mesh is made
@@ -68,7 +70,7 @@ def _start_gmsh() -> Any:
 
 
 def step_answer(request: dict[str, Any]) -> dict[str, Any]:
-    """Mesh the one solid of a file, measure it or draw it; raises MemoryError, or Exception by gmsh."""
+    """Mesh, measure or draw the one solid of a file; raises MemoryError, or the bare Exception of gmsh."""
     gmsh = _start_gmsh()
     gmsh.clear()  # the model of an earlier file in the same process
     try:
@@ -84,7 +86,7 @@ def step_answer(request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _meshed(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
-    """Write the mesh of a solid, in mm."""
+    """Write the mesh of a solid, in mm; return the largest element size, m."""
     size = request["size"] or MILLIMETER * _wall_thickness(gmsh, solid) / request["wall_elements"]
     gmsh.option.setNumber("Mesh.MeshSizeMax", size / MILLIMETER)
     gmsh.model.addPhysicalGroup(3, [solid])  # only its elements are written
@@ -103,7 +105,7 @@ def _meshed(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
 
 
 def _drawn(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
-    """Return triangles between points of the surface, m; more than wanted where it has many small faces.
+    """Return triangles between points of the surface, m; more than requested if it has many small faces.
 
     Equilateral triangles with edge h that cover the area S are 4 S/(sqrt(3) h^2).
     """
@@ -119,7 +121,7 @@ def _drawn(gmsh: Any, solid: int, request: dict[str, Any]) -> dict[str, Any]:
     except Exception:  # noqa: BLE001 - its text may hold what is in the file
         return {"error": "gmsh does not mesh its faces"}
     tags, points, _ = gmsh.model.mesh.getNodes()
-    number = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
+    number = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)  # row of a point by gmsh's tag
     number[tags] = np.arange(len(tags))
     _, _, nodes = gmsh.model.mesh.getElements(2)
     facets = [number[part].reshape(-1, 3).tolist() for part in nodes]
@@ -170,7 +172,8 @@ def _samples(gmsh: Any, face: int) -> tuple[Any, Any]:
 def _wall(gmsh: Any, face: int) -> tuple[Any, Any, float, float, float] | None:
     """Return a point on the axis of a cylinder, its axis, its radius and the ends of the face; None: a boss.
 
-    Normals n at points p of a cylinder of radius r about c are (p - c)/r, into a bore -(p - c)/r.
+    At points p of a boss of radius r about c the outward normals n are (p - c)/r, of a bore -(p - c)/r. So
+    two points give p_1 - p_2 = +-r (n_1 - n_2), with the sign of a boss or a bore.
     """
     (first, second), (n, m) = _samples(gmsh, face)
     radius = float((first - second) @ (n - m) / ((n - m) @ (n - m)))
@@ -190,7 +193,7 @@ def _curves(gmsh: Any, face: int) -> list[int]:
 def _edge(gmsh: Any, curve: int) -> Any:
     """Return points along a curve, mm."""
     (low,), (high,) = gmsh.model.getParametrizationBounds(1, curve)
-    return np.reshape(gmsh.model.getValue(1, curve, np.linspace(low, high, 17).tolist()), (-1, 3))
+    return np.reshape(gmsh.model.getValue(1, curve, np.linspace(low, high, EDGE_POINTS).tolist()), (-1, 3))
 
 
 def _main() -> None:

@@ -24,11 +24,13 @@ from dynamics.mechanism.additions import SPEED_DEPENDENCE
 from dynamics.types import ComplexArray, FloatArray
 
 COMPARED = 5
-"""Mesh orders of bearing forces that are compared."""
+"""Mesh orders of bearing forces that are compared, 1 to this."""
 MODES, MET = 4, 3
-"""Numbers of modes and mesh orders, at whose crossings a response is computed on a run-up."""
+"""Number of modes, and of mesh orders, at whose crossings the response of a run-up is computed."""
 POSITIONS = 128
-"""Per base pitch at which tables are read."""
+"""Positions in a base pitch at which tables are read."""
+ON_ORDER = 1e-9
+"""Largest difference of a computed order from a whole one, which is rounding."""
 
 
 @dataclass(frozen=True)
@@ -47,19 +49,18 @@ class LinearFigures:
     directions, N. Shape (b, 5).
     """
     bearing_loads: FloatArray
-    """Largest amplitudes that loads excite at other orders, root of the sum of squares, N. Shape (b,).
-    """
+    """Largest amplitudes by loads at orders other than 1 to 5, root of the sum of squares, N. Shape (b,)."""
     parted: FloatArray
-    """Largest tensile displacement of a linear mesh where flanks part, m; 0 where all stay pressed. Shape
-    (m,).
+    """Largest tensile displacement of a linear mesh, where real flanks part, m; 0 if all stay in contact.
+    Shape (m,).
     """
     freedoms: int
     rows: int
     """`freedoms`, `rows`: Size of the system: freedoms, and local coordinates of its force elements."""
     coasting: bool
-    """Whether a mesh has its coast flank."""
+    """Whether the model has the coast flank of any mesh."""
     lines: Lines = field(default_factory=dict)
-    """Lines, by order up to 10, of the quantity for which the scene is computed, as far as a run states them.
+    """Squares, by order up to 10, of the quantity for which the scene is computed, as far as a run has them.
     """
 
     @property
@@ -73,7 +74,7 @@ def linear_figures(
 ) -> LinearFigures:
     """Return the figures of `system` over the operating conditions of its run.
 
-    With stiffness that varies with position, or with its mean.
+    The stiffness varies with position if `varying`, else it is its mean.
 
     Raises
     ------
@@ -105,6 +106,7 @@ def linear_figures(
         compared = harmonics.order <= FEWER
         lines = loudest_lines(harmonics.order[compared], quantity.squares(harmonics)[:, compared], lines)
         pull = np.maximum(-np.min(harmonics.least_mesh_force, axis=1), 0.0)
+        # 1e-300: a mesh without load may have no stiffness
         parted = np.maximum(parted, pull / np.maximum(harmonics.mean_stiffness, 1e-300))
     size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
     forces = np.sqrt(np.sum(amplitude**2, axis=1))
@@ -113,9 +115,10 @@ def linear_figures(
 
 
 def _resonances(at: Excited) -> FloatArray:
-    """Return the speeds of the leading law at which low mesh orders or loads meet modes.
+    """Return the speeds of the leading law at which low mesh orders or loads excite the main modes.
 
-    These are the modes of the largest (gradient^2/(stiffness 2 damping ratio)) along any line of action.
+    The main modes have the largest phi^2/(2 zeta k): phi is the motion of a mode along a line of action, zeta
+    its damping ratio, and k its stiffness, omega^2 for a modal mass of 1.
     """
     modes = natural_modes(at.linear)
     along = modes.shape @ at.system.arrays.direction[at.system.driving_rows].T
@@ -130,7 +133,7 @@ def _resonances(at: Excited) -> FloatArray:
 
 
 def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResponse) -> FloatArray:
-    """Return the forces on every bearing that loads alone excite, (b,) N."""
+    """Return the force on every bearing at orders that only loads excite, (b,) N."""
     multiples = load_multiples(at.system, at.period, float(condition.speed[-1]), at.time)
     counted = np.arange(1, COMPARED + 1) * at.period.counted
     load_lines = np.isin(np.rint(response.order * at.period.counted), np.setdiff1d(multiples, counted))
@@ -139,10 +142,10 @@ def _by_loads(at: Excited, condition: OperatingCondition, response: HarmonicResp
 
 
 def _low_orders(amplitude: ComplexArray, response: HarmonicResponse) -> FloatArray:
-    """Return the largest amplitude (..., 5) over the speeds of mesh orders 1 to 5 of (..., S, H)."""
+    """Return the largest amplitudes (..., 5) over S speeds at mesh orders 1 to 5 of harmonics (..., S, H)."""
     largest = np.zeros((*amplitude.shape[:-2], COMPARED))
     for k in range(COMPARED):
-        at = np.flatnonzero(np.abs(response.order - (k + 1)) < 1e-9)
-        if at.size:
-            largest[..., k] = np.max(np.abs(amplitude[..., at[0]]), axis=-1)
+        column = np.flatnonzero(np.abs(response.order - (k + 1)) < ON_ORDER)
+        if column.size:
+            largest[..., k] = np.max(np.abs(amplitude[..., column[0]]), axis=-1)
     return largest

@@ -1,4 +1,9 @@
-"""Compiled step of the L-stable, singly diagonally implicit method of order 4."""
+"""Compiled step of the L-stable, singly diagonally implicit method of order 4.
+
+A *level* is the index of a step size, for which matrices are factorized once. Force elements have *local*
+coordinates and forces f; Newton's method solves for these alone. The *free* motion of a stage is that without
+local forces, which the linear equations give. *Modal* freedoms have diagonal matrices.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +43,8 @@ STAGE_COUNT = 6  # stages of the method, the first explicit
 def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: float, audit: bool) -> bool:
     """Try one step from the state in `work`; return whether Newton's method converged in every stage.
 
-    Fills q_new, v_new, a_new, the error estimates and, if `audit`, the powers. `tolerance` in N is Newton's.
+    Writes q_new, v_new, a_new, the error estimates and, if `audit`, the powers. Newton's method iterates to
+    `tolerance`, N.
     """
     if not work.ready[level]:
         prepare_level(system, work, level, IMPLICIT_DIAGONAL)
@@ -61,10 +67,10 @@ def implicit_step(system: SystemArrays, work: Workspace, level: int, tolerance: 
 
 @routine
 def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, tolerance: float) -> int:
-    """Solve one stage for its acceleration.
+    """Solve one stage for its acceleration a; return the iterations of Newton's method, < 0 if it failed.
 
-    With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q*
-    hold what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - G^T f.
+    With s = diagonal * step the stage has v = v* + s a and q = q* + s v* + s^2 a, where v* and q* are the
+    contributions of earlier stages, and (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - G^T f.
     """
     step, size = work.step_sizes[level], work.q.size
     span = IMPLICIT_DIAGONAL * step
@@ -82,7 +88,7 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     for i in range(size):
         v[i] += span * linear[i]
         q[i] += span * span * linear[i]
-        work.external[i] = 0.0  # it has done its part
+        work.external[i] = 0.0  # from here on it takes the local forces alone
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
     if has_unbalance(system.elements):
         set_acceleration(system, work.motion, linear, work.free_acceleration)
@@ -91,18 +97,18 @@ def solve_stage(system: SystemArrays, work: Workspace, level: int, stage: int, t
     apply_linear(work)
     subtract_columns(sparse.bodies, work.force, work.external)
     subtract_modal_forces(sparse.modal, work.force, work.external)
-    pushed = work.stage_a[stage]
-    _accelerate(system, work, level, pushed)
+    by_local_forces = work.stage_a[stage]
+    _accelerate(system, work, level, by_local_forces)
     for i in range(size):
-        q[i] += span * span * pushed[i]
-        v[i] += span * pushed[i]
-        work.stage_a[stage, i], work.stage_v[stage, i] = linear[i] + pushed[i], v[i]
+        q[i] += span * span * by_local_forces[i]
+        v[i] += span * by_local_forces[i]
+        work.stage_a[stage, i], work.stage_v[stage, i] = linear[i] + by_local_forces[i], v[i]
     return iterations
 
 
 @inner
 def _accelerate(system: SystemArrays, work: Workspace, level: int, acceleration: FloatArray) -> None:
-    """Write the accelerations by the forces in ``work.external``: modal freedoms answer for themselves."""
+    """Write the accelerations by the forces in ``work.external``; those of modal freedoms are uncoupled."""
     coupling, inverse = system.sparse.coupling, work.inverse[level]
     for i in range(system.sparse.modal.first):
         acceleration[i] = run_product(system.sparse.coupling_runs, inverse, i, work.external)

@@ -1,11 +1,12 @@
 """The level that monopoles and equivalent radiated power both allow, mode by mode of a housing.
 
-Monopoles neglect scattering and are mostly too quiet, equivalent radiated power neglects interference and is
-mostly too loud. Each states from where to where its level is off (`RadiationModel.error_band`), so each
-allows a range of levels for a mode that moves alone. The band is the range that both allow, the estimate a
-level in it (`SHARE`). Where they exclude each other, near the interior resonances of the
-monopoles' surface, as of a pulsating sphere near ka = pi, monopoles say nothing: the range is that of the
-velocity.
+Monopoles neglect scattering and are mostly too quiet; equivalent radiated power, which the surface velocity
+alone determines, neglects interference and is mostly too loud. Each model states bounds of its error
+(`RadiationModel.error_band`), so that each allows a range of levels for a mode that vibrates alone. The band
+is the intersection of both ranges, and the estimate a level in it (`SHARE`). The ranges are disjoint near
+interior resonances of the monopoles' surface, for example of a pulsating sphere near ka = pi. There the
+monopoles are invalid, and the range is that of equivalent radiated power. Sizes: F frequencies, r coordinates
+of the housing, m modes.
 """
 
 from __future__ import annotations
@@ -23,18 +24,19 @@ NAME = "estimate"
 INTERIOR = 2.0
 """ka below which a body has no interior resonance; a sphere has its first at pi."""
 SHARE_AT, SHARE = (1.0, 2.0), (0.5, 0.7)
-"""ka, and where in the range the estimate lies: the middle, and higher where walls shadow each other.
+"""Place of the estimate in the band (0: lower end, 1: upper end) at two values of ka, linear between them:
+the middle at low ka, and higher where walls shadow each other.
 
 Fitted to resonances of five gear cases by boundary elements, ka of 1.3 to 5.4 (docs/theory/sound-power.md).
 """
 MIN = 1e-30
-"""Resistance that stands for a motion without sound, kg/s."""
+"""Least resistance, kg/s, so that a motion without sound has a level."""
 
 
 def allowed_levels(
     monopoles: FloatArray, plane: FloatArray, ka: FloatArray, resolved: BoolArray
 ) -> tuple[FloatArray, FloatArray, BoolArray]:
-    """Return the bounds of the levels that both models allow, and whether the velocity alone decides.
+    """Return the bounds of the level that both models allow, and whether equivalent radiated power decides.
 
     Parameters
     ----------
@@ -49,6 +51,7 @@ def allowed_levels(
         np.array([model.error_band(float(value)) for value in ka]).T[:, :, None]
         for model in (ElementalRadiators(), EquivalentRadiatedPower())
     )
+    # exact level = level - error: the upper error gives the lower bound
     low, high = (plane - plane_off[1 - end] for end in (0, 1))
     first, last = (monopoles - monopoles_off[1 - end] for end in (0, 1))
     disjoint = (first > high) | (last < low)
@@ -61,7 +64,10 @@ def allowed_levels(
 
 @dataclass(frozen=True)
 class EstimatedRadiation(HousingRadiation):
-    """Radiation resistance whose power of every mode alone is corrected; it stays positive semidefinite."""
+    """Radiation resistance by monopoles with the power of every single mode corrected to the estimate.
+
+    It stays positive semidefinite.
+    """
 
     correction: FloatArray
     """Factor on the velocity of the coordinates, before monopoles radiate it. Shape (F, r, r)."""
@@ -70,7 +76,7 @@ class EstimatedRadiation(HousingRadiation):
     negative error is a level that is too low. Shape (2, F, m).
     """
     by_velocity: BoolArray
-    """Whether monopoles state nothing of a mode, so that its velocity alone decides. Shape (F, m)."""
+    """Whether monopoles are invalid for a mode, so that equivalent radiated power decides. Shape (F, m)."""
 
     def radiating(self, velocity: ComplexArray, knot: float) -> ComplexArray:
         """Return the velocity (r,) that the model radiates at a computed frequency, Hz."""
@@ -79,7 +85,8 @@ class EstimatedRadiation(HousingRadiation):
     def error_band(self, frequency: float, mode_power: FloatArray) -> tuple[float, float]:
         """Return the bounds of the error of the level at a frequency, Hz, as `RadiationModel` does.
 
-        The mean of the bands of the first modes, weighted with what they radiate alone, (m,) W.
+        It is the mean of the bands of the first modes, weighted with the power that each of them radiates
+        alone, `mode_power` (m,) in W.
         """
         count, total_power = len(mode_power), max(float(mode_power.sum()), MIN)
         knot = int(np.abs(self.frequency - frequency).argmin())
@@ -89,7 +96,7 @@ class EstimatedRadiation(HousingRadiation):
     def gains(self, housing: ReducedHousing, frequency: FloatArray) -> FloatArray:
         """Return the factor on the velocity of each mode before monopoles radiate it, (N, m).
 
-        At frequencies (N,) in Hz; beyond those that are computed and resolved as at the nearest of them.
+        `frequency` (N,) is in Hz. Outside the computed and resolved frequencies the nearest of them counts.
         """
         inside = self.frequency <= self.metadata.resolved_frequency
         shape = housing.modes[1]
@@ -106,7 +113,7 @@ class EstimatedRadiation(HousingRadiation):
         return np.array([self.error_band(*row) for row in rows]).T.reshape(2, *frequency.shape)
 
     def replaced(self, natural: FloatArray) -> FloatArray:
-        """Return the natural frequencies, Hz, at which monopoles state nothing of the mode."""
+        """Return the natural frequencies, Hz, at which monopoles are invalid for the mode."""
         knot = np.minimum(np.searchsorted(self.frequency, natural), self.frequency.size - 1)
         inside = (natural >= self.frequency[0]) & (natural <= self.metadata.resolved_frequency)
         return np.asarray(natural[inside & self.by_velocity[knot, np.arange(natural.size)]])
@@ -115,7 +122,7 @@ class EstimatedRadiation(HousingRadiation):
 def estimated_radiation(
     housing: ReducedHousing, monopoles: HousingRadiation, air: Air | None = None
 ) -> EstimatedRadiation:
-    """Return the estimate for a housing from its resistance by monopoles; the air is theirs."""
+    """Return the estimate for a housing from its resistance by monopoles, which was computed in `air`."""
     air, shape = air or Air(), housing.modes[1]
     ka = 2.0 * np.pi / air.sound_speed * monopoles.frequency * outer_hull(housing).hull.equivalent_radius
     monopole_level = _levels(np.einsum("mk,fmn,nk->fk", shape, monopoles.matrix, shape, optimize=True).real)
@@ -136,4 +143,5 @@ def estimated_radiation(
 
 
 def _levels(resistance: FloatArray) -> FloatArray:
+    """Return levels of resistances, dB re 1 kg/s."""
     return np.asarray(10.0 * np.log10(np.maximum(resistance, MIN)))

@@ -54,18 +54,19 @@ def microphone_pressure(
 ) -> MicrophonePressure:
     """Return the sound pressure levels of housings at a microphone.
 
-    Housings add up by their phases. Exact lines correct a power, not the phases of a pressure: the radiation
-    is the one without them. Raises `InputError`: the microphone is not in the air.
+    The pressures of the housings add up with their phases. The exact computation of single lines corrects the
+    power of a housing, not the phase of its pressure; it is not used here. Raises `InputError`: the
+    microphone is not in the air.
 
     Parameters
     ----------
     response : BearingHarmonics
         Response as in `radiated_sound`.
     microphone : (3,) array
-        m.
+        Position in the frame of the scene, m.
     power_bands : sequence of LevelBand, optional
-        Bands of the largest sound power of each order. The pressure has the same deviations, as a guess moves
-        both alike; what a single direction may add is not known.
+        Bands of the largest sound power of each order. The pressure gets the same deviations in dB, because
+        an uncertain input changes both alike; the further error of a single direction is not known.
     """
     hertz = response.frequency
     pressure, floors = np.zeros(hertz.shape, dtype=complex), list[ComplexArray]()
@@ -105,7 +106,7 @@ def _pressures(response: BearingHarmonics, housing: SoundingHousing, microphone:
 
 
 def _floor_pressure(floor: LineFloor, housing: SoundingHousing, microphone: FloatArray) -> ComplexArray:
-    """Return the pressure of a housing per input of the lines left out, Pa, (G, e)."""
+    """Return the pressure of a housing by the lines that are not listed, per input of these, Pa, (G, e)."""
     path = _path(housing, microphone, floor.frequency)
     force = seat_forces(floor, housing.body, housing.bearings)
     return np.asarray(np.sum(force * path.reshape(len(force), 1, -1), axis=-1))

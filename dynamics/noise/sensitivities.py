@@ -1,4 +1,8 @@
-"""Sensitivities of the largest sound power level to the design: change in dB(A) per change of a figure."""
+"""Sensitivities of the largest sound power level to the design: change in dB(A) per change of a figure.
+
+A *figure* is a number of the design, such as a crowning, or the factor on a guess. A *guess* is an uncertain
+input of the sound, such as a damping ratio; its factor is 1 as guessed.
+"""
 
 from __future__ import annotations
 
@@ -20,24 +24,24 @@ from dynamics.types import FloatArray
 from model_studies.progress import Progress
 from model_studies.variants import run_variants
 
-STEPS = {"housing_frequency": 0.02}  # relative steps of figures for which `STEP` is too large
+STEPS = {"housing_frequency": 0.02}  # steps of the factors for which `STEP` is too large
 STEP = 0.1
-"""Relative step of factors."""
+"""Step of the factor on a guess."""
 CURVED = 0.25
-"""Share of the change by slope that the curvature may add where a level counts as linear."""
+"""Largest change by the curvature, over that by the slope, at which a level counts as linear."""
 
 
 @dataclass(frozen=True)
 class DesignFigure:
-    """A figure of a design, and a small step of it.
-
-    `value`, `step`: in `unit`; the step is not zero.
-    """
+    """A figure of a design, and a small step of it."""
 
     name: str
     unit: str
+    """Unit of value and step; empty for a factor."""
     value: float
+    """Value of the design."""
     step: float
+    """Step from that value, not zero."""
 
     def __post_init__(self) -> None:
         finite("value", self.value)
@@ -59,8 +63,9 @@ class Sensitivity:
     def of(cls, figure: DesignFigure, level: Callable[[float], float]) -> Sensitivity:
         """Return the sensitivity of a level to a figure.
 
-        `level`: from a value of the figure to the level, dB, all else as it is. It is called three times:
-        smooth in the value, as `largest_level` is and a level at a fixed speed near a resonance is not.
+        `level` returns the level, dB, at a value of the figure with all else unchanged; it is called three
+        times. It must be smooth in the value: `largest_level` is, but not a level at a fixed speed near a
+        resonance.
         """
         nominal, single, double = (level(figure.value + count * figure.step) for count in range(3))
         return cls(figure, single - nominal, double - nominal)
@@ -83,7 +88,7 @@ class Sensitivity:
 
     @property
     def for_one_db_less(self) -> float:
-        """Return the change of the figure that lowers the level by 1 dB, by the slope; inf: none does."""
+        """Return the change of the figure that lowers the level by 1 dB at this slope; inf: slope zero."""
         return -1.0 / self.slope if self.slope != 0.0 else math.inf
 
     @property
@@ -102,10 +107,11 @@ def _response_level(model: SoundModel, speed: FloatArray, orders: int) -> float:
 
 
 def _flank_levels(model: SoundModel, speed: FloatArray, orders: int) -> Callable[[Scene], float]:
-    """Return from a scene with other flanks to its largest level, by the transfer functions of the model's.
+    """Return the function from a scene with other flanks to its largest level.
 
-    They hold what other tables change of excitation, stiffness and bearings. A scene with other freedoms, as
-    where its flanks call for another effect, has a response of its own.
+    It uses the transfer functions of the model's scene, with the excitation, stiffness and bearing forces by
+    the tables of the other flanks. A scene with other freedoms, because its flanks call for another effect,
+    gets a full response.
     """
     transfer = flank_transfer(assemble(model.scene), speed, orders)
     form = SoundPower().form(transfer, model)
@@ -128,7 +134,7 @@ def sound_sensitivities(
     scenes: Callable[[DesignFigure], Callable[[float], Scene]],
     progress: Progress,
 ) -> tuple[tuple[Sensitivity, ...], dict[str, str]]:
-    """Return the changes by steps of the guesses of a model and of its flanks, `_ranked`.
+    """Return the sensitivities to the guesses of a model and to figures of its flanks, the largest first.
 
     Parameters
     ----------
@@ -150,14 +156,15 @@ def sound_sensitivities(
 
     def level(figure: DesignFigure) -> Callable[[float], float]:
         if figure.name not in GUESSES:
-            at, level_at = scenes(figure), level_of()
-            return lambda value: level_at(at(value))
+            scene_at, level_at = scenes(figure), level_of()
+            return lambda value: level_at(scene_at(value))
         change = GUESSES[figure.name].varied
         return lambda value: _response_level(change(model, value) if value != 1.0 else model, speed, orders)
 
     def compute(figure: DesignFigure) -> Sensitivity:
         return Sensitivity.of(figure, level(figure))
 
+    # guesses that the model has: a factor changes it
     known = [name for name, guess in GUESSES.items() if guess.varied(model, 2.0) is not model]
     figures = (DesignFigure(name, "", 1.0, STEPS.get(name, STEP)) for name in known)
     by_name = {figure.name: figure for figure in (*figures, *flanks)}

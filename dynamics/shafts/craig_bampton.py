@@ -1,4 +1,9 @@
-"""Reduction of an elastic body to its interface and a few modes: Craig and Bampton."""
+"""Reduction of an elastic body to its interface and a few modes: Craig and Bampton.
+
+The *interface* are the a freedoms on which forces act. *Fixed-interface modes* are the natural modes with the
+interface at rest. A *family* is a set of freedoms of a shaft that is uncoupled from the others: bending in
+one plane, torsion, or tension. Its *imposed* freedom, if it has one, follows a given motion.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +18,25 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
 
 CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-"""Multiples of the frequency of interest, up to which modes with the interface held may count."""
-
-
+"""Multiples of the highest frequency of interest up to which fixed-interface modes are kept: the first one
+that meets `TRUNCATION` is taken."""
 TRUNCATION = 0.01
-"""Relative error of the frequencies of interest, below which the modes that count are enough."""
+"""Largest relative error of the frequencies of interest."""
+SINGULAR = 1e-12
+"""Least eigenvalue over the largest one at which the interface holds the body."""
 
 
 @dataclass(frozen=True)
 class _ReducedBody:
-    """Interface freedoms first, then amplitudes of b modes of unit modal mass with the interface held.
-
-    `motion` (n, a + b) is that of the body's freedoms per reduced one; `frequency` (b,) is in Hz.
-    """
+    """A body in a + b freedoms: the interface, then amplitudes of b fixed-interface modes of unit mass."""
 
     motion: FloatArray
+    """Motion of the n freedoms of the body per reduced freedom. Shape (n, a + b)."""
     mass: FloatArray
     stiffness: FloatArray
+    """`mass`, `stiffness`: Reduced matrices. Shape (a + b, a + b) each."""
     frequency: FloatArray
+    """Frequencies of the fixed-interface modes, Hz. Shape (b,)."""
 
 
 def craig_bampton(
@@ -38,10 +44,10 @@ def craig_bampton(
 ) -> _ReducedBody:
     """Reduce a body (Craig and Bampton, AIAA Journal 6 (1968) 1313-1319).
 
-    The motion inside is what the interface imposes statically plus the modes with the interface held, up to a
-    frequency. Static motion under forces on the interface is exact, and so are rigid motions; natural
-    frequencies are bounded from below by the exact ones and fall to them as modes are added. Raises
-    `InputError`: the interface repeats freedoms or does not hold the body, or `highest` is not above zero.
+    The motion inside is the static motion by the interface plus the fixed-interface modes up to a frequency.
+    Static motion under forces on the interface is exact, and so are rigid motions. Natural frequencies are
+    never below the exact ones and approach them as modes are added. Raises `InputError`: the interface
+    repeats freedoms or does not hold the body, or `highest` is not above zero.
 
     Parameters
     ----------
@@ -66,7 +72,7 @@ def craig_bampton(
         )
     except np.linalg.LinAlgError as error:
         raise InputError("mass", "singular", "positive definite inside the interface") from error
-    if square.size and square[0] <= 1e-12 * square[-1]:
+    if square.size and square[0] <= SINGULAR * square[-1]:
         suggestion = "Add freedoms: inside, nothing may move as a rigid body."
         raise InputError("interface", fixed.tolist(), "one that holds the body", suggestion)
     frequency = np.sqrt(square) / (2.0 * math.pi)
@@ -81,49 +87,49 @@ def craig_bampton(
 
 @dataclass(frozen=True)
 class ElasticModes:
-    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = work of forces on shapes."""
+    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = forces times shape j."""
 
     shape: FloatArray
-    """Freedoms of the family per coordinate; the largest displacement (rotation) is 1. Shape (n, b)."""
+    """Motion of the family's freedoms per coordinate; its largest entry is 1. Shape (n, b)."""
     mass: FloatArray
     stiffness: FloatArray
     """`mass`, `stiffness`: Modal: kg and N/m, of torsion kg m^2 and N m/rad. Shape (b,) each."""
     inertial: FloatArray
-    """Coupling in the mass matrix with the k rigid motions: zero unless the rigid motion is that of a held
-    freedom. Shape (b, k).
-    """
+    """Coupling in the mass matrix with the k rigid motions: zero without an imposed freedom. Shape (b, k)."""
     fixed: int
-    """Number of modes with the interface held from which the coordinates are made."""
+    """Number of fixed-interface modes from which the coordinates are made."""
     limit: float
-    """The frequency up to which these were kept, Hz."""
+    """The frequency up to which fixed-interface modes were kept, Hz."""
     truncation: float
-    """Estimate of the largest relative error of frequencies up to the one of interest: that of the free body
-    against the whole beam. Attached to others it may have somewhat more.
+    """Estimate of the largest relative error of the frequencies of interest, of the free body against the
+    whole beam. In a mechanism the error may be somewhat larger.
     """
 
     @property
     def frequency(self) -> FloatArray:
-        """Natural frequencies of the free body, or of the body with its held freedom at rest, Hz."""
+        """Natural frequencies of the free body, or of the body with its imposed freedom at rest, Hz."""
         return _hertz(self.stiffness / self.mass)
 
 
 @dataclass(frozen=True)
 class Family:
-    """Matrices (n, n) of a family, its k motions without strain (n, k), and the held freedom (-1: none)."""
+    """Matrices and rigid motions of a family of n freedoms."""
 
     mass: FloatArray
     stiffness: FloatArray
+    """`mass`, `stiffness`: Symmetric. Shape (n, n) each."""
     rigid: FloatArray
+    """The k motions without strain. Shape (n, k)."""
     imposed: int = -1
+    """Index of the imposed freedom; -1: none."""
 
 
 def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> ElasticModes:
-    """Reduce a family and split it into its rigid motions and elastic coordinates; none where nothing acts.
+    """Return the elastic coordinates of a family besides its rigid motions; none where no force acts.
 
-    A Craig-Bampton reduction to the freedoms on which forces are `acting`, diagonalized: its motions that are
-    orthogonal in mass to the rigid ones, so that rigid motions stay those of the center of mass. With a
-    freedom held, whose motion is imposed, the motions that leave it at rest. `highest` is the frequency of
-    interest, Hz.
+    The family is reduced (Craig-Bampton) to the freedoms on which forces are `acting`, and diagonalized. The
+    coordinates are orthogonal in mass to the rigid motions, which stay those of the center of mass. With an
+    imposed freedom the coordinates leave it at rest. `highest` is the highest frequency of interest, Hz.
     """
     mass, stiffness, rigid, fixed = family.mass, family.stiffness, family.rigid, family.imposed
     interface = np.array(sorted(set(acting)), dtype=np.int64)
@@ -140,6 +146,7 @@ def elastic_modes(family: Family, acting: Sequence[int], highest: float) -> Elas
         if truncation <= TRUNCATION:
             break
     shape = reduced.motion @ vectors
+    # each column over its largest entry
     shape = shape / np.take_along_axis(shape, np.argmax(np.abs(shape), axis=0)[None], axis=0)[0]
     modal = np.einsum("ij,ik,kj->j", shape, mass, shape)
     return ElasticModes(
@@ -167,8 +174,8 @@ def free_frequencies(family: Family) -> FloatArray:
 def worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
     """Return the largest relative error of the rising frequencies `coarse` up to `highest`.
 
-    The next one counts too, by the square of how far it is above: errors rise at least so with frequency,
-    and on its bearings a shaft has other frequencies than free.
+    The first frequency above counts too, times (highest / frequency)^2: errors grow at least with the square
+    of the frequency, and on its bearings a shaft has other frequencies than the free one.
     """
     count = min(int(np.searchsorted(exact, highest, side="right")) + 1, coarse.size)
     if count == 0:
@@ -180,7 +187,7 @@ def worst_error(coarse: FloatArray, exact: FloatArray, highest: float) -> float:
 def _split(
     mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, imposed: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Squared circular frequencies and shapes of unit modal mass of the elastic motions."""
+    """Return squared circular frequencies and shapes of unit modal mass of the elastic motions."""
     from scipy.linalg import eigh, null_space  # noqa: PLC0415 (start-up time)
 
     basis = np.delete(np.eye(mass.shape[0]), imposed, axis=1) if imposed >= 0 else null_space(rigid.T @ mass)

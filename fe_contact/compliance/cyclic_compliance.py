@@ -1,4 +1,9 @@
-"""Flank compliance of a gear over the face width: mesh, condense a sector, close the ring, check."""
+"""Flank compliance of a gear over the face width: mesh, condense a sector, close the ring, check.
+
+A sector is the part of the gear with one tooth. Condensed, it has the freedoms of its flank and of the cuts
+to its neighbors alone; the ring of all sectors is solved by cyclic harmonics. The *reach* is the largest
+distance in teeth between a force and a displacement that the compliance has.
+"""
 
 from __future__ import annotations
 
@@ -50,15 +55,15 @@ def flank_compliance_3d(
     Parameters
     ----------
     gear : Gear
-        Modification plays no part.
+        Modifications do not matter.
     recipe : SectorRecipe, optional
         Default `SectorRecipe.standard(gear)`.
     reach : int, optional
-        Largest distance in teeth that is kept, from 0 to half the teeth; default `usual_reach`.
+        Reach in teeth, from 0 to half the teeth; default `usual_reach`.
     support : BoreSupport, optional
-        How the right-hand gear is held; default: clamped, or on the gear's seat.
+        Support of the right-hand gear at its bore; default: clamped, or on the gear's seat.
     cache : Path, optional
-        Directory of kept results (see `default_cache_directory`); None: neither read nor written.
+        Directory of cached results (see `default_cache_directory`); None: neither read nor written.
     report : callable
         Called with the fraction done, by predicted cost.
 
@@ -94,7 +99,7 @@ def flank_compliances_3d(
     cache: Path | None = None,
     report: Report = unreported,
 ) -> tuple[FlankCompliance3D, ...]:
-    """Return the compliance of each gear; gears alike, or alike but for the hand, are computed once.
+    """Return the compliance of each gear; equal gears, and equal gears of opposite hand, are computed once.
 
     Parameters are those of `flank_compliance_3d`, with one recipe per gear.
     """
@@ -134,7 +139,7 @@ def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support:
 
 @lru_cache(maxsize=CACHED_KEYS)
 def _key(gear: Toothing, recipe: SectorRecipe, reach: int, support: str, version: int) -> str:
-    """Hash them once: predictions ask for the same few keys again and again."""
+    """Return the hash of the inputs, from memory for the few keys that predictions request repeatedly."""
     content: Json = {
         "model": ["cyclic sector", version],
         "gmsh": mesher_version(),
@@ -169,7 +174,7 @@ def compute_flank_compliance_3d(
     clock.finish("checks")
     flank = len(solved.sector.flank)
     blocks = np.ascontiguousarray(solved.ring.blocks[:, :flank, :flank])
-    blocks[0] = 0.5 * (blocks[0] + blocks[0].T)
+    blocks[0] = 0.5 * (blocks[0] + blocks[0].T)  # symmetric but for rounding
     keyed: Json = {}
     if gear.seat.key is not None:
         key = key_update(gear, solved, twist(gear), 2 * reach)

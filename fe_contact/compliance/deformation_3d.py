@@ -1,7 +1,10 @@
 """Tooth sectors of a gear of finite width under flank loads on several teeth, expanded from their flanks.
 
-The ring of teeth is closed for every loaded tooth as if it were tooth 0; the fields of the others follow by
-turning. A sector's inside follows from its flank and both cuts (`Condensation.expand`).
+A *sector* is the part of the gear with one tooth between two *cuts* in the middles of the tooth spaces. The
+ring of sectors is solved for every loaded tooth as if that were tooth 0; the numbers of the teeth are then
+shifted. The inside of a sector follows from its flank and both cuts (`Condensation.expand`). A left-handed
+gear is computed as its mirror image, which is right-handed. Sizes: nf flank freedoms, p loaded teeth of a
+case, T teeth in view, n freedoms of a sector.
 """
 
 from __future__ import annotations
@@ -27,7 +30,8 @@ from fe_contact.types import FloatArray, IntArray
 from model_studies.stage_clock import StageClock
 
 Load = Mapping[int, FloatArray]
-# VTK's order of a hexahedron with bottom and top exchanged
+"""Number of a tooth to its nodal forces (nf,), N."""
+# VTK's order of the 20 nodes of a hexahedron with bottom and top exchanged, for mirror images
 UPSIDE_DOWN = [4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11, 16, 17, 18, 19]
 
 
@@ -39,9 +43,10 @@ def deformed_solids(
     *,
     seen_from_behind: bool = False,
 ) -> tuple[DeformedGear, ...]:
-    """Solve for each set of loads; the gear is condensed once, which costs what its compliance costs.
+    """Return the deformed gear under each set of loads.
 
-    Raises `InputError`: a bore with a key: its sectors do not bend alike.
+    The gear is condensed once, at the cost of computing its compliance. Raises `InputError`: a bore with a
+    key, whose sectors do not bend alike.
 
     Parameters
     ----------
@@ -51,10 +56,10 @@ def deformed_solids(
         Tooth number to nodal forces (nf,) along the outward normal, in the freedoms of `FlankCompliance3D`,
         N: a load presses with negative forces.
     unloaded : int
-        How many unloaded teeth to show on either side of the loaded ones.
+        Number of unloaded teeth to show on either side of the loaded ones.
     seen_from_behind : bool
-        The loads, and the flank displacements returned, are in the freedoms of the mirrored compliance, as
-        the contact of a ring gear has them.
+        Whether loads and returned flank displacements are in the freedoms of the mirrored compliance, as in
+        the contact of a ring gear.
     """
     if gear.seat.key is not None:
         remedy = "Leave the key out: under it every tooth bends in another way."
@@ -63,7 +68,7 @@ def deformed_solids(
     section = quad_sector(right, recipe)
     support = bore_support(right)
     left, mirror = gear.helix_angle < 0.0, None
-    if left != seen_from_behind:
+    if left != seen_from_behind:  # the mirror image of a mirror image needs none
         planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]
         mirror = planes[planes >= 0]
     sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
@@ -82,15 +87,18 @@ def deformed_solids(
 
 @dataclass(frozen=True)
 class _Loaded:
-    """Loaded teeth of one case: their numbers, their columns among the probe loads, and the loads (nf, p)."""
+    """The p loaded teeth of one case."""
 
     teeth: IntArray
+    """Numbers of the teeth. Shape (p,)."""
     columns: IntArray
+    """Their columns among the loads of all cases. Shape (p,)."""
     forces: FloatArray
+    """Forces on the flanks, N. Shape (nf, p)."""
 
 
 def _mirrored_back(values: FloatArray, mirror: IntArray | None) -> FloatArray:
-    """Return flank values in the numbering of the gear's mirror image."""
+    """Return flank values in the numbering of the gear's mirror image; unchanged without a `mirror`."""
     if mirror is None:
         return values
     back = np.empty_like(values)
@@ -143,7 +151,7 @@ def _deformed(
         stress[i] = rotation_matrix @ elements.stress(motion) @ rotation_matrix.T
     cells = numbers.reshape(-1, numbers.shape[-1])
     mean = nodal_mean(cells, stress.reshape(-1, *stress.shape[2:]), count)
-    flip = np.array([1.0, 1.0, -1.0 if left else 1.0])
+    flip = np.array([1.0, 1.0, -1.0 if left else 1.0])  # mirrored in the plane z = 0
     flank = fields[gear.sector.flank]
     return DeformedGear(
         points=points * flip,
@@ -173,7 +181,7 @@ def _numbers(sector: SweptSector, elements: SectorElements, count: int, closed: 
 
 
 def _residual(gear: CondensedGear, fields: FloatArray, forces: FloatArray, closed: bool) -> float:
-    """Return the norm of f - K u over that of f; on cuts between two sectors both of them count."""
+    """Return the norm of f - K u over that of f; forces on a cut are the sum of those of both sectors."""
     sector = gear.sector
     free = sector.element_freedoms >= 0
     out = np.empty_like(fields)

@@ -1,4 +1,9 @@
-"""The surface of the tooth root in eight-node quadrilaterals, and the stress on it."""
+"""The surface of the tooth root in eight-node quadrilaterals, and the stress on it.
+
+A tooth sector is a plane section that is swept over layers across the face. A *chain* are the section's nodes
+along the root, corners and middles in turn. *Along* is the profile, *across* is towards larger z in the
+surface. Stresses are taken at four *stations* of each of m elements: two by two points of its square.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +29,12 @@ ACROSS = np.array([-1.0, -1.0, 1.0, 1.0, -1.0, 0.0, 1.0, 0.0])
 def surface_elements(
     section: QuadSector, sector: SweptSector, chain: IntArray, axes: FloatArray, turn_per_length: float
 ) -> SurfaceElements:
-    """Return the quadrilaterals of a chain of the root in the frames of their nodes."""
+    """Return the quadrilaterals of a chain of the root, layer by layer, in the frames of their nodes.
+
+    `axes` are the axes of the freedoms of each node of the section; `turn_per_length` is the helix, rad/m.
+    """
     first = 2 * np.arange(len(chain) // 2)
+    # 1 + ALONG: 0, 1 or 2 nodes after the first one of an element
     on_section = chain[first[:, None] + (1 + ALONG).astype(int)]  # (e, 8)
     positions, frames, freedoms = [], [], []
     for layer, kind in enumerate(sector.layers.kind):
@@ -40,6 +49,7 @@ def surface_elements(
 def quad_root(section: QuadSector, profile: FlankProfile) -> RootSurface:
     """Return the root of a sector of eight-node quadrilaterals."""
     grid = section.grid
+    # a grid of corners and middles: twice as many rows and columns as elements
     land = grid.number[2 * grid.body_rows]
     below_form = int(np.argmin(np.abs(section.s[::2] - profile.s_form)))
     tooth = grid.number[2 * grid.body_rows : 2 * (grid.body_rows + below_form) + 1]
@@ -57,21 +67,21 @@ class SurfaceElements(NamedTuple):
     frames: FloatArray
     """Axes of the freedoms of each node, one per column. Shape (m, 8, 3, 3)."""
     freedoms: IntArray
-    """Numbers of the freedoms of each node; -1 where held. Shape (m, 8, 3)."""
+    """Numbers of the freedoms of each node; -1 for a fixed one. Shape (m, 8, 3)."""
 
 
 def face_stress(elements: SurfaceElements, material: Material, size: int) -> sp.csr_array:
-    """Return the stresses of surface elements by the freedoms of a mesh, (3 * 4 m, size) in Pa/m.
+    """Return the stresses of surface elements by the `size` freedoms of a mesh, (3 * 4 m, size) in Pa/m.
 
-    All stations of one component stand together, those of an element by position across, then along.
-    "Along" is the profile in the transverse section; "across" is perpendicular to it in the surface,
-    towards larger z.
+    Rows: the stress along at all stations, then that across, then the shear stress. The stations of an
+    element are ordered by their position across, then along. The surface is free of normal stress.
     """
     strains = _surface_strains(elements.nodes)  # (3, m, 4, 8, 3)
     nu = material.poissons_ratio
     plane, shear = material.plane_strain_modulus, material.youngs_modulus / (1.0 + nu)
     along, across, between = strains
     stresses = np.stack([plane * (along + nu * across), plane * (across + nu * along), shear * between])
+    # k components, m elements, g stations, i nodes; a Cartesian, b along the axes of the freedoms
     in_frames = np.einsum("kmgia,miab->kmgib", stresses, elements.frames)
     freedoms = np.broadcast_to(elements.freedoms[:, None], in_frames.shape)
     rows = np.arange(in_frames[..., 0, 0].size).reshape(*in_frames.shape[:3], 1, 1)
@@ -81,10 +91,14 @@ def face_stress(elements: SurfaceElements, material: Material, size: int) -> sp.
 
 
 def _surface_strains(nodes: FloatArray) -> FloatArray:
-    """Return e_11, e_22, e_12 by Cartesian displacements, (3, m, 4, 8, 3), in orthonormal surface axes."""
+    """Return the strains e_11, e_22, e_12 by Cartesian displacements of the nodes, (3, m, 4, 8, 3).
+
+    They are in orthonormal axes of the surface: 1 along, 2 across.
+    """
     y, x = (grid.ravel() for grid in np.meshgrid(STATIONS, STATIONS, indexing="ij"))
     slopes = _slopes(x, y)
     g1, g2 = np.einsum("tgi,mia->tmga", slopes, nodes)
+    # g1, g2: tangents of the element's lines; t1, t2: orthonormal axes from them
     t1 = g1 / np.linalg.norm(g1, axis=-1, keepdims=True)
     t2 = g2 - np.sum(g2 * t1, axis=-1, keepdims=True) * t1
     t2 /= np.linalg.norm(t2, axis=-1, keepdims=True)

@@ -15,13 +15,17 @@ from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 _ACTING = (Kind.AMOUNT, Kind.DEVIATION, Kind.EDGE)
+"""Kinds of fields that remove material if they are not zero; the others say where or how."""
 SHORTEST = 1e-9
 """Shortest length over which an amount acts, m. A shorter one is a step, whose slope is undefined."""
 
 
 @dataclass(frozen=True)
 class ReliefStart:
-    """Start of a relief or of the tip's edge along the profile; jump d + bend d^2/2 a distance d inside."""
+    """Start of a relief, or of a rounded or chamfered tip edge, along the profile.
+
+    At the distance d from the start the relief removes jump d + bend d^2/2.
+    """
 
     roll_length: FloatArray | float
     """Roll length, m; an array over the face positions where it varies over the face."""
@@ -40,9 +44,9 @@ class ReliefStart:
 class FlankPart:
     """One departure of a gear's flanks from the involute helicoid.
 
-    A modification is a dataclass of declared fields (`fe_contact.flank.relief`) that says what it removes.
-    All of it is neutral while its amounts, slopes and edges are zero. Raises `InputError`: a value out of its
-    bound, or an amount ``x`` without the ``x_length`` over which it acts.
+    A modification is a dataclass of declared fields (`fe_contact.flank.relief`) that computes the material
+    it removes. It removes nothing while its amounts, deviations and edges are zero. Raises `InputError`: a
+    value out of its bound, or an amount ``x`` without the ``x_length`` over which it acts.
     """
 
     def __post_init__(self) -> None:
@@ -78,7 +82,7 @@ class FlankPart:
 
 
 def involute(gear: Tooth) -> tuple[float, float]:
-    """Least and largest roll length of the involute, m."""
+    """Return the least and the largest roll length of the involute, m."""
     ends = gear.form_roll_length, gear.tip_roll_length
     return min(ends), max(ends)
 

@@ -1,9 +1,11 @@
 """Shaft orders and sidebands by the teeth of one gear: the pairs above a limit, and the causes.
 
-Pairs are solved over one revolution of the gear, whose teeth are drawn; those of its mate are alike. Further
-pairs, and the causes, follow to first order in the deviations of single teeth, about the flanks as designed:
-an order is the Fourier sum of a deviation over the teeth times the contribution of one tooth as it passes
-through the mesh. Motions of the touching point by slopes and forms are left out.
+Pairs are solved over one revolution of the gear, whose tooth deviations are drawn at random; the teeth of its
+mate are alike. Further pairs, and the causes, follow to first order in the deviations of single teeth, about
+the flanks as designed: the amplitude of an order is the Fourier sum of a deviation over the teeth, times the
+contribution of one tooth as it passes through the mesh. Shifts of the touching point by slopes and forms are
+neglected. Wobble is the tilt of a gear against its axis. Sizes: P positions, L loads, m candidates, N drawn
+gears, d deviations.
 """
 
 from __future__ import annotations
@@ -55,12 +57,12 @@ class ToothPassing:
     """First-order contribution of the teeth of a gear to one order at L loads."""
 
     line: int
-    """Order in periods per revolution of the gear."""
+    """The order, in periods per revolution of the gear."""
     turns: int
-    """Turns of the gear between the order and the mesh order."""
+    """The order less the mesh order, in periods per revolution of the gear."""
     by_tooth: Mapping[str, ComplexArray]
-    """Complex amplitude by the Fourier sum of a deviation over the teeth, m/m. Mapping of str to ndarray,
-    shape (L,).
+    """Complex amplitude per Fourier sum of a deviation over the teeth, m/m, by the name of the deviation.
+    Mapping of str to ndarray, shape (L,).
     """
     by_wobble: ComplexArray
     """Complex amplitude per amount of wobble at the angle 0, m/m. Wobble acts where the load is off mid-face
@@ -75,6 +77,7 @@ class ToothPassing:
         weight, _ = load_weights(problem, solution, np.empty((0, *c.gap.shape)))
         line = limit.line(pair)
         arm, turn = weight * c.motion_arm[:, None], -2j * math.pi / teeth
+        # (P, L, m): a tooth is in the candidates of its pair at the place position + pair
         passing = arm * np.exp(turn * line * (c.position[:, None] + c.pair))[:, None]
         wobbling = arm * np.exp(turn * (line - limit.turns) * c.position)[:, None, None]
         shapes = _shapes(pair, c, limit.gear)
@@ -87,8 +90,12 @@ class ToothPassing:
         return cls(line, limit.turns, by_tooth, -once * added(wobbling, WOBBLE))
 
     def lines(self, drawn: DrawnTeeth) -> ComplexArray:
-        """Return the contributions of each deviation to the order of N gears, (d, N, L), m: axis first."""
+        """Return the contributions of each deviation to the order of N gears, (d, N, L), m.
+
+        Deviations of the axis, run-out and wobble, come first.
+        """
         loads = len(self.by_wobble)
+        # run-out acts once per revolution only
         once = {RUN_OUT: np.full(loads, -1.0 * (self.line == 1)), WOBBLE: self.by_wobble}
         parts = []
         for name, amount in drawn.by_axis.items():
@@ -108,7 +115,7 @@ class ToothPassing:
 def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArray]:
     """Return the gap by a unit of each deviation of a tooth at the candidates, (P, m)."""
     toothing: Toothing = getattr(pair, gear)
-    there = np.isfinite(c.gap)
+    there = np.isfinite(c.gap)  # elsewhere any point of the flanks, whose shape is set to 0 below
     rolls = rolls_at(pair, np.where(there, c.touch.s_1, 1.0), np.where(there, c.touch.s_2, toothing.sign))
     wheel = gear == "wheel"
     face = c.face_position - (pair.axial_offset if wheel else 0.0)
@@ -120,13 +127,18 @@ def _shapes(pair: ParallelAxes, c: Candidates, gear: str) -> dict[str, FloatArra
 
 @dataclass(frozen=True)
 class MadePairs:
-    """Pairs to solve whose flanks deviate by (n, d) in m, with the teeth of one gear for as many or more."""
+    """The n pairs to solve: their flanks, and the teeth of one gear."""
 
     evaluator: Evaluator
+    """Evaluator of the pair as designed."""
     names: tuple[str, ...]
+    """Names of the deviations of all teeth alike."""
     deviation: FloatArray
+    """Deviations of all teeth alike, m. Shape (n, d)."""
     gear: str
+    """The gear whose teeth differ."""
     drawn: DrawnTeeth
+    """Deviations of its teeth, for n gears or more."""
 
     def evaluator_of(self, index: int) -> Evaluator:
         """Return the evaluator of the drawn gear `index`."""
@@ -134,6 +146,7 @@ class MadePairs:
         gear: Toothing = getattr(contact.pair, self.gear)
         made: dict[str, Any] = {self.gear: replace(gear, **self.drawn.fields(index))}
         nodes = ScatterNodes(self.names, self.deviation[index : index + 1], np.ones(1))
+        # effects that make teeth differ
         on = {effect.name: "on" for effect in EFFECTS if "period" in effect.adds}
         pair = replace(contact.pair, **made)
         choices = {**self.evaluator.choices, **on}
@@ -141,7 +154,10 @@ class MadePairs:
 
 
 def lines_of_pairs(made: MadePairs, task: tuple[int, Sequence[int]]) -> ComplexArray:
-    """Return the complex amplitude of one line of some pairs (n, L), m: one task."""
+    """Return the complex amplitude of one order in the pairs of a task, (n, L), m.
+
+    A task is the order, in periods per revolution, and the indices of n pairs.
+    """
     line, pairs = task
     lines = []
     for index in pairs:
@@ -163,14 +179,14 @@ def sidebands_above(
     confidence: float,
     run: Run,
 ) -> PairsAbove:
-    """Solve pairs over a revolution of one gear, count all drawn ones above a limit, and look for the cause.
+    """Solve pairs over a revolution of one gear; return the pairs above a limit, and the causes.
 
     Parameters
     ----------
     designed : Evaluator
-        The pair as designed, about which the cause and further pairs are told.
+        The pair as designed, about which further pairs and the causes are expanded.
     teeth : ToothTolerances
-        By which those of the pairs were drawn.
+        Tolerances by which the teeth of the pairs were drawn.
     """
     passing = ToothPassing.of(designed, limit, [name for name in teeth.widths if name not in OF_AXIS])
     numbers = range(len(pairs.deviation))
@@ -216,6 +232,6 @@ def _indices(
 def _tightened(
     limit: OrderLimit, passing: ToothPassing, teeth: ToothTolerances, drawn: DrawnTeeth, load: int
 ) -> FloatArray:
-    """Return the share above to first order with each tolerance tightened by a class, (d,)."""
+    """Return the share above the limit, to first order, with each tolerance tightened by a class, (d,)."""
     narrow = (drawn.changed(name, TIGHTENED * drawn.amount(name)) for name in teeth.widths)
-    return np.array([np.mean(passing.amplitude(one)[:, load] > limit.amplitude) for one in narrow])
+    return np.array([np.mean(passing.amplitude(gears)[:, load] > limit.amplitude) for gears in narrow])

@@ -1,4 +1,9 @@
-"""Tolerance Monte Carlo: the distribution of peak-to-peak STE over pairs as they are made and assembled."""
+"""Tolerance Monte Carlo: the distribution of peak-to-peak STE over pairs as they are made and assembled.
+
+N pairs are drawn with d deviations each, and their ripple (peak-to-peak STE) is found at L torques. The first
+pairs are solved. The others follow from a *model*: the lowest of several *tangents*, first-order expansions
+of the STE about solved pairs and about the design. Solved pairs without a tangent check and correct it.
+"""
 
 from __future__ import annotations
 
@@ -47,11 +52,12 @@ from model_studies.spread import quantile_bounds, rank_correlation
 from model_studies.stage_clock import StageClock
 
 TANGENTS = 64
-"""Pairs about which tangents are taken, besides the design, at most."""
+"""Most pairs about which tangents are taken, besides the design."""
 IN_A_TASK = 25
-"""Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
+"""Pairs of a task, which takes half a second to some seconds. The number is the same for any workers, so that
+results are equal to the last bit."""
 ACTING = SobolSample(1)
-"""Two pairs that deviate in everything: by them the effects are decided."""
+"""A sample of two pairs in which every deviation differs from zero: effects are decided for these."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +65,7 @@ class Quantile:
     """A quantile of peak-to-peak at each of L torques."""
 
     fraction: float
-    """Part of all pairs that lie below."""
+    """Part of all pairs whose ripple lies below the quantile."""
     value: FloatArray = field(metadata=in_unit("m", "torque"))
     low: FloatArray = field(metadata=in_unit("m", "torque"))
     high: FloatArray = field(metadata=in_unit("m", "torque"))
@@ -89,8 +95,8 @@ class Sampling:
     positions: int = 64
     """Number of equally spaced positions in a base pitch."""
     exact: int = 300
-    """Number of pairs that are solved. The model of further pairs has tangents about some of them and is
-    compared with the others.
+    """Number of pairs that are solved. Of these some have tangents for the model of further pairs; the
+    others check the model.
     """
 
     def __post_init__(self) -> None:
@@ -114,14 +120,14 @@ class Sampling:
 
 @dataclass(frozen=True)
 class WithinClass:
-    """Figures at L torques of the pairs of a class, where those of a study are measured."""
+    """Figures of the pairs of a tolerance class at L torques, beside a study of measured gears."""
 
     mean: FloatArray = field(metadata=in_unit("m", "torque"))
     """Mean peak-to-peak STE, m. Shape (L,)."""
     share: FloatArray
     """Share of the pairs above the limit. Shape (L,), or (0,) without a limit."""
     decides: str
-    """Name of the deviation that decides there, or empty."""
+    """Name of the deviation that contributes most to pairs above the limit, or empty."""
 
     @classmethod
     def of(cls, study: ToleranceStudy) -> WithinClass:
@@ -159,19 +165,18 @@ class ToleranceStudy(Plottable):
     """CPU and wall seconds by stage, of this process."""
     request: Json = field(metadata=under_key("asked"))
     solved: int = 0
+    """Number of pairs, the first ones, that are solved; the model gives the others."""
     held: int = 0
-    """`solved`, `held`: Number of the first pairs that are solved, while the model gives the others; number
-    of solved pairs that the model does not know.
-    """
+    """Number of solved pairs that have no tangent, and check the model."""
     missed: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
     missed_largest: FloatArray = field(default_factory=lambda: np.zeros(0), metadata=in_unit("m", "torque"))
-    """`missed`, `missed_largest`: Error of the model in the peak-to-peak of solved pairs that it does not
-    know: root mean square and largest, m. Shape (L,) each.
+    """`missed`, `missed_largest`: Error of the model in the peak-to-peak of the `held` pairs, root mean
+    square and largest, m. Shape (L,) each.
     """
     above: PairsAbove | None = None
     """Pairs above a limit."""
     within_class: WithinClass | None = None
-    """Pairs of the class, where those of the study are of measured gears."""
+    """Figures of the pairs of a class, if the study is of measured gears."""
 
     @property
     def mean(self) -> FloatArray:
@@ -242,8 +247,8 @@ class ToleranceRequest:
 
     @property
     def space(self) -> DesignSpace:
-        """The pairs that the tolerances allow, as designs: everything deviates that may."""
-        rule = ACTING if self.tolerances.misalignment else GaussHermite(1)  # draws nothing
+        """The pairs that the tolerances allow, as designs in which every toleranced figure deviates."""
+        rule = ACTING if self.tolerances.misalignment else GaussHermite(1)  # one node: no scatter
         deviations = Scatter(self.tolerances.misalignment, self.tolerances.modification, rule)
         return DesignSpace(
             self.pair, {}, deviations, self.misalignment, self.sampling.positions, self.options
@@ -251,7 +256,7 @@ class ToleranceRequest:
 
     @cached_property
     def checked(self) -> Checked:
-        """Everything is checked, nothing computed; raises `InputError`, also where it cannot be held."""
+        """The checked request; nothing is computed. Raises `InputError`, also if it needs too much memory."""
         if self.limit is not None:
             self.limit.check(self.pair, self.sampling.positions)
             if self.limit.gear and self.teeth is None:
@@ -262,9 +267,10 @@ class ToleranceRequest:
         return checked
 
     def _require_memory(self, period: int) -> None:
-        """Refuse more solved pairs than can be held with the tangents about some of them."""
+        """Raise `InputError` if the curves of the solved pairs and their tangents need too much memory."""
         sampling, deviating = self.sampling, len(self.tolerances.widths)
-        curve = 8 * period * sampling.positions * len(self.torques)
+        curve = 8 * period * sampling.positions * len(self.torques)  # bytes of the curves of one pair
+        # three copies of the curves, and two of each derivative
         needed = curve * (3 * sampling.solved + 2 * (sampling.tangents + 1) * deviating)
         if needed > MAX_BYTES:
             size = f"{sampling.solved} pairs over {period} base pitches, {needed / 1e9:.1f} GB"
@@ -344,7 +350,10 @@ def _request_json(request: ToleranceRequest) -> Json:
 def tangents_about(
     evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, ste: FloatArray, by: FloatArray
 ) -> TangentModel:
-    """Return the tangents about pairs that deviate by (n, d); nothing is removed below zero."""
+    """Return the tangents about pairs that deviate by (n, d), from curves `ste` and their derivatives `by`.
+
+    A deviation reduces the material that a modification removes to zero at most.
+    """
     pair = evaluator.contact.pair
     designed = [0.0 if name == MISALIGNMENT else figure(pair, name) for name in names]
     minimum = np.array([least_deviation(*item) for item in zip(designed, names, strict=True)])
@@ -354,10 +363,10 @@ def tangents_about(
 def _ripple(
     model: TangentModel, deviation: FloatArray, ste: FloatArray, unknown: slice
 ) -> tuple[FloatArray, FloatArray]:
-    """Return peak-to-peak of all pairs (N, L), of the first as solved, and what the model misses, m.
+    """Return the peak-to-peak of all pairs (N, L), and the error of the model in the `unknown` pairs, m.
 
-    Tangents lie above, the more so the further a pair is from them. So mean and spread of the model are made
-    those of the solved pairs that it is held against.
+    Solved pairs come first. Tangents lie above the STE, the more so the further a pair is from them. So the
+    mean and the spread of the model are scaled to those of the solved pairs `unknown` to it.
     """
     solved = np.ptp(ste, axis=1)
     known, predicted = solved[unknown], model.peak_to_peak(deviation[unknown])
@@ -371,9 +380,10 @@ def _ripple(
 def _solved(
     evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, sampling: Sampling, run: Run
 ) -> tuple[FloatArray, TangentModel]:
-    """Solve pairs that deviate by (n, d): transmission error (n, P, L) in m, and tangents of the first."""
-    ends = sampling.tangents, len(deviation)
-    parts = ((True, deviation[: ends[0]]), (False, deviation[ends[0] :]))
+    """Solve pairs that deviate by (n, d); return their STE (n, P, L) in m, and tangents about the first."""
+    count_of_tangents = sampling.tangents
+    # whether derivatives are requested, and the deviations
+    parts = ((True, deviation[:count_of_tangents]), (False, deviation[count_of_tangents:]))
     tasks = [(by, part[k : k + IN_A_TASK]) for by, part in parts for k in range(0, len(part), IN_A_TASK)]
     ste, slopes = [], []
     for count, (values, by) in enumerate(run.workers.run(curves_of_samples, (evaluator, names), tasks)):
@@ -384,14 +394,14 @@ def _solved(
     if not np.isfinite(curves).all():
         bad = int((~np.isfinite(curves)).any(axis=(1, 2)).sum())
         raise SolveError(f"the contact of {bad} of {len(curves)} pairs cannot be solved", curves)
-    first = slice(0, ends[0])
+    first = slice(0, count_of_tangents)
     return curves, tangents_about(evaluator, names, deviation[first], curves[first], np.concatenate(slopes))
 
 
 def curves_of_samples(
     shared: tuple[Evaluator, tuple[str, ...]], task: tuple[bool, FloatArray]
 ) -> tuple[FloatArray, FloatArray | None]:
-    """Return transmission error (n, P, L) in m of some samples (n, d), perhaps its derivatives: one task."""
+    """Return the STE (n, P, L) in m of the samples (n, d) of one task, and its derivatives if requested."""
     (evaluator, names), (differentiate, deviation) = shared, task
     weight = np.full(deviation.shape[0], 1.0 / deviation.shape[0])
     pairs = replace(evaluator, nodes=ScatterNodes(names, deviation, weight))

@@ -16,15 +16,11 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.types import FloatArray
 
 MAX_NUMBERS = 8
-"""Largest number of values of an axis that are listed; of a longer axis the ends and the number of values
-are.
-"""
+"""Most values of an axis that are listed. Of a longer axis the ends and the number of values are."""
 MAX_LOADS = 4
 """Largest number of loads whose figures are listed; they are spread over the loads of the table."""
 LONGEST_PERIOD = 32
-"""Largest period for which the figures of all listed loads are computed, base pitches. Longer tables have
-those of one load.
-"""
+"""Largest period, base pitches, of a table that shows the figures of several loads; others show one load."""
 
 
 def headlines(table: SteFields, curve_at: Callable[..., Curve]) -> tuple[str, list[Row]]:

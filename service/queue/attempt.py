@@ -1,4 +1,9 @@
-"""One attempt at a computation: its claim, its worker, and where they work."""
+"""One attempt at a computation: its claim, its worker, its directory, its log and its trace.
+
+A *claim* is a computation that this process has taken from the queue. A *trace* (OpenTelemetry) is a tree of
+*spans*, intervals of time with attributes: one for the wait in the queue, one for the attempt, and in it one
+for each stage. Times are s since 1970.
+"""
 
 from __future__ import annotations
 
@@ -35,11 +40,11 @@ files_read = on_demand("service.worker.preparations:files_read")
 _START = "start"
 """Stage before the first report: the process starts and loads its program."""
 _MAX_STAGES = 200
-"""Most spans of one attempt; later reports belong to the last span."""
+"""Most spans of stages of one attempt; later stages are part of the last span."""
 
 
 class _AttemptTrace:
-    """Spans that end as the attempt goes on; no stage begins before it was `launched`, s since 1970."""
+    """The spans of one attempt, whose worker was `launched` at a time; stages begin then at the earliest."""
 
     def __init__(self, claim: Claim, named: dict[str, Any], launched: float) -> None:
         attributes: dict[str, Fact] = {
@@ -47,8 +52,9 @@ class _AttemptTrace:
             "loa.process": claim.process,
             "loa.attempt": claim.attempts,
         }
-        begun = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
-        end_span(begun_span("queue", claim.traceparent, min(begun, launched), attributes), launched)
+        queued = datetime.fromisoformat(claim.waited_from).timestamp() if claim.waited_from else launched
+        # `min`: clocks of two machines may differ
+        end_span(begun_span("queue", claim.traceparent, min(queued, launched), attributes), launched)
         attributes |= {f"process.{name}": value for name, value in named.items()}
         self._attempt = begun_span(f"attempt {claim.process}", claim.traceparent, launched, attributes)
         self._name, self._cpu_s, self._left = "", 0.0, _MAX_STAGES
@@ -59,7 +65,7 @@ class _AttemptTrace:
         return begun_span(name, traceparent_of(self._attempt), at_s)
 
     def see(self, steps: Iterable[Step]) -> None:
-        """Take the worker's reports: another name ends a stage and begins the next."""
+        """Take reports of the worker: the name of another stage ends a span and begins the next."""
         for step in steps:
             name = stage_name(step.stage)
             if name != self._name and self._left > 0:
@@ -67,7 +73,7 @@ class _AttemptTrace:
                 self._stage = self._begun(name, step.at, step.cpu_s)
 
     def end(self, how: str, usage: Usage | None) -> None:
-        """End the attempt; its use of resources is known if its worker was reaped."""
+        """End the spans of the attempt with its outcome, such as "done", and its resources if known."""
         now, fault = time.time(), "" if how == "done" else how
         of_stage, of_attempt = dict[str, Fact](), dict[str, Fact]({"loa.outcome": how})
         if usage is not None:
@@ -108,7 +114,10 @@ class Attempt:
         )
 
     def too_costly(self, claims: Claims) -> str | None:
-        """Return why it has to end; the limit is read again before, as a job that shares it may extend it."""
+        """Return the reason why the attempt exceeds its limit of cost, or None.
+
+        Before that the limit is read again, because another job with the same work may have raised it.
+        """
         if self.claim.max_cost_s is None:
             return None
         spent = self.worker.spent()
@@ -123,7 +132,7 @@ class Attempt:
 def begun(
     settings: Settings, process: Process, claim: Claim, crew: Crew, store: ResultStore, figures: WorkerFigures
 ) -> Attempt:
-    """Start the work on a claim; raises: the system prevents it, or an input result is gone."""
+    """Start the work on a claim; raises if the system starts no process or an input result was removed."""
     workspace = settings.data_directory / "work" / claim.id
     log = settings.data_directory / "log" / f"{claim.id}.log"
     workspace.mkdir(parents=True, exist_ok=True)

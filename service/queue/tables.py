@@ -13,13 +13,15 @@ from service.version import solver_version
 
 _LIVE = text("state IN ('accepted', 'running')")
 BATCH = "batch "
-"""Beginning of the key of a batch in the table of computations. The hash of a result has no space, so the
-keys cannot meet."""
-# What lists are chosen and ordered by; the database's triggers keep it, see `service.store.listing`.
+"""Beginning of the key of a batch in the table of computations. Other keys are hashes, which have no space,
+so that no two keys are equal."""
+# Columns by which lists are filtered and ordered; triggers of the database update them, see
+# `service.store.listing`.
 listings = Table("listing", metadata, *listing.columns())
 
 
 def _columns(kind: Any, *names: str, **options: Any) -> Iterator[Column[Any]]:
+    """Yield columns of one type that are never NULL."""
     return (Column(name, kind, nullable=False, **options) for name in names)
 
 
@@ -48,10 +50,12 @@ Index("computation_in_flight", computations.c.key, unique=True, sqlite_where=_LI
 Index("computation_by_key", computations.c.key, computations.c.state, computations.c.created)
 Index("computation_by_turn", computations.c.state, computations.c.priority, computations.c.created)
 
-# an index finds the range, up to behind all hexadecimal digits; by its collation it may have others too
+# Condition of batches. An index finds the range: "g" is behind all hexadecimal digits. Under the collation of
+# a database other keys may lie in it too, which `startswith` excludes.
 of_batch = computations.c.key.between(BATCH, f"{BATCH}g") & computations.c.key.startswith(BATCH)
 
-# Counts of ended computations: they outlive the computations, see `service.queue.workload`.
+# Counts of ended computations by duration, at most `le` s; they stay when computations are removed, see
+# `service.queue.workload`.
 durations = Table(
     "duration",
     metadata,

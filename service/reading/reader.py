@@ -1,7 +1,8 @@
 """Questions about files of callers: a confined child in a temporary folder answers each.
 
-A few are read at the same time, one of each caller; another of the same caller waits, a third is refused. So
-whoever sends files that take all they may holds up nobody else.
+Files of several callers are read at the same time, but only one of each caller; a second one waits, a third
+is refused. So a caller with costly files delays no other. Children are forked from a *warm* process, which
+has imported their modules.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from service.reading.course import MAX_BYTES, Course
 from service.reading.refusal import refusal
 
 WORK = "service.reading.child"
+"""Module whose function `work` a child executes."""
 MODULES = (
     "lineofaction.gearbox.convert.errors",
     "lineofaction.gearbox.from_rexs.opened",
@@ -38,20 +40,24 @@ MODULES = (
     *filter(find_spec, ["service.reading.sheets"]),  # an instrument
     "scipy.optimize",
 )
+"""Modules that the warm process imports."""
 _WARM_WITHIN_S = 30.0
+"""Time in which the warm process must have started, s."""
 _PATIENCE_S = 2.0
 """Seconds beyond the child's time limit after which it is killed: the child ends first and states the reason.
 """
 
 logger = structlog.get_logger(__name__)
 AT_ONCE = 4
+"""Number of questions that are answered at the same time."""
 LIMITS = Limits(outstanding=2, in_all=20)
+"""Most unanswered questions of one caller, and of all."""
 
 
 class _Children:
-    """Starts a child for each question, forked from a warm process where the system forks. For any thread.
+    """Starts a child for each question, forked from a warm process if the system forks.
 
-    Each child has a folder of its own below `home`.
+    Any thread may use it. Each child has a folder of its own below `home`.
     """
 
     def __init__(self, home: Path, logs: Path) -> None:
@@ -64,13 +70,13 @@ class _Children:
     def read(self, order: LiveOrder) -> bytes:
         """Return the JSON answer of a child that reads the files of the order.
 
-        Raises `ServiceError` as the child found it; `BadInput`: a file ends its reader, or takes more than a
-        reader may; `LiveUnavailable`: what ended the reader is no file.
+        Raises the `ServiceError` that the child reports; `BadInput`: a file crashes the child, or exceeds its
+        time, memory or bytes; `LiveUnavailable`: the child ended for another reason.
         """
         with locked_folder(self._home) as folder:
             child = self._started(folder)
             try:
-                child.send(order.frame())  # one that died before it has read the order shows by its answer
+                child.send(order.frame())  # no error for a dead child: its missing answer tells
                 course = _followed(child, folder)
             finally:
                 ended = self._end(child)
@@ -114,6 +120,7 @@ class _Children:
         return ended
 
     def _cause(self, ended: Ended, course: Course, order: LiveOrder) -> ServiceError:
+        """Return the error for a child that ended without an answer."""
         if self._stopping:
             return LiveUnavailable("The service stops.")
         signal = ending_signal(ended.code)
@@ -124,6 +131,7 @@ class _Children:
         return refusal(order.inputs, course.field or "", bound)
 
     def _unpacked(self, answer: Frame, course: Course, order: LiveOrder) -> bytes:
+        """Return the JSON of an answer; raises the error that it reports."""
         if answer.kind == "problem":
             raise propagated(answer)
         if answer.kind == "memory":
@@ -188,11 +196,11 @@ def require_confinement() -> None:
 
 
 def reading_pool(data_directory: Path) -> QuestionPool:
-    """Return the pool that has files of callers read.
+    """Return the pool of readers that answers questions about files of callers.
 
-    Works of its orders are called as ``function(inputs, folder, announce)``, and call `announce` with the
-    field of each file before they read it. `data_directory`: where folders of readers and their logs are;
-    folders that were left there are removed.
+    The function of an order is called as ``function(inputs, folder, announce)``; it calls `announce` with the
+    field of each file before it reads the file. `data_directory` has the folders of the readers and their
+    logs; folders of earlier processes are removed.
     """
     home = data_directory / "reading"
     remove_left(home)

@@ -1,4 +1,8 @@
-"""Processes and their executions (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
+"""Processes and their executions (OGC API - Processes 1.0, clauses 7.8 to 7.11).
+
+An execution becomes a *job* of a caller. Jobs with the same inputs, by their *key*, share a computation and
+its stored result.
+"""
 
 from __future__ import annotations
 
@@ -50,6 +54,7 @@ from service.worker.process import Process, Registry
 logger = structlog.get_logger(__name__)
 After = Annotated[str, Query(max_length=64, description="Last process of the previous page")]
 _SUBJECTS = ("case", "scene")
+"""Inputs that are the subject of a process: they are not listed among its fields."""
 _MAX_SPECIFIED = 65_536
 """Most characters of a caller's inputs that are stored with each job, in addition to the inputs of its
 computation."""
@@ -74,11 +79,11 @@ def processes_router(registry: Registry) -> APIRouter:
     @needs(Scope.READ)
     def list_processes(limit: Limit = 100, after: After = "") -> ProcessList:
         """All that can be run."""
-        passed = list(registry).index(registry[after].id) + 1 if after else 0
-        behind = list(registry.values())[passed:]
-        page = behind[:limit]
+        start = list(registry).index(registry[after].id) + 1 if after else 0
+        remaining = list(registry.values())[start:]
+        page = remaining[:limit]
         links = [Link(href="/v1/processes", rel="self", title="Processes")]
-        if len(behind) > limit:
+        if len(remaining) > limit:
             following = f"/v1/processes?limit={limit}&after={page[-1].id}"
             links.append(Link(href=following, rel="next", title="Next page"))
         return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in page], links=links)
@@ -102,6 +107,7 @@ def processes_router(registry: Registry) -> APIRouter:
 
 
 def _add_execution(router: APIRouter, process: Process) -> None:
+    """Add the execution route of a process, whose body has the schema of its inputs."""
     body = execute_model(process.id, process.inputs, process.output)
 
     @needs(Scope.SUBMIT, body=body)
@@ -119,12 +125,14 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         form = delivery(request.response, output and output.transmissionMode, field)
         uris = checked_uris(context.settings, request.subscriber)
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
+        # what differs from the caller's last job of this process, or from the defaults in the first one
         former = context.submissions.newest(caller, process.id)
         if former is None:
             defaults = request.inputs.model_dump(mode="json", exclude_defaults=True)
             since = differences_between({}, defaults)
         else:
-            since = differences_between(former[1], inputs, former[0])
+            former_job, former_inputs = former
+            since = differences_between(former_inputs, inputs, former_job)
         check_priority(request.priority, caller)
         limit = cost_limit(request.max_cost_s, caller)
         text = json.dumps(request.inputs.model_dump(mode="json", exclude_unset=True))
@@ -138,7 +146,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
             response.headers["Preference-Applied"] = "respond-async"
         return status
 
-    execute.__annotations__["request"] = body
+    execute.__annotations__["request"] = body  # FastAPI reads the schema of the body from the annotation
     router.add_api_route(
         f"/{process.id}/execution",
         execute,
@@ -160,6 +168,7 @@ def _submit(
     terms: Terms,
     name: str | None,
 ) -> StatusInfo:
+    """Enter a job, named by the caller's idempotency key `name` if there is one; return its status."""
     key = process.key(inputs)
     looked = now()
     stored = context.store.find(key, process.kind) is not None

@@ -1,12 +1,16 @@
 """Transmission error to first order in the gaps of single teeth, about states that were solved.
 
-The gap of a pair of teeth is the sum of two: one turns with the pinion, one with the wheel. What the gap of
-a tooth does at each position is found once for every tooth of either gear, not for every pair of teeth that
-meets in a hunting cycle.
+The gap of a tooth pair is the sum of two gaps: one of the pinion's tooth, one of the wheel's. The
+*contribution* of a tooth to the transmission error at each position is computed once for every tooth of
+either gear, not for every pair of teeth that meets in a hunting cycle. A *state* is the solved contact of one
+whole base pitch.
 
-At a given load the transmission error is concave in the gaps: where teeth part, others take over. So a
-tangent lies above it, and of several tangents the least counts. Flanks that slope touch near the point at
-which their gap is taken, some nanometers closer; the errors measured in drawn pitches contain that.
+At a given load the transmission error is concave in the gaps: where teeth separate, others carry. So a
+tangent lies above it, and the lowest of several tangents is the estimate. Sloping flanks touch near the point
+at which their gap is taken, some nanometers closer; the errors that random pitches show contain this.
+
+Axes: t base pitches, P positions in a base pitch, L loads, J pair indices, M candidates of a pair, R teeth, Q
+quantities.
 """
 
 from __future__ import annotations
@@ -25,20 +29,20 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 
 @dataclass(frozen=True)
 class ToothGaps:
-    """Gaps by every tooth of both gears at P positions of a base pitch; J pairs of M candidates each."""
+    """Gaps by every tooth of both gears at the candidates of a base pitch."""
 
     pair: IntArray
     """Pair indices; +1 is ahead. Shape (J,)."""
     period: int
     """Number of base pitches after which the same teeth of both gears count as meeting again."""
     gears: tuple[FloatArray, FloatArray]
-    """Gap by each of the R teeth of the pinion and of the wheel, m; zero where no candidate is. Tuple of
+    """Gap by each tooth of the pinion and of the wheel, m; zero where a candidate does not exist. Tuple of
     ndarray, shape (J, P, R, M).
     """
 
     @classmethod
     def of(cls, pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> ToothGaps:
-        """Return the `tooth_gaps` of a model where the flanks without them touch."""
+        """Return the `tooth_gaps` of a model at the points where flanks without them touch."""
         first, second = (_by_tooth(pair, candidates, gear, model) for gear in (0, 1))
         return cls(np.unique(candidates.pair), model.period, (first, second))
 
@@ -52,7 +56,7 @@ class ToothGaps:
 def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: ContactModel) -> FloatArray:
     """Return the gaps by the teeth of one gear; one tooth stands for all where they are alike."""
     gear_model = replace(model, tooth_gaps=tuple(term for term in model.tooth_gaps if term.gear == gear))
-    touch, there = candidates.touch, np.isfinite(candidates.gap)
+    touch, there = candidates.touch, np.isfinite(candidates.gap)  # an infinite gap: no candidate
     teeth = min((pair.pinion, pair.wheel)[gear].teeth, model.period) if gear_model.tooth_gaps else 1
     rolls = rolls_at(pair, touch.s_1[there], touch.s_2[there])
     face = np.broadcast_to(candidates.face_position, there.shape)[there]
@@ -61,18 +65,18 @@ def _by_tooth(pair: ParallelAxes, candidates: Candidates, gear: int, model: Cont
         gaps[tooth][there] = gear_model.gap_of_teeth(MeetingTeeth(pair, np.array(tooth), *rolls, face))
     pairs = np.unique(candidates.pair).size
     by_pair = gaps.reshape(teeth, len(there), pairs, -1)
-    return np.ascontiguousarray(np.transpose(by_pair, (2, 1, 0, 3)))
+    return np.ascontiguousarray(np.transpose(by_pair, (2, 1, 0, 3)))  # (J, P, R, M)
 
 
 @dataclass(frozen=True)
 class LoadSums:
-    """Means of Q quantities over the load about one state, to first order in the gaps of teeth."""
+    """Means of Q quantities, weighted by the load, to first order in the gaps of teeth about one state."""
 
     value: FloatArray
     """Means at the state. Shape (P, L, Q)."""
     by_tooth: tuple[FloatArray, FloatArray]
-    """Contribution of each tooth of either gear as a member of each pair. Tuple of ndarray, shape (J, R, P,
-    L, Q).
+    """Contribution of each tooth of the pinion and of the wheel in each pair. Tuple of ndarray, shape (J, R,
+    P, L, Q).
     """
     at_state: FloatArray
     """Sum of the contributions of the teeth of the state. Shape (P, L, Q)."""
@@ -116,7 +120,7 @@ class Tangent:
     """Means over the load about the same state."""
 
     def motion(self, gaps: ToothGaps, pitches: IntArray) -> FloatArray:
-        """Return the motion by the teeth that meet in pitches (t,), over the state, (J, t, P, L) in m."""
+        """Return the contributions of the teeth that meet in pitches (t,) less the state's, (J, t, P, L)."""
         (first, second), (driving, other) = gaps.teeth(pitches), self.by_tooth
         beyond = driving - self.at_state[:, None]
         motion = np.empty((gaps.pair.size, pitches.size, *self.value.shape))
@@ -125,10 +129,10 @@ class Tangent:
         return motion
 
     def distance(self, motion: FloatArray, change: FloatArray, where: BoolArray) -> FloatArray:
-        """Return how far the state is from some of t pitches, P positions and L loads (t, P, L), m.
+        """Return the distance of the state from the points selected by `where` (t, P, L), m.
 
-        It is the mean over the pairs, by their parts, of the `motion` of each against the other gear.
-        `change`: their sum.
+        It is the sum over the pairs of the difference between the `motion` of a pair and its `part` of the
+        `change`, which is the sum of the motions.
         """
         total, distance = change[where], np.zeros(np.count_nonzero(where))
         for pair_motion, part in zip(motion, self.part, strict=True):
@@ -138,21 +142,22 @@ class Tangent:
 
 @dataclass(frozen=True)
 class SolvedState:
-    """Contact of whole base pitches one after the other, and Q quantities of its candidates (Q, P, m)."""
+    """Solved contact of whole base pitches one after the other."""
 
     problem: ContactProblem
     solution: ContactSolution
     rows: FloatArray
+    """Quantities of the candidates whose means are taken. Shape (Q, P, m)."""
 
 
 def nominal_tangent(gaps: ToothGaps, state: SolvedState) -> Tangent:
-    """Return the tangent about the gears whose teeth are alike."""
+    """Return the tangent about the contact of gears whose teeth are alike."""
     (tangent,) = _tangents(gaps, state, 1)
     return tangent
 
 
 def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> list[Tangent]:
-    """Return the tangents about whole base pitches (t,) of which the state is."""
+    """Return the tangents about the whole base pitches (t,) whose contact `state` has."""
     return [
         replace(
             tangent,
@@ -164,7 +169,7 @@ def pitch_tangents(gaps: ToothGaps, state: SolvedState, pitches: IntArray) -> li
 
 
 def _tangents(gaps: ToothGaps, state: SolvedState, states: int) -> list[Tangent]:
-    """Return the tangents about states, as if each were that without gaps of teeth."""
+    """Return the tangents about so many `states`, with zero `at_state`, as for teeth without gaps."""
     problem, solution = state.problem, state.solution
     arm = problem.candidates.motion_arm[:, None]
     weight, weights = load_weights(problem, solution, state.rows)

@@ -48,15 +48,15 @@ def flank_results(
     Parameters
     ----------
     pair : GearPair, InternalGearPair or Checked
-        A request that is checked already stands for pair, point and options.
+        A `Checked` request takes the place of pair, point and options.
     point : OperatingPoint, optional
     options : AnalysisOptions
         `positions` and `receipt` are ignored.
     run : Run
         Workers are not used.
     at : array_like, optional
-        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
-        with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
+        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Where
+        teeth differ, the position decides which of them mesh: from 0 to 1 the first ones of the lists.
     case : dict, optional
         The case as the caller phrased it, echoed and hashed; default: the request in SI units.
     """
@@ -85,7 +85,7 @@ def _findings(results: LoadDistribution) -> tuple[Finding, ...]:
 
 
 def _metadata(checked: Checked, results: LoadDistribution, case: Json | None) -> Metadata:
-    """Everything about the making; the hash is of all that decides the result."""
+    """Return the metadata of the results; the content hash covers everything that determines them."""
     scene = results.scene
     request: Json = {
         "case": case or checked.request.to_json(),

@@ -1,11 +1,13 @@
 """Contact of uncoupled slices: every slice of every tooth pair is an independent spring.
 
-The error d of springs with stiffness k_i, gap g_i and lever arms a_i (motion) and t_i (torque) obeys
+The deflection d (the transmission error) of springs with stiffness k_i, gap g_i and lever arms a_i (of the
+motion) and t_i (of the torque) under the normal force F obeys
 
     sum_i t_i k_i a_i max(0, d - g_i) = F,
 
 whose left side is increasing and piecewise linear in d: with the gaps in increasing order the solution lies
-in the first interval whose end carries at least F. No iteration is needed.
+in the first interval whose end carries at least F. No iteration is needed. Axes: P positions, L loads, n
+candidates, which are the slices of all tooth pairs.
 """
 
 from __future__ import annotations
@@ -38,21 +40,22 @@ SLICES = 65
 
 @dataclass(frozen=True)
 class SliceLaw:
-    """The law of the slices of a fidelity."""
+    """The stiffness law of slices, and what it neglects; each fidelity has its law."""
 
     line_stiffness: Callable[[ParallelAxes, Candidates], FloatArray]
-    """Pair and candidates to the transverse stiffness of each per unit face width (P, n), N/m per m."""
+    """Function of pair and candidates: transverse stiffness per unit face width (P, n), N/m per m."""
     with_gaps: bool
-    """Whether gaps between the flanks are seen: modifications, deviations, alignment, corner contact. Without
-    them a slice touches as far as it lies on the path of contact, a part of it included.
+    """Whether gaps between the flanks act: modifications, deviations, alignment, corner contact. Without
+    gaps the part of a slice that lies on the path of contact touches.
     """
 
 
 @dataclass(frozen=True)
 class SpringContact(PairContact):
-    """A pair whose teeth are uncoupled slices; `plan` gives the patches of its candidates only."""
+    """A pair whose teeth are uncoupled slices. Of its `plan` only the load patches matter."""
 
     law: SliceLaw = field(kw_only=True)
+    """Stiffness of the slices."""
 
     def solve(
         self,
@@ -66,15 +69,16 @@ class SpringContact(PairContact):
 
         Uncoupled slices need no start.
         """
-        seen = model if self.law.with_gaps else ContactModel()
+        acting = model if self.law.with_gaps else ContactModel()
         slices = Slices.of_pair(self.pair, SLICES, 1)
-        plain = contact_candidates(self.pair, seen, position, self.plan.patch, slices)
-        touching = with_gaps(self.pair, plain, seen)
+        plain = contact_candidates(self.pair, acting, position, self.plan.patch, slices)
+        touching = with_gaps(self.pair, plain, acting)
         modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
+        # without compliance matrices: slices are uncoupled
         problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
-        if pitch is not None or seen.tooth_gaps:
+        if pitch is not None or acting.tooth_gaps:
             first = np.zeros_like(position, int)
-            problem = in_pitches(self.pair, problem, seen, first if pitch is None else pitch)
+            problem = in_pitches(self.pair, problem, acting, first if pitch is None else pitch)
         stiffness = slice_stiffness(self.pair, problem.candidates, self.law)
         return problem, _solve_springs(problem.candidates, stiffness, load)
 
@@ -82,8 +86,10 @@ class SpringContact(PairContact):
 def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
     """Return the normal force per normal approach (P, n) of each slice, N/m.
 
-    c b_slice relates forces and approaches in the transverse plane; both are 1/cos(beta_b) and cos(beta_b)
-    times as large along the normal. A slice counts as far as it is on the path of contact.
+    The transverse stiffness is c b_slice. Along the normal the force is 1/cos(beta_b) times the transverse
+    one and the approach cos(beta_b) times: the stiffness is c b_slice / cos(beta_b)^2. The `width` of a
+    candidate is the length b_slice / cos(beta_b) of its contact line, without the part off the path of
+    contact.
     """
     return np.asarray(
         law.line_stiffness(pair, candidates) * candidates.width / math.cos(pair.base_helix_angle)
@@ -101,7 +107,7 @@ def _solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArr
     # force at which the next spring begins to touch; after the last there is none
     onset = gaps[:, 1:] * total[:, :-1] - moment[:, :-1]
     onset = np.where(weights[:, 1:] > 0.0, onset, np.inf)
-    active = (onset[:, :, None] < load).sum(axis=1)
+    active = (onset[:, :, None] < load).sum(axis=1)  # index of the last spring that touches, (P, L)
     slope = np.take_along_axis(total, active, axis=1)
     deflection = (load + np.take_along_axis(moment, active, axis=1)) / slope
     closing = np.maximum(deflection[:, :, None] - np.where(np.isfinite(gap), gap, np.inf)[:, None, :], 0.0)
@@ -112,7 +118,7 @@ def _solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArr
 def _solution(
     candidates: Candidates, load: FloatArray, deflection: FloatArray, tangent: FloatArray, force: FloatArray
 ) -> ContactSolution:
-    """Wrap springs as any other solution; only the equilibrium can be missed, by rounding."""
+    """Return the solution as a `ContactSolution`; its only residual is the rounding of the equilibrium."""
     residuals = np.zeros((*deflection.shape, 4))
     carried = (force * candidates.torque_share[:, None, :]).sum(axis=2)
     residuals[..., 0] = np.abs(carried - load) / load

@@ -1,4 +1,9 @@
-"""Live questions: from a stored table and a change of its flanks to curves, and results on the flanks."""
+"""Live questions: from a stored table and a change of its flanks to curves, and results on the flanks.
+
+The gears of a stored table are *condensed*: the compliance of their flanks is known, so that the contact of
+changed flanks is solved at once. A *passage* is the load of a tooth pair on its way through the mesh. The
+*band* has the curves of pairs that are drawn within a tolerance class.
+"""
 
 from __future__ import annotations
 
@@ -38,18 +43,25 @@ if TYPE_CHECKING:
     from fe_contact.microgeometry.drawn_ripple import DrawnRipple
 
 _N_PER_MM = 1e3
+"""N/m in a N/mm."""
 _DIGITS = 5
+"""Significant digits of numbers that are only drawn."""
 _STEPS, _COLUMNS = 32, 64
 """Positions in a base pitch and most columns over the face of a passage."""
 _PLACES = ("pair.", "load.", "errors.")
+"""Tables of a case, whose names the fields of a question do not have."""
 _OF_BAND = {
     *("torque_n_m", "misalignment_um", "center_distance_change_mm", "pinion", "wheel", "tolerance_class")
 }
+"""Fields of a question on which its band depends."""
 _MAX_DRAWN = 4
+"""Most bands of a case that stay in memory."""
 _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
+"""Points of a drawn tooth outline along its flank, its root and its tip."""
 
 
 def _derivatives_json(derivatives: CurveDerivatives) -> Iterator[Json]:
+    """Yield, for each torque, the derivatives of the curve in um by figures of the flanks in their units."""
     names = [boundary_name(name) for name in derivatives.names]
     flanks = {gear: derivatives.on_flank(gear) for gear in ("pinion", "wheel")}
     for k in range(derivatives.torque.size):
@@ -98,8 +110,8 @@ def _flanks_json(flanks: LoadDistribution) -> Json:
 def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
     """Return load and separation of a pair of teeth through the mesh; `separation` (P, N, K) in m.
 
-    The place of a pair is position plus index. Rows are evenly spaced from where the pair begins to carry to
-    where it ends. Where teeth differ, the period has several base pitches: the first one stands for all.
+    The place of a pair is its position plus its index, in base pitches. Rows are evenly spaced over the
+    places at which the pair carries load. Where teeth differ, only the first base pitch of the period counts.
     """
     first = flanks.position - flanks.position[0] < 1.0
     path_position = (flanks.position[first, None] + flanks.pair).ravel()
@@ -114,7 +126,8 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
         flanks.face_position[0], flanks.face_position[-1], min(_COLUMNS, len(separation[0, 0]))
     )
 
-    def laid(values: FloatArray) -> FloatArray:
+    def on_grid(values: FloatArray) -> FloatArray:
+        """Interpolate values (P, N, K) at the rows and at the face positions."""
         table = values[first].reshape(path_position.size, -1)[order]
         return interpolated_columns(
             face, flanks.face_position, interpolated_columns(rows, path_position[order], table).T
@@ -124,8 +137,8 @@ def _passage_json(flanks: LoadDistribution, separation: FloatArray) -> Json:
         "first_place": low / _STEPS,
         "step": 1.0 / _STEPS,
         "face_position_mm": _short(face / MM),
-        "pressure_mpa": np.rint(laid(flanks.pressure) / MPA).astype(int).tolist(),
-        "apart_um": np.round(laid(separation) / UM, 2).tolist(),
+        "pressure_mpa": np.rint(on_grid(flanks.pressure) / MPA).astype(int).tolist(),
+        "apart_um": np.round(on_grid(separation) / UM, 2).tolist(),
     }
 
 
@@ -141,7 +154,8 @@ def interpolated_columns(x: FloatArray, knots: FloatArray, values: FloatArray) -
 
 
 def _short(values: FloatArray) -> Any:
-    """Return numbers of five digits, as lists: they are drawn."""
+    """Return numbers rounded to `_DIGITS` digits, as lists."""
+    # exponent of the first digit
     size = np.floor(np.log10(np.where(values == 0.0, 1.0, np.abs(values))))
     scale = 10.0 ** (_DIGITS - 1 - size)
     return (np.rint(values * scale) / scale).tolist()
@@ -156,11 +170,11 @@ class CondensedCase:
     """Gear pair with the flanks that the case states."""
     bodies: CondensedPair
     drawn: OrderedDict[str, DrawnRipple] = field(default_factory=OrderedDict)
-    """Pairs solved within tolerances, by question: every answer adds some."""
+    """Pairs drawn within tolerances, by the text of the question; every answer solves some more."""
 
 
 def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> CondensedCase:
-    """Return the case of a stored table, its gears with the compliance that it was computed with.
+    """Return the case of a stored table, and its gears with the compliance by which the table was computed.
 
     Raises `NotFound`: the table was removed since it was requested; `NotAnalyzed`: the compliance is not in
     the cache, and is not to be computed.
@@ -185,7 +199,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> Condensed
 def live_curves(condensed: CondensedCase, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question.
 
-    The case was checked when its table was made: only the flanks that change are made anew.
+    The case was checked when its table was computed, so that only the changed flanks are checked.
     """
     try:
         changes = {name: _figures_of(getattr(change, name)) for name in ("pinion", "wheel")}
@@ -212,7 +226,7 @@ def _add_band(
     change: LiveInput,
     drawn: OrderedDict[str, DrawnRipple],
 ) -> None:
-    """Solve further pairs within the class, and add the band once there are enough; the last few are kept."""
+    """Solve further drawn pairs within the class, and add the band to the answer once there are enough."""
     from fe_contact.microgeometry.drawn_ripple import DrawnRipple  # noqa: PLC0415 (start-up time)
 
     begin, chosen = cpu_seconds(), change.tolerance_class
@@ -233,7 +247,7 @@ def _add_band(
 
 
 def _band(ripple: DrawnRipple, tolerance_class: int) -> Json:
-    """Return the band of pairs, in um; only how many are solved before all are."""
+    """Return the band of the drawn pairs, in um; only their numbers until all are solved."""
     pairs = len(ripple.deviation)
     known = {"tolerance_class": tolerance_class, "pairs": pairs, "solved": ripple.solved}
     known["of"] = ripple.solved + ripple.missing
@@ -316,7 +330,7 @@ def _receipt(table: SteDatabase) -> Json:
 
 
 def _by_question(fault: Fault) -> Fault:
-    """Name a fault by the field of the question, whose alignments are single values."""
+    """Return a fault of the case by the field of the question, whose alignments are single values."""
     name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
     name = next((name.removeprefix(prefix) for prefix in _PLACES if name.startswith(prefix)), name)
     return Fault(name, fault.value, fault.bound, fault.suggestion)

@@ -1,4 +1,7 @@
-"""The gears of a case as made: as an inspection measured one, or drawn within a class of ISO 1328-1:2013."""
+"""The gears of a case as made: as an inspection measured one, or drawn within a class of ISO 1328-1:2013.
+
+An inspection *sheet* is a table of measured deviations. *Drawn* gears have random deviations.
+"""
 
 from __future__ import annotations
 
@@ -28,19 +31,26 @@ from lineofaction.gearbox.units import DEGREE, MM, UM
 
 GEARS = ("pinion", "wheel")
 _PITCHES = ("pitch_deviation_um", "single_pitch_deviation_um")
+"""Fields for the pitches of a gear, of which it has one: a new one replaces either."""
 _IN_TOLERANCE = 3.0
-"""Standard deviations of a drawn figure at its tolerance, where the distribution is cut."""
+"""Tolerance over the standard deviation of a drawn figure. Larger figures are clipped to the tolerance."""
+_ECCENTRICITY = (0.2, 0.8)
+"""Range of a drawn eccentricity, over the one that alone would use up the tolerance of the pitches."""
 
 
 @dataclass(frozen=True)
 class Inspected:
-    """The inspected gear of the case, and the loaded flanks of that gear."""
+    """The inspected gear of a case, and how its sheet is evaluated."""
 
     gear: str
+    """Name of the gear, one of `GEARS`."""
     loaded: Flank
+    """The flanks of that gear that carry the load."""
     cutoff_mm: float | None
+    """Cutoff wavelength of the filter for traces, mm; None: the default of the evaluation."""
     mean_of_others: bool = False
-    """Whether teeth that were not measured have the mean flank of the others, or the designed one."""
+    """Whether a tooth that was not measured has the mean flank of the measured ones; else the designed flank.
+    """
 
     def chart(self, case: Case) -> Chart:
         """Return the chart from the sheet's teeth to their sequence in mesh."""
@@ -50,10 +60,10 @@ class Inspected:
 def measured_case(
     case: Case, text: str, name: str, of: Inspected, values: str | None = None
 ) -> tuple[Case, MeasuredGear]:
-    """Return a case with the measured deviations of one gear by a sheet, and the account of its lines.
+    """Return a case with the deviations of one gear from the `text` of a sheet, and the measured gear.
 
-    `values` is the text of the value file that a machine wrote of the same gear.
-    Raises `BadInput`: a line that is none, a trace that cannot be evaluated, or a gear that cannot be.
+    `name` is that of the sheet. `values` is the text of a machine's value file for the same gear.
+    Raises `BadInput`: an invalid line, a trace that cannot be evaluated, or an impossible gear.
     """
     chart = of.chart(case)
     cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
@@ -63,9 +73,10 @@ def measured_case(
 
 
 def drawn_case(case: Case, tolerance_class: int, seed: int = 0) -> Case:
-    """Return a case with both gears drawn within a class, in place of deviations but waves that it had.
+    """Return a case with deviations of both gears drawn within a tolerance class.
 
-    Raises `BadInput`: no such class, or a gear beyond the range of the standard.
+    They replace the deviations of the case, except waves. Raises `BadInput`: an unknown class, or a gear
+    beyond the range of the standard.
     """
     draw = np.random.default_rng(seed)
     with boundary_errors():
@@ -79,7 +90,7 @@ def _gear(case: Case, name: str) -> Toothing:
 
 
 def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
-    """Return the case with other fields of its gears; the case is checked to be computable."""
+    """Return the case with some fields of its gears replaced; raises `BadInput` for an impossible pair."""
     content = case_json(case)
     for name, replacement in fields.items():
         replaced = {*replacement, *(_PITCHES if {*replacement} & {*_PITCHES} else ())}
@@ -93,11 +104,12 @@ def _with_fields(case: Case, fields: Mapping[str, Mapping[str, Any]]) -> Case:
 def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> dict[str, Any]:
     """Return the fields of a gear within a class: run-out, pitches, slopes and forms of every tooth.
 
-    Figures are normal, three standard deviations in the tolerance. Run-out and pitches share what a class
-    allows of pitches. Helix deviations are drawn of helical gears alone, so that a spur pair stays plane.
+    Figures are normally distributed, with the tolerance at three standard deviations. Run-out and pitches
+    share the tolerance of the pitches. Only helical gears get helix deviations, so that a spur pair stays a
+    plane problem.
     """
     pitches = PitchBounds.of(gear, tolerance_class)
-    eccentricity = draw.uniform(0.2, 0.8) * pitches.eccentricity
+    eccentricity = draw.uniform(*_ECCENTRICITY) * pitches.eccentricity
     across = {"helix_slope": helix_slope_tolerance, "helix_form": helix_form_tolerance}
     tolerances = {"profile_slope": profile_slope_tolerance, "profile_form": profile_form_tolerance}
     tolerances |= across if gear.helix_angle else {}
@@ -121,8 +133,10 @@ def _drawn(gear: Toothing, tolerance_class: int, draw: np.random.Generator) -> d
 
 
 def _within(limit: float, count: int, draw: np.random.Generator) -> FloatArray:
+    """Return normally distributed figures (count,) within +-limit."""
     return np.clip(draw.normal(0.0, limit / _IN_TOLERANCE, count), -limit, limit)
 
 
 def _um(values: FloatArray) -> list[float]:
+    """Return lengths in um to three decimals; + 0.0 turns -0 into 0."""
     return [float(value) for value in np.round(values / UM, 3) + 0.0]

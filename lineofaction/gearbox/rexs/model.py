@@ -11,7 +11,8 @@ Value = Scalar | Array | tuple[Array, ...] | None
 """A scalar, an array, a matrix by rows (an array of arrays), or None where the file gives no value."""
 
 Extra = tuple[tuple[str, str], ...]
-"""Fields of an element that REXS does not define, in their order; they are kept."""
+"""Name and text of the fields of an element that REXS does not define, in their order. They are written back.
+"""
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,10 @@ class Model:
         return next((component for component in self.components if component.id == number), None)
 
     def mapped(self, change: Callable[[str, Component], Component]) -> Model:
-        """Return the model with `change` applied to each place and component, load cases included."""
+        """Return the model with each component replaced by ``change(place, component)``, in load cases too.
+
+        The place is text on the position in the file, as `all_components` yields it.
+        """
         places = (location for location, _ in self.all_components())
 
         def changed(parts: Iterable[Component]) -> tuple[Component, ...]:

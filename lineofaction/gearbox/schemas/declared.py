@@ -1,4 +1,9 @@
-"""Boundary fields made from the fields that a library declares: the unit in the name, bounds in it, words."""
+"""Fields of the boundary made from the fields that a library declares.
+
+A library declares a field (`Declared`: kind, SI unit, bound, description, example) on its dataclass. The
+*boundary* is what users write: case files and requests. A field there has the unit in its name, its bounds
+and default in that unit, and the description as text. A *part* is a field that is itself a dataclass.
+"""
 
 from __future__ import annotations
 
@@ -19,21 +24,23 @@ from lineofaction.gearbox.units import BY_SUFFIX, as_typed, suffix_of
 Fields = Mapping[str, tuple[Any, Any]]
 Model = TypeVar("Model", bound=BoundaryModel)
 _MODELS: Mapping[type, Any] = {FlankGrid: flank_grid.FlankGridInput}
-"""The models of parts whose fields are lists."""
+"""Models of the parts whose fields are lists; those of other parts are made from their declarations."""
 _EXAMPLES: Mapping[type, Any] = {FlankGrid: flank_grid.EXAMPLE}
+"""Examples of these parts."""
 
 
 @dataclass(frozen=True)
 class Figure:
-    """A declared number or name as the boundary has it."""
+    """A declared number, switch or choice as the boundary has it."""
 
     name: str
-    """The field of the library."""
+    """Name of the field in the library."""
     what: Declared
+    """Declaration of the field."""
     default: Any
     """Default in SI; `MISSING`: a value is required; None: the field may be left out."""
     marked: bool = True
-    """Whether its schema says kind and direction."""
+    """Whether the schema of the field states kind and direction (``x-kind``, ``x-along``)."""
 
     @property
     def field(self) -> str:
@@ -78,7 +85,7 @@ class Figure:
         return as_typed(value, self.unit.factor) if isinstance(value, float) else value
 
     def with_unit(self, text: str) -> str:
-        """Return words with the unit where they place it, else before the first semicolon."""
+        """Return a text with the unit at its mark ``{unit}``, or else before the first semicolon."""
         unit = self.unit.name or self.what.unit
         if "{unit}" in text:
             return text.replace("{unit}", unit)
@@ -86,7 +93,7 @@ class Figure:
         return f"{head}, in {unit}{semicolon}{rest}" if unit else text
 
     def as_field(self) -> tuple[Any, Any]:
-        """Return type and field of a model that has it with its default."""
+        """Return the type and the field of a model, as `pydantic.create_model` takes them."""
         along = [direction.name.lower() for direction in self.what.along if direction.name]
         extra: Any = {"x-kind": self.what.kind.value, "x-along": along}
         field = Field(
@@ -94,16 +101,17 @@ class Figure:
             description=self.with_unit(self.what.description),
             examples=[self.boundary_value(self.what.example)],
             json_schema_extra=extra if self.marked else None,
-            exclude_if=self._unsaid if self.what.later else None,
+            # a field of a later version is left out at its default, so that older cases keep their hash
+            exclude_if=self._is_default if self.what.later else None,
         )
         return self.accepted, field
 
-    def _unsaid(self, value: Any) -> bool:
+    def _is_default(self, value: Any) -> bool:
         return bool(value == self.boundary_value(self.default))
 
 
 def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
-    """Return the declared numbers and names of a dataclass, of some kinds if any are named."""
+    """Return the figures of a dataclass: of the `kinds` given, or of all kinds but surfaces and parts."""
     defaults = {entry.name: entry.default for entry in fields(kind)}
     return tuple(
         Figure(name, fact, defaults[name])
@@ -113,7 +121,10 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
 
 
 def declared_in(kind: type[Any], *, required: bool = False, marked: bool = True) -> Fields:
-    """Return the declared fields of a dataclass as fields of a model; `required`: without defaults."""
+    """Return the declared fields of a dataclass as fields of a model.
+
+    With `required` no figure has a default; `marked` is that of `Figure`.
+    """
     declared = (replace(figure, marked=marked) for figure in figures(kind))
     declared = (replace(figure, default=MISSING) if required else figure for figure in declared)
     return {**as_fields(declared), **parts_in(parts_of(kind))}

@@ -1,4 +1,8 @@
-"""Page of an ablation: the largest change, the plot, every effect, and effects that were not toggled."""
+"""Page of an ablation: the largest change, the plot, every effect, and effects that were not toggled.
+
+An ablation toggles each effect of a case or a scene by itself. An *entry* is one of its effects, with the
+computed and the estimated change. *Trifles* are effects for which both are negligible.
+"""
 
 from __future__ import annotations
 
@@ -34,24 +38,28 @@ _CASE_HEAD = (
     "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
     "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
 )  # fmt: skip
-_SMALLEST = 1e-3  # least change that counts, um
+_SMALLEST = 1e-3  # least change in a log-log plot, um
+_ZERO = 5e-7  # change below which it is written as 0, in the unit of the column
 
 
 @dataclass(frozen=True)
 class _Look:
-    """The look of an ablation.
-
-    ``change(ablation, entry)`` is the change of peak-to-peak by leaving an effect out, m; `signed` writes one
-    in um. `caption` says how to read the plot, `table` lists all effects in figures.
-    """
+    """The texts and drawings that differ between the ablation of a case and that of a scene."""
 
     what: str
+    """Word for the subject: "case" or "scene"."""
     title: str
+    """Title of the figure."""
     change: Callable[[Any, Any], float]
+    """``change(ablation, entry)``, the change of peak-to-peak by leaving an effect out, m."""
     signed: Callable[[float], str]
+    """Writes a change in um with its sign."""
     caption: Callable[[Any], str]
+    """Caption of the figure of an ablation."""
     panels: Callable[[Any], tuple[Panel, ...]]
+    """Panels of the figure."""
     table: Callable[[Any], Table]
+    """Table of all effects."""
 
     def change_text(self, ablation: Any, entry: Any) -> str:
         return f"{self.signed(1e6 * self.change(ablation, entry))} µm"
@@ -125,15 +133,15 @@ def _case_row(ablation: Ablation, entry: EffectAblation) -> tuple[str, ...]:
 
 
 def _scatter(ablation: Ablation, title: str, which: str) -> Panel:
-    """Estimated over computed change of one quantity, log-log."""
+    """Draw the estimated over the computed change of `which`, a field of `Influence`, log-log."""
     points = []
     for entry in ablation.effects:
         if entry.estimate is not None:
             influences = (ablation.measured(entry), entry.estimate)
             sizes = [abs(1e6 * getattr(influence, which)) for influence in influences]
             points += [(*sizes, entry.name)] if min(sizes) > _SMALLEST else []
-    reached = [value for point in points for value in point[:2]] or [0.1, 10.0]
-    ends = np.array([0.5 * min(reached), 2.0 * max(reached)])
+    sizes = [value for point in points for value in point[:2]] or [0.1, 10.0]  # um, of an empty plot
+    ends = np.array([0.5 * min(sizes), 2.0 * max(sizes)])
     marks: tuple[tuple[str, float, Dash], ...] = (
         ("equal", 1.0, "dash"),
         ("factor 2", 2.0, "dot"),
@@ -228,12 +236,13 @@ def _scene_panels(ablation: SceneAblation) -> tuple[Panel, ...]:
 
 
 def _maximum(values: FloatArray) -> float:
+    """Return the value of the largest magnitude, with its sign."""
     return float(values[np.argmax(np.abs(values))])
 
 
 def _signed(value: float) -> str:
-    """Write three digits with a sign; nothing is 0."""
-    return "0" if abs(value) < 5e-7 else engineering(value, 3, "+")
+    """Write three digits with a sign; a change below `_ZERO` is 0."""
+    return "0" if abs(value) < _ZERO else engineering(value, 3, "+")
 
 
 _SCENE = _Look(

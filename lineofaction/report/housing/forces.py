@@ -20,7 +20,7 @@ from lineofaction.report.drawing.figure import Axis, Figure, Panel, Table, numbe
 from lineofaction.report.response.excitations import omitted_orders
 
 COARSE = 10.0 ** (1.0 / 20.0) - 1.0
-"""Smearing of 1 dB, above which a window does not resolve an order."""
+"""Smearing of 1 dB, as a part of the amplitude, above which a window does not resolve an order."""
 
 DEPTH = 60.0
 """Range of levels below the loudest one that the figure shows, dB."""
