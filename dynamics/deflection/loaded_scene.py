@@ -1,4 +1,8 @@
-"""A scene under a load case: constant speeds and loads, everything that statics follows."""
+"""A scene under a load case: constant speeds and loads, with all effects of statics.
+
+The *leading* shaft is that of the first drive that turns, to whose speed and torque a load case refers. A
+*law* is the given motion of a train.
+"""
 
 from __future__ import annotations
 
@@ -19,22 +23,22 @@ from dynamics.types import FloatArray
 from model_studies import in_unit
 
 STATIC = 1.0
-"""Frequency to which shafts are resolved, Hz: their deflections under forces at parts on them are exact
-anyway.
+"""Highest frequency, Hz, for which shafts are resolved. Static deflections under forces at parts on a shaft
+are exact in any resolution.
 """
 
 
 @dataclass(frozen=True)
 class ForceUnderCase:
-    """A force of a scene as it is under a load case, before the factor of its course.
-
-    `force`, `moment` (3,): along and about x, y, z, N and N m.
-    """
+    """A force of a scene under a load case, without the factor of its course (over time, angle or speed)."""
 
     name: str
     shaft: str
+    """Shaft on which the force acts."""
     force: FloatArray = field(metadata=in_unit("n", "axis"))
+    """Along x, y, z, N. Shape (3,)."""
     moment: FloatArray = field(metadata=in_unit("n_m", "axis"))
+    """About x, y, z, N m. Shape (3,)."""
 
 
 def _case_force(force: AppliedForce, specified: CaseForce | None) -> AppliedForce:
@@ -56,16 +60,15 @@ def _times(factor: float, vector: Vector) -> Vector:
 
 @dataclass(frozen=True)
 class _Leader:
-    """The leading shaft of a scene: its law in the kinematic motion, its speed in the scene, its sense.
-
-    `speed` is in rad/s about +z, of largest size, 0 where a free rotation starts from rest; `forward` is +1
-    or -1.
-    """
+    """The leading shaft of a scene."""
 
     law: int
+    """Index of its law in the kinematic motion."""
     shaft: str
     speed: float
+    """Speed of largest magnitude in the scene, rad/s about +z; 0: a free rotation that starts from rest."""
     forward: int
+    """Sign of its rotation about +z."""
 
 
 def leader_of(scene: Scene) -> _Leader:
@@ -79,12 +82,13 @@ def leader_of(scene: Scene) -> _Leader:
 
 
 def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
-    """Return `scene` under the constant loads and speeds of `case`, with everything that statics follows.
+    """Return `scene` under the constant loads and speeds of `case`, with all effects of statics.
 
-    Raises `InputError`: the case has no speed, or its torque cannot be had from the loads of the scene.
+    Raises `InputError`: the case has no speed, or no factor on the scene's loads gives its torque.
     """
     leader = leader_of(scene)
     speed = _speed(leader, case)
+    # on the speeds of the scene; a leader at rest has the speed 1 below
     scale = _turned(case) * (speed / abs(leader.speed) if leader.speed else speed)
     drives = (*at_steady_speeds(scene, scale).drives, *_fixed_trains(scene, leader, scale))
     driven = replace(scene, drives=drives, free_rotations=())
@@ -98,10 +102,10 @@ def loaded_scene(scene: Scene, case: LoadCase) -> Scene:
 
 
 def with_loads(scene: Scene, case: LoadCase) -> Scene:
-    """Return `scene` with the constant loads and the forces of `case`, which its flanks carry.
+    """Return `scene` with the constant loads and the forces of `case`.
 
-    Every drive holds its largest speed: the torque of a run-up's acceleration is none of the case. Raises
-    `InputError`: as `loaded_scene`.
+    Every drive keeps its largest speed: a load case has no torque of acceleration. Raises the `InputError` of
+    `loaded_scene`.
     """
     case_forces = {part.name: part for part in case.forces}
     steady = at_steady_speeds(scene)
@@ -129,6 +133,7 @@ def with_loads(scene: Scene, case: LoadCase) -> Scene:
 
 
 def _turned(case: LoadCase) -> float:
+    """Return the sign of a load case: -1 if the coast flanks carry, so that the scene turns backwards."""
     return 1.0 if case.direction == DRIVE else -1.0
 
 
@@ -150,7 +155,7 @@ def _effects_at_rest(scene: Scene) -> dict[str, str]:
 
 
 def _fixed_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[ImposedRotation]:
-    """Yield a drive for every free train: it takes the unbalanced torque, at rest and in motion."""
+    """Yield a drive for every free train, which carries the torque that its loads do not balance."""
     for free in scene.free_rotations:
         speed = free.initial_speed or (free.forward if free.shaft == leader.shaft else 0.0)
         if speed == 0.0:
@@ -162,8 +167,9 @@ def _fixed_trains(scene: Scene, leader: _Leader, scale: float) -> Iterator[Impos
 def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, float]:
     """Return the torque on the leading shaft at a speed, N m: by loads at t = 0, and by all other torques.
 
-    By virtual power: a load T on a shaft that turns at `ratio` times the leader takes T times that. The
-    others are torques by speed, and moments of forces about the axis, which are torques about +z.
+    By virtual power a load T on a shaft at r times the leader's speed is the torque r T on the leader. The
+    other torques are those that depend on speed, and the moments of forces about the axis, which count about
+    +z.
     """
     kinematics = solve_kinematics(scene)
     loads = sum(
@@ -186,15 +192,15 @@ def leading_torque(scene: Scene, leader: _Leader, speed: float) -> tuple[float, 
 
 
 def _toward(kinematics: Kinematics, shaft: int, leader: _Leader) -> float:
-    """Speed of a shaft over that of the leader, > 0 where a resistance of the shaft resists the leader."""
+    """Return the speed of a shaft over the leader's; > 0 if a torque against the shaft resists the leader."""
     return kinematics.sense[shaft] * leader.forward * float(kinematics.ratio[shaft][leader.law])
 
 
 def _factor(scene: Scene, speed: float, torque: float) -> float:
     """Return the factor on the loads with which the leading shaft carries `torque`, N m."""
     loads, further = leading_torque(scene, leader_of(scene), speed)
-    wanted = torque - further
-    if loads == 0.0 or wanted / loads <= 0.0:
+    by_loads = torque - further
+    if loads == 0.0 or by_loads / loads <= 0.0:
         bound = above(further, "N m", "what torques by speed and of forces take,") if loads else "left out"
         raise InputError("torque", torque, bound, "The scene's loads at t = 0 must resist the leading shaft.")
-    return wanted / loads
+    return by_loads / loads

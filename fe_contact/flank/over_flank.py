@@ -25,6 +25,8 @@ from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 _FLANK = Direction.PROFILE | Direction.FACE
+_DEEPEST = 0.5
+"""Largest depth of a free form, in normal modules."""
 SURFACE = Declared(
     Kind.SURFACE,
     "",
@@ -53,8 +55,8 @@ class _FlankTwist(Polynomial):
 class _GroundHelixCrowning(FlankPart):
     """Helix crowning with the natural twist of generating grinding.
 
-    While the worm stands at one place Z along the face it touches the flank along its normal, so that the
-    infeed there is felt at z = Z + (l - l_m) tan(beta_b): on the whole profile, l_m in its middle.
+    At the position Z along the face the worm touches the flank on the whole profile, at the face positions
+    z = Z + (l - l_m) tan(beta_b), with the roll length l_m of its middle. There its infeed at Z acts.
     """
 
     ground_helix_crowning: float = amount(
@@ -75,16 +77,16 @@ class _GroundHelixCrowning(FlankPart):
     def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """See `FlankPart.removed`."""
         middle = 0.5 * (gear.form_roll_length + gear.tip_roll_length)
-        worm = face_position - (roll_length - middle) * math.tan(gear.base_helix_angle)
+        worm = face_position - (roll_length - middle) * math.tan(gear.base_helix_angle)  # Z
         return np.asarray(self.ground_helix_crowning * (2.0 * worm / gear.face_width) ** 2)
 
 
 @dataclass(frozen=True, kw_only=True)
 class _CornerRelief(ProfileRelief):
-    """A relief over the profile as it is at the end of the face that holds the corner."""
+    """A triangular relief. At the end of the face with the corner it is a relief over the profile."""
 
     def check_fits(self, gear: Tooth) -> None:
-        """Raise `InputError` if it is longer than the involute, or no line of contact crosses the flank."""
+        """Raise `InputError` if the relief is longer than the involute, or the gear is a spur gear."""
         super().check_fits(gear)
         if self._amount and not gear.base_helix_angle:
             remedy = "Lines of contact of a spur gear run along the face: give it a tip or root relief."
@@ -95,7 +97,7 @@ class _CornerRelief(ProfileRelief):
         return super().removed(gear, roll_length - self._inset(gear, face_position), face_position)
 
     def relief_starts(self, gear: Tooth, face_position: FloatArray | float = 0.0) -> tuple[ReliefStart, ...]:
-        """See `FlankPart.relief_starts`; nothing begins where the triangle has ended."""
+        """See `FlankPart.relief_starts`; beyond the end of the triangle jump and bend are zero."""
         start, end = self._span(gear)
         inset = self._inset(gear, np.asarray(face_position))
         reached = np.abs(inset) < abs(end - start)
@@ -104,7 +106,7 @@ class _CornerRelief(ProfileRelief):
         return (ReliefStart(begin.roll_length, begin.towards_tip, jump, bend),)
 
     def _inset(self, gear: Tooth, face_position: FloatArray) -> FloatArray:
-        """Return how much later than at the corner's end of the face it starts, m of roll length."""
+        """Return the shift of the start along the roll length, m, against that at the corner's end."""
         start, end = self._span(gear)
         lead = math.tan(gear.base_helix_angle)
         corner = math.copysign(0.5 * gear.face_width, lead * (end - start))
@@ -174,7 +176,7 @@ class _FreeForm(FlankPart):
 
 
 def check_reach(grid: FlankGrid, gear: Tooth) -> None:
-    """Refuse a grid outside the flank, or deeper than half the module: a wrong unit or origin."""
+    """Raise `InputError` for a grid outside the flank or too deep, by a wrong unit or origin."""
     half = 0.5 * gear.face_width
     for axis, (low, high) in {"roll_length": involute(gear), "face_position": (-half, half)}.items():
         nodes = getattr(grid, axis)
@@ -183,7 +185,7 @@ def check_reach(grid: FlankGrid, gear: Tooth) -> None:
             bound = Text.of("a range that reaches into the flank, which spans ", *ends)
             remedy = "Is the unit or the origin another one?"
             raise InputError(f"flank_grid.{axis}", [nodes[0], nodes[-1]], bound, remedy)
-    removed, largest = np.array(grid.removed), 0.5 * gear.normal_module
+    removed, largest = np.array(grid.removed), _DEEPEST * gear.normal_module
     i, j = np.unravel_index(np.abs(removed).argmax(), removed.shape)
     if abs(removed[i, j]) > largest:
         bound = Text.of("at most half the module in size, ", Quantity(largest, "m", digits=6))
@@ -198,4 +200,4 @@ class OverFlank(
     _TriangularRootRelief,
     _FreeForm,
 ):
-    """All modifications over the whole flank, in the order of their figures."""
+    """All modifications over the whole flank. The order of the bases is the order of their fields."""

@@ -1,4 +1,9 @@
-"""Entries in the job table: who may make one, which computation it shares; one job, or a batch as a whole."""
+"""Entries in the job table: who may make one, which computation it shares; one job, or a batch as a whole.
+
+A *job* is the request of one caller; a *computation* is the work of one or several jobs. A computation is
+live while it waits or runs. The *key* is the hash of the inputs, with the address of a project. A *batch* is
+a job with others as its children.
+"""
 
 from __future__ import annotations
 
@@ -25,28 +30,28 @@ from service.tracing import TRACEPARENT
 from service.version import solver_version
 
 LIVE = ("accepted", "running")
-"""States of work that goes on."""
+"""States of a computation that waits or runs."""
 _NAMES = uuid.UUID("4f5b2a0e-6c0f-4b7e-9a53-0d8f3a1c7e62")
 """Name space of the identifiers of jobs that their callers name."""
 
 
 @dataclass(frozen=True)
 class BatchCase:
-    """The work of a job before it is entered: its name and inputs.
-
-    It says whether the store was seen to have the result, and what it is predicted to cost beside others.
-    """
+    """The work of a job before it is entered."""
 
     key: str
     inputs: dict[str, Any]
+    """Normalized inputs."""
     stored: bool = False
+    """Whether the store was found to have the result."""
     cost: float = 1.0
+    """Predicted cost, relative to the other cases of a batch."""
 
 
 class Entry:
     """Enters jobs of one caller, alone or in batches. Equal work that waits, runs or is stored is shared.
 
-    So many computations may wait. Of a batch the label of the terms is that of the whole.
+    At most `queue_limit` computations may wait. The label in the terms of a batch is that of the whole.
     """
 
     def __init__(
@@ -56,23 +61,26 @@ class Entry:
         self._project, self._caller, self._terms = project, caller, terms
 
     def job(self, process: str, work: BatchCase, looked: str, name: str | None = None) -> str:
-        """Enter a job; return its identifier, or that of an equal job that answers; as `batch`."""
+        """Enter a job; return its identifier, or that of an equal job of the caller whose result it can take.
+
+        Parameters and errors are those of `batch`.
+        """
         return self._job(self._identifier(process, name), process, self._addressed(work), looked)
 
     def batch(self, process: str, cases: Sequence[BatchCase], looked: str, name: str | None = None) -> str:
         """Enter a batch with its jobs, all or none; return its identifier.
 
-        `looked` is when the store was asked for results: work that has ended since is shared too. A `name` is
-        the caller's for this request (``Idempotency-Key``): sent again, it is the same. Raises `BadInput`:
-        the name stands for other work, or there are more new cases than may ever wait; `QueueFull`: there is
-        no room for all of them now, or the caller has as many unfinished jobs as it may.
+        `looked` is the time at which the store was searched for results: work that has ended since is shared
+        too. `name` is the caller's for this request (``Idempotency-Key``): a repeated request enters nothing
+        new. Raises `BadInput`: the name belongs to other work, or there are more new cases than may ever
+        wait; `QueueFull`: too many computations wait now, or the caller has too many unfinished jobs.
         """
         identifier = self._identifier(f"batch of {process}", name)
         self._batch(identifier, process, [self._addressed(case) for case in cases], looked)
         return identifier
 
     def _identifier(self, what: str, name: str | None) -> str:
-        """Return the identifier of a job; a named job has one that no other caller's can have."""
+        """Return the identifier of a job: random, or of a named job the hash of caller and name."""
         if name is None:
             return str(uuid.uuid4())
         named = [self._caller.name, what, name]
@@ -85,7 +93,7 @@ class Entry:
 
     @retried
     def _job(self, identifier: str, process: str, work: BatchCase, looked: str) -> str:
-        """Enter a job of this identifier, unless it is in already or an equal one answers; return which."""
+        """Enter a job of this identifier, unless it is there or an equal one answers; return the job's."""
         with writing(self._engine, in_turn=True) as connection:
             if _is_entered(connection, jobs.c.id == identifier, [work]):
                 return identifier
@@ -108,10 +116,10 @@ class Entry:
         return identifier
 
     def _joined(self, connection: Connection, process: str, work: BatchCase, shared: str | None) -> str:
-        """Return the computation of a job: the shared one, to its most generous terms, or a new one.
+        """Return the computation of a job: a new one, or the shared one with its terms widened for this job.
 
-        Work in flight that another version entered becomes this one's: ended as that it would end the new job
-        too.
+        A live computation that another version of the program entered becomes this version's: else the end
+        of the other version's work would end this job too.
         """
         mine, table, terms = computations.c.id == shared, computations.c, self._terms
         if shared is None:
@@ -164,7 +172,7 @@ class Entry:
         cases: Sequence[BatchCase],
         shared: dict[str, str | None],
     ) -> None:
-        """Enter the batch and its jobs; the first of equal ones bears their cost."""
+        """Enter the batch and its jobs; of equal jobs the first has the weight of their cost."""
         common = {"created": now(), "caller": self._caller.name, "project": self._project, **USUAL.columns()}
         begun = {"state": "running", "stage": "jobs", "started": now()}
         computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)

@@ -36,6 +36,8 @@ from lineofaction.gearbox.units import MM, UM
 
 MATERIAL: dict[Flank, int] = {"left": -1, "right": 1}
 """Sign of material in excess in the values of a trace."""
+# Lines of the file: its first line, the title of a block, the line before the values of a trace ("Zahn-Nr." is
+# the number of the tooth, "Werte" are values), the title of a table of pitches, and a row of it.
 _FIRST = re.compile(r"HEADER\s+KS\.MK\.FILE")
 _BLOCK = re.compile(r"(?P<title>[A-Za-zäöüÄÖÜß]{3,20}):")
 _TRACE = re.compile(
@@ -51,6 +53,10 @@ UNMEASURED = f"{OMITTED}not measured by the machine"
 UNKNOWN = f"{OMITTED}a line that is not understood"
 OUTSIDE = "outside the evaluated range"
 _OTHER = "other table or heading"
+_ROUNDING_M = 1e-9
+"""A point this far beyond the evaluated range is in it, m."""
+_MODULE_ERROR = 1e-3
+"""Largest relative difference of the file's module from that of the gear."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +66,11 @@ class Trace:
     line: int
     """Number of the line with tooth and flank."""
     kind: str | None
-    """Profile or helix, or None: of twist or topography."""
+    """"profile" or "helix"; None: a trace of twist or topography."""
     tooth: int
     flank: Flank
     values: FloatArray
-    """um, with the sign of the file."""
+    """Deviations in um, with the sign of the file."""
     lines: tuple[int, ...]
     """Number of the line of each value."""
 
@@ -80,13 +86,16 @@ class PitchTable:
 
 @dataclass(frozen=True)
 class MachineFile:
-    """Content of a curve file, and the number of its lines by what they were taken for."""
+    """Content of a curve file."""
 
     conventions: Conventions
+    """Ranges and directions, from the heading."""
     traces: tuple[Trace, ...]
     tables: tuple[PitchTable, ...]
     printed: tuple[Printed, ...]
+    """Results that the machine has printed into the file."""
     account: Mapping[str, int]
+    """Number of lines by their meaning, such as "heading"."""
 
 
 def is_machine_file(text: str) -> bool:
@@ -95,9 +104,9 @@ def is_machine_file(text: str) -> bool:
 
 
 def machine_file(text: str, gear: Toothing) -> MachineFile:
-    """Return what a curve file of a gear holds.
+    """Return the content of a curve file of a gear.
 
-    Raises `ValueError`: what the file must hold and which line does not.
+    Raises `ValueError`: the text names the file that is expected, and the line that differs.
     """
     if gear.sign < 0:
         raise ValueError("the file of an external gear; conventions of internal gears are not known")
@@ -107,8 +116,8 @@ def machine_file(text: str, gear: Toothing) -> MachineFile:
 def machine_sheet(file: MachineFile, gear: Toothing) -> Sheet:
     """Return the points of profiles, leads and pitches of a file as a sheet has them.
 
-    Taken is what the machine evaluates, and the tip relief beyond it that the heading states.
-    Raises `ValueError`: a value that is none.
+    They are those of the range that the machine evaluates, and of the tip relief beyond it that the heading
+    states. Raises `ValueError`: an impossible value, or a file without any.
     """
     account = Counter(file.account)
     points: list[Point] = []
@@ -130,7 +139,7 @@ def places(trace: Trace, conventions: Conventions, gear: Toothing) -> FloatArray
 
 
 def place(kind: str | None, dimension: float, gear: Toothing) -> float:
-    """Return the roll length in m of a diameter in mm, or the height of a height."""
+    """Return the roll length, m, of a diameter on a profile, or the height, m, on a lead; both from mm."""
     if kind != "profile":
         return dimension * MM
     radius, base = 0.5 * dimension * MM, gear.base_radius
@@ -175,7 +184,7 @@ def _trace_points(
     half = 0.5 * gear.face_width
     rows = zip(places(trace, conventions, gear).tolist(), trace.values.tolist(), trace.lines, strict=True)
     for coordinate, value, line in rows:
-        if not low - 1e-9 <= coordinate <= high + 1e-9:
+        if not low - _ROUNDING_M <= coordinate <= high + _ROUNDING_M:
             account[OUTSIDE] += 1
             continue
         if value == conventions.undefined:
@@ -244,7 +253,7 @@ class _Reader:
         )
 
     def _title(self, line: str, number: int) -> str:
-        """Take a line that is neither trace nor pitch; returns the title of traces that it is."""
+        """Take a line that is neither trace nor pitch; return the title of traces in it, or ""."""
         if match := _BLOCK.fullmatch(line.strip()):
             self.account["heading"] += 1
             return match["title"]
@@ -267,7 +276,7 @@ class _Reader:
                 f"the file of a gear of {self.gear.teeth} teeth; line {number} has {values[0]:g}"
             )
         module = self.gear.normal_module / MM
-        if "Normalmodul" in label and values and abs(values[0] / module - 1.0) > 1e-3:
+        if "Normalmodul" in label and values and abs(values[0] / module - 1.0) > _MODULE_ERROR:
             raise ValueError(f"the file of a gear of module {module:g} mm; line {number} has {values[0]:g}")
 
     def _trace(self, match: re.Match[str], title: str, line: int) -> tuple[Trace, int]:

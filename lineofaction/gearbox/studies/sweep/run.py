@@ -1,4 +1,8 @@
-"""A sweep of a case, and its figures in the units of the boundary."""
+"""A sweep of a case, and its figures in the units of the boundary.
+
+A sweep computes quantities, such as peak-to-peak STE, at the points of a grid of one or two axes: torque,
+alignment or figures of the flanks. The boundary are case files and JSON, with units in the names.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +40,9 @@ STEPS = 9
 """Values of an axis whose range is not given."""
 _MIN_TORQUES = 3  # least number of torques of a case that is swept as it is
 _SKEW_UM, _DISTANCE = 30.0, 0.002  # usual misalignment, um; usual change over the center distance
+_LEAST_TORQUE = 0.2  # first torque of a usual axis over the last one
 _FIGURES = figures(FlankModification, Kind.AMOUNT, Kind.DEVIATION, Kind.LENGTH)
+"""Figures of a flank that can be swept."""
 
 
 @dataclass(frozen=True)
@@ -63,13 +69,14 @@ class _Swept:
 
     @property
     def label(self) -> str:
-        """The words with the unit, as on an axis."""
+        """Description with the unit, as on an axis."""
         return f"{self.description}, {self.unit}"
 
     @property
     def spellings(self) -> set[str]:
-        """The accepted names: the path, the ends of the path, and both without the unit."""
+        """The accepted names: the path, its last parts, and both without the unit."""
         names = self.path.split(".")
+        # of a figure of one gear the name of the gear is needed too
         minimum = 2 if self.what is not None and "*" not in names else 1
         tails = {".".join(names[-count:]) for count in range(minimum, len(names) + 1)}
         last = self.name.rpartition(".")[2]
@@ -97,9 +104,9 @@ SWEEPABLE = {
 
 
 def axis_of_text(case: CheckedCase, text: str) -> SweepAxis:
-    """Return the axis that ``NAME`` or ``NAME=FIRST:LAST:STEP`` says.
+    """Return the axis of the text ``NAME`` or ``NAME=FIRST:LAST:STEP``.
 
-    Raises `BadInput`: there is no such name, or no such values.
+    Raises `BadInput`: an unknown name, or values that are invalid or do not increase.
     """
     typed, equals, values = text.partition("=")
     swept = _named(text, typed.strip())
@@ -123,7 +130,7 @@ def _named(text: str, name: str) -> _Swept:
 
 
 def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
-    """Return the values of an axis of which only the name is given, in the unit of the boundary."""
+    """Return the values of an axis that was given by its name alone, in the unit of the boundary."""
     pair, case = checked.pair, checked.case
     if swept.what is not None:  # about the case's own values, or about a usual one where it has none
         variables = SweepAxis(swept.name, ()).variables
@@ -136,7 +143,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
         loads = case.load.torque_n_m or [
             float(pair.torque(force)) for force in case.load.normal_force_n or ()
         ]
-        return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(0.2 * loads[-1], loads[-1])
+        return list(loads) if len(loads) >= _MIN_TORQUES else _evenly(_LEAST_TORQUE * loads[-1], loads[-1])
     if swept.name == CENTER_DISTANCE:
         changes = case.errors.center_distance_change_mm
         maximum = _DISTANCE * pair.center_distance / swept.factor
@@ -146,7 +153,7 @@ def _usual(checked: CheckedCase, swept: _Swept) -> list[float]:
 
 
 def _evenly(first: float, last: float) -> list[float]:
-    """Return evenly spaced values without the noise of the steps."""
+    """Return `STEPS` evenly spaced values, rounded to six digits."""
     return [float(f"{value:.6g}") for value in np.linspace(first, last, STEPS)]
 
 
@@ -156,7 +163,7 @@ class _Quantity:
 
     description: str
     unit: str
-    """`description`, `unit`: Words and unit as plots show them."""
+    """`description`, `unit`: Description and unit as plots show them."""
     one: float
     """The SI value of one unit."""
     field: str
@@ -183,13 +190,11 @@ QUANTITIES = {
 @brief
 @dataclass(frozen=True)
 class SweepResult(Plottable):
-    """A sweep, and the quantities that are shown.
-
-    `shown` are names of `QUANTITIES` that the sweep has values of.
-    """
+    """A sweep, and the quantities that are shown."""
 
     sweep: Sweep
     shown: tuple[str, ...]
+    """Names of `QUANTITIES`, of which the sweep has values."""
 
     @property
     def axes(self) -> tuple[_Swept, ...]:
@@ -208,14 +213,14 @@ class SweepResult(Plottable):
         return tuple(by_name[name] for name in self.shown)
 
     def grid(self, values: Any) -> Any:
-        """Return values (N,) by the axes (down, across), of one axis as they are."""
+        """Return values (N,) as a grid (down, across); unchanged if there is one axis."""
         grid = values.reshape(self.sweep.shape)
         return np.asarray(grid.T if grid.ndim == 2 and self.across == 0 else grid)
 
     def like_least(self, quantity: SweptQuantity) -> BoolArray:
-        """Return which points of the grid are as low as the least within both errors.
+        """Return the points of the grid that cannot be told from the lowest one within both errors.
 
-        Of a map over the torque the least at the same torque.
+        In a map over the torque each is compared with the lowest one at the same torque.
         """
         value, error = self.grid(quantity.value), self.grid(quantity.error)
         if not (value.ndim == 2 and TORQUE in self.sweep.axes):
