@@ -22,14 +22,18 @@ from dynamics.types import FloatArray, IntArray
 from host import READING, ChildFailed, ask_child
 
 MIN_SHAPE = 0.02
-"""A sliver: its volume is that part of a regular tetrahedron's with edges of the same mean square."""
+"""Least `element_shape`, below which an element is a sliver: its volume over that of a regular tetrahedron
+whose edges have the same mean square."""
 SIZE = from_to(5e-3, 50.0, "m")
+"""Plausible size of a housing: a mesh in another unit is out of it."""
 FIELD = "mesh_file"
+"""Field of errors."""
 UNITS = {"m": 1.0, "mm": 1e-3}  # meters per unit of coordinates
 _MESH_WORKER = Path(__file__).with_name("mesh_worker.py")
 _MESH_SECONDS = 60.0  # most seconds in which the child process reads a file
 LINEAR_NODES = 4  # nodes of a linear tetrahedron
 TEXTS = ("Abaqus", "Nastran")
+"""Formats of text, which is decoded before it is read."""
 CORNERS = 3  # corners of a triangle
 
 
@@ -43,7 +47,7 @@ def element_shape(mesh: TetrahedralMesh) -> FloatArray:
 
 
 def _check_quality(mesh: TetrahedralMesh) -> None:
-    """Refuse a mesh that gives wrong results: slivers, folds, several parts, a size that is no housing's."""
+    """Raise `InputError` for a mesh with slivers, folds or several parts, or with an implausible size."""
     extent = float(np.ptp(mesh.points, axis=0).max())
     if not SIZE.holds(extent):
         raise InputError(f"{FIELD}.size", extent, SIZE, 'Check the unit of the mesh: "m" or "mm".')
@@ -80,10 +84,10 @@ class _Content(NamedTuple):
 def read_mesh(path: str | Path, unit: str) -> TetrahedralMesh:
     """Read a mesh of tetrahedra.
 
-    Linear tetrahedra get mid-side nodes in the middle of their straight edges: their own strain is constant
-    and far too stiff. Named physical groups of triangles, node sets, element sets of triangles and Nastran
-    properties of triangles (by number) are kept as groups of nodes. Raises `InputError`: no such file, no
-    mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
+    Linear tetrahedra get mid-side nodes in the middle of their straight edges, because with their constant
+    strain they are far too stiff. Named physical groups of triangles, node sets, element sets of triangles
+    and Nastran properties of triangles (by number) become groups of nodes. Raises `InputError`: a missing
+    file, no mesh, other solid elements than tetrahedra, or a bad mesh (see `_check_quality`).
 
     Parameters
     ----------
@@ -142,7 +146,7 @@ def _checked(content: _Content, scale: float) -> TetrahedralMesh:
 
 
 def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
-    """Return points and tetrahedra with ten nodes, linear ones raised."""
+    """Return points and tetrahedra with ten nodes; linear ones get mid-side nodes."""
     points, cells = content.points, content.tetrahedra
     members = [cells, *content.groups.values()]
     if any(nodes.min(initial=0) < 0 or nodes.max(initial=0) >= len(points) for nodes in members):
@@ -150,5 +154,5 @@ def _quadratic(content: _Content) -> tuple[FloatArray, IntArray]:
     if cells.shape[1] != LINEAR_NODES:
         return points, cells
     corner = points[cells]
-    turned = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0  # inside out
-    return raised(np.where(turned[:, None], cells[:, [0, 2, 1, 3]], cells), points)
+    inverted = np.linalg.det(corner[:, 1:] - corner[:, :1]) < 0.0  # negative volume: two corners exchanged
+    return raised(np.where(inverted[:, None], cells[:, [0, 2, 1, 3]], cells), points)

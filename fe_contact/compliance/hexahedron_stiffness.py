@@ -1,4 +1,8 @@
-"""Stiffness of 20-node hexahedra between turned copies of a section, by scikit-fem's serendipity element."""
+"""Stiffness of 20-node hexahedra between turned copies of a section, by scikit-fem's serendipity element.
+
+Nodes are in VTK's order, which differs from scikit-fem's. The m elements of a layer are each between a bottom
+and a top, copies of one eight-node quadrilateral of the plane section.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +31,8 @@ QUADRATURE_ORDER = 5  # three Gauss points each way
 
 _NODE_DISTANCE = np.abs(ElementHexS2.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2)
 
-_NODE, _FUNCTION = _NODE_DISTANCE.argmin(axis=1), _NODE_DISTANCE.argmin(axis=0)  # scikit-fem to VTK, back
+# VTK's node of each of scikit-fem's functions, and the reverse; reference cubes go from 0 to 1 and -1 to 1
+_NODE, _FUNCTION = _NODE_DISTANCE.argmin(axis=1), _NODE_DISTANCE.argmin(axis=0)
 
 
 def layer_nodes(section: FloatArray, thickness: float, angle: float) -> FloatArray:
@@ -40,14 +45,17 @@ def layer_nodes(section: FloatArray, thickness: float, angle: float) -> FloatArr
 
 
 def above(points: FloatArray, level: FloatArray, thickness: float, angle: float) -> FloatArray:
-    """Return section points (m, p, 2) swept along the helix to the levels (p,), in layers: (m, p, 3)."""
+    """Return section points (m, p, 2) swept along the helix to levels (p,), as (m, p, 3) in m.
+
+    A level counts from the middle of a layer in its thickness; `angle` is the turn of a layer, rad.
+    """
     x, y = points[..., 0], points[..., 1]
     c, s = np.cos(angle * level), np.sin(angle * level)
     return np.stack([c * x - s * y, s * x + c * y, np.broadcast_to(thickness * level, x.shape)], axis=-1)
 
 
 def hexahedra(nodes: FloatArray) -> MeshHex:
-    """Return scikit-fem's mesh of hexahedra apart from each other with `nodes` (m, 20, 3) in m."""
+    """Return scikit-fem's mesh of unconnected hexahedra with `nodes` (m, 20, 3) in m."""
     numbers = np.arange(20 * len(nodes)).reshape(-1, 20)
     return MeshHex(nodes.reshape(-1, 3).T, numbers[:, _NODE].T, elem=ElementHexS2)
 
@@ -59,7 +67,7 @@ def determinants(mesh: MeshHex, at: FloatArray) -> FloatArray:
 
 
 def gradients(mesh: MeshHex, at: FloatArray) -> FloatArray:
-    """Return the gradients (m, q, 20, 3) of the functions at points (3, q) of that cube."""
+    """Return the gradients (m, q, 20, 3), 1/m, of the shape functions at points (3, q) of that cube."""
     basis = Basis(mesh, ElementHexS2(), quadrature=(at, np.ones(at.shape[1])), disable_doflocs=True)
     return np.stack([basis.basis[i][0].grad for i in _FUNCTION]).transpose(2, 3, 0, 1)
 

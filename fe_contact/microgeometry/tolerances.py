@@ -25,7 +25,7 @@ from fe_contact.types import FloatArray, Json
 
 Distribution = Literal["normal", "uniform"]
 PROCESS_SPREAD = 3.0
-"""Standard deviations of the normal distribution in a tolerance, beyond which parts are rejected."""
+"""Half width of a tolerance in standard deviations of the normal distribution, which is cut there."""
 
 Finishing = Literal["any", "generating_grinding", "form_grinding", "honing", "shaving", "hobbing"]
 OF_A_CLASS = {
@@ -43,10 +43,10 @@ COMMON: Mapping[Finishing, tuple[float, float, float, float]] = {
     "shaving": (0.7, 0.8, 0.6, 0.7),
     "hobbing": (0.6, 0.7, 0.5, 0.6),
 }
-"""Assumed part of each tolerance of `OF_A_CLASS` that the mean of all teeth takes, by finishing.
+"""Assumed part of each tolerance of `OF_A_CLASS`, in this order, that the mean tooth takes, by finishing.
 
-With the part c two teeth of a gear correlate by c^2. The rest differs from tooth to tooth; it is in orders of
-shafts and sidebands, not in mesh orders. A dressed wheel or worm makes the profile, so that teeth are alike;
+With the part c two teeth of a gear correlate by c^2. The rest differs from tooth to tooth: it excites orders
+of shafts and sidebands, not mesh orders. A dressed wheel or worm makes the profile, so that teeth are alike;
 run-out of the blank changes the helix slope once a revolution; a hob cuts each flank separately. The parts
 are not measured.
 """
@@ -73,7 +73,7 @@ class Tolerances:
     misalignment: float = 0.0
     """Half width of the misalignment, m, >= 0."""
     modification: Mapping[str, float] = field(default_factory=dict)
-    """``gear.quantity`` to m, > 0."""
+    """``gear.quantity`` to the half width of its deviation, m, > 0."""
     distribution: Distribution = "normal"
     """Normal: three standard deviations are the tolerance, and deviations beyond are rejected."""
 
@@ -108,7 +108,7 @@ class Tolerances:
 
     @property
     def distributions(self) -> tuple[Any, ...]:
-        """Distribution of every deviation, one of scipy's each."""
+        """Distribution of every deviation, in the order of `widths`, as a frozen one of scipy."""
         from scipy.stats import truncnorm, uniform  # noqa: PLC0415 (start-up time)
 
         widths = self.widths.values()
@@ -127,7 +127,7 @@ class Tolerances:
 
 
 def spread_within(width: float | FloatArray, uniform: FloatArray, distribution: Distribution) -> FloatArray:
-    """Return deviations within half widths in m by numbers between 0 and 1."""
+    """Return deviations, m, within half widths, m, from uniform numbers between 0 and 1."""
     if distribution == "uniform":
         return np.asarray(width * (2.0 * uniform - 1.0))
     low = ndtr(-PROCESS_SPREAD)
@@ -152,11 +152,11 @@ def iso1328_tolerances(
     tolerance_class : int
         1 (finest) to 11.
     misalignment : float
-        Of the assembly, m; the standard has none.
+        Half width of the misalignment by assembly, m; the standard has none.
     across_face : bool
-        Whether helices deviate too; a plane model cannot have it.
+        Whether helices deviate too, which a plane model cannot represent.
     finishing : str
-        By which flanks are finished: of `COMMON`.
+        Finishing of the flanks, a key of `COMMON`.
     """
     integer("tolerance_class", tolerance_class, 1, 11)
     widths = {}

@@ -1,4 +1,8 @@
-"""Presentation of a study's result: its figure, its page, its text, each in the file of its name."""
+"""Presentation of a study's result: its figure, its page, its text.
+
+The presentation of a study is `PAGE` of the module that has the name of the study, in a folder of the report.
+*Marks* show the sound of a complaint in plots.
+"""
 
 from __future__ import annotations
 
@@ -24,22 +28,23 @@ from lineofaction.report.drawing.tables import cost_tables, ledger_section
 from lineofaction.report.unit_picture import with_picture
 
 _SUBJECTS = [entry.name for entry in iter_modules([str(Path(__file__).parent)]) if entry.ispkg]
-"""Folders of the report."""
+"""Folders of the report, in which the modules of studies are."""
 
 
 @dataclass(frozen=True)
 class Presentation:
-    """A result as people see it: the plot of ``-o FILE.png``, the report, tables and lines of the terminal.
-
-    `series` are the numbers of the plot, which are written as CSV; `with_database` is the report beside
-    that of an STE database, called with both, by default the same.
-    """
+    """Functions from a result to its outputs for people."""
 
     figure: Callable[[Any], Figure]
+    """Plot of ``-o FILE.png``."""
     page: Callable[[Any], Page]
+    """Report."""
     text: Callable[[Any], Iterable[Table | str]]
+    """Tables and lines of the terminal."""
     series: Callable[[Any], Table] | None = None
+    """Numbers of the plot, which are written as CSV; None: no CSV."""
     with_database: Callable[[Any, SteDatabase], Page] | None = None
+    """Report of a result together with its STE database; None: the report is `page`."""
 
 
 def presentation_of(study: Study) -> Presentation:
@@ -51,9 +56,9 @@ def presentation_of(study: Study) -> Presentation:
 
 
 def _of_its_unit(presentation: Presentation) -> Presentation:
-    """Return a presentation with the picture of the result's unit and the marks of its complaint.
+    """Return a presentation whose page begins with the picture of the result's gear unit.
 
-    The page begins with its picture; what is complained of is marked in all plots.
+    If the result has a complaint, its sound is marked in all plots.
     """
 
     def figure(result: Any) -> Figure:
@@ -112,7 +117,7 @@ def dynamics_page(
 ) -> Page:
     """Return the page of a study of a scene: figures, effects, cost of its housings, failed assumptions.
 
-    `metadata` hold `effect_ledger`, None of what has no model of its dynamics.
+    `metadata` has `effect_ledger`, which is None for a study without a dynamic model.
     """
     sections = [Section(title, figures=figures)]
     if metadata["effect_ledger"] is None:

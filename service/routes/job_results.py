@@ -48,7 +48,7 @@ AskedType = Annotated[
 
 
 def job_results_router(registry: Registry) -> APIRouter:
-    """Return the route, whose documents are typed by the processes that make them."""
+    """Return the route; the schema of its documents has the outputs of all processes."""
     router = APIRouter(prefix="/jobs", tags=["jobs"], route_class=ScopedRoute)
     documents = [results_document(process.id, process.output) for process in registry.values()]
     answers: dict[int | str, dict[str, Any]] = {
@@ -90,7 +90,7 @@ def _in_batch(job: Job, output: str) -> BatchResult:
 
 
 def problem_of(job: Job) -> ServiceError | None:
-    """Return the problem of a job without a result, None: it has a result."""
+    """Return the reason why a job has no result; None: it has one."""
     if job.status == "failed":
         return JobFailed(job.message, [Fault(**fault) for fault in job.faults])
     if job.status == "dismissed":
@@ -137,7 +137,7 @@ def job_results(
 
 
 def _accepted(ordered: Delivery, accept: str) -> Delivery:
-    """Return the form of the execution, or the other one if the caller prefers its type."""
+    """Return the form that the execution requested, or the other one if the caller prefers its media type."""
     offered = (JSON, NETCDF) if ordered.response == "document" else (NETCDF, JSON)
     accepted = negotiated(accept, offered)
     if accepted in (None, offered[0]):

@@ -36,8 +36,8 @@ from lineofaction.gearbox.units import MM, UM
 
 MATERIAL: dict[Flank, int] = {"left": -1, "right": 1}
 """Sign of material in excess in the values of a trace."""
-# Lines of the file: its first line, the title of a block, the line before the values of a trace ("Zahn-Nr." is
-# the number of the tooth, "Werte" are values), the title of a table of pitches, and a row of it.
+# Lines of the file: its first line, the title of a block, the line before the values of a trace ("Zahn-Nr."
+# is the number of the tooth, "Werte" are values), the title of a table of pitches, and a row of it.
 _FIRST = re.compile(r"HEADER\s+KS\.MK\.FILE")
 _BLOCK = re.compile(r"(?P<title>[A-Za-zäöüÄÖÜß]{3,20}):")
 _TRACE = re.compile(
