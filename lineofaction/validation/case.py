@@ -12,6 +12,8 @@ from typing import Any
 from lineofaction.gearbox.problems import BadInput
 
 FOLDER = Path(__file__).parent / "cases"
+CASES: Mapping[str, Path] = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
+"""Files of the cases that come with the program, by name."""
 TREE = Path(__file__).parents[2]
 """Folder that holds the packages: of a clone also examples and recorded curves."""
 REFERENCE = "LOA_FZG_REFERENCE"
@@ -24,7 +26,7 @@ class Compared:
 
     quantity: str
     value: str
-    """Their value as it is printed: without `error` it is good to half of its last digit."""
+    """Number of others as it is printed: without `error` it is good to half of its last digit."""
     key: str
     """Names or indices that lead to our value, with dots."""
     unit: str = ""
@@ -38,14 +40,14 @@ class Compared:
 
 @dataclass(frozen=True)
 class ValidationCase:
-    """What a file states. Exactly one of `verb` and `function` computes our numbers."""
+    """Content of a file. Exactly one of `verb` and `function` computes our numbers."""
 
     name: str
     title: str
     source: str
     licence: str
     assumed: tuple[str, ...]
-    """What was assumed to compare, a sentence each."""
+    """Assumptions of the comparison, a sentence each."""
     verb: str = ""
     """Verb of `loa` with its arguments; CASE stands for a file with the text of `case`."""
     function: str = ""
@@ -95,7 +97,3 @@ def _refuse_fields(path: Path, kind: type[Any], table: Mapping[str, Any]) -> Non
     for name, entry in known.items():
         if entry.default is MISSING and entry.default_factory is MISSING and name not in table:
             raise BadInput.of(f"{path.name}: {name}", None, "given")
-
-
-CASES: Mapping[str, Path] = {path.stem: path for path in sorted(FOLDER.glob("*.toml"))}
-"""Files of the cases that come with the program, by name."""

@@ -1,1 +1,1 @@
-"""What validation cases compute that no single function or verb answers."""
+"""Computations of validation cases that no single function or verb answers."""
