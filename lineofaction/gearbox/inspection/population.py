@@ -1,8 +1,9 @@
 """A population of measured gears: mean and covariance of their deviations, between gears and between teeth.
 
-Traits are what a case states of a flank: slopes over the usable profile and the face width, and forms, once
-as a parabola (from curves) and once as a range. A gear deviates by the mean of its teeth; the part of the
-variance that its teeth differ by is taken out of that between gears (analysis of variance, one way).
+Traits are deviations as a case states them of single teeth: slopes over the usable profile and the face
+width, and forms, once as a parabola (from curves) and once as a range. A gear deviates by the mean of its
+teeth; the part of the variance that its teeth differ by is taken out of that between gears (analysis of
+variance, one way).
 """
 
 from __future__ import annotations
