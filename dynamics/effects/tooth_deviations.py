@@ -90,8 +90,8 @@ def _eccentricity(mesh: LoadedMesh, name: str) -> float:
     diameter = _TO_MM * 2.0 * gear.base_radius / math.cos(angle)
     helix = math.atan(math.tan(abs(gear.base_helix_angle)) / math.cos(angle))
     module = diameter / gear.teeth * math.cos(helix)
-    run_out = RUN_OUT_SHARE * cumulative_pitch_of_class(module, diameter, ASSUMED_CLASS)
-    return 0.5 * _FROM_UM * run_out
+    cumulative_pitch = cumulative_pitch_of_class(module, diameter, ASSUMED_CLASS)
+    return 0.5 * _FROM_UM * RUN_OUT_SHARE * cumulative_pitch
 
 
 def _static_error(table: MeshTable, force: float) -> FloatArray:
