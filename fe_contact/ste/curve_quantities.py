@@ -143,7 +143,7 @@ def _crest_excess(step: FloatArray, values: FloatArray) -> FloatArray:
 
 
 def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
-    """Return the largest errors (23, C), m, of the quantities of curves (P, C) with errors within a band (P, C).
+    """Return the largest errors (23, C), m, of the quantities of curves (P, C) with errors in a band (P, C).
 
     The error of the mean is the mean of the band, that of peak-to-peak the sum of the band at both extremes,
     and that of any order twice the mean of the band.
