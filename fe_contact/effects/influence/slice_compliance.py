@@ -114,7 +114,7 @@ def _of_gear(
     decay = TOOTH_DECAY * gear.normal_module
     on_tooth = (distance == 0) * _along_face(face, decay, slices.slice_width)
     tooth = root[:, :, None] * root[:, None, :] * on_tooth
-    # approach between the middle of the tooth and a parabolic patch, in units of the half plane's k
+    # approach between the middle of the tooth and the load patch, over the half plane's k
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
