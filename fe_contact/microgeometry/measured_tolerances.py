@@ -1,4 +1,7 @@
-"""Deviations of a population of measured gears, in place of those that a tolerance allows."""
+"""Deviations of a population of measured gears, in place of those that a tolerance allows.
+
+A *figure* is one deviation of a gear, named ``gear.quantity``.
+"""
 
 from __future__ import annotations
 
@@ -14,20 +17,24 @@ from fe_contact.microgeometry.tolerances import PROCESS_SPREAD, Tolerances
 from fe_contact.types import FloatArray, Json
 
 _LEAST = 1e-9
-"""Standard deviation of a population, m, from which it spreads: every deviation of a study has a width."""
+"""Least standard deviation of a figure, m. A population without scatter gets it too, because no deviation of
+a study may have the width zero."""
+_ROUNDING = 1e-9
+"""An eigenvalue of a correlation matrix down to minus this is a zero with the rounding of its input."""
 
 
 @dataclass(frozen=True)
 class MeasuredTolerances(Tolerances):
-    """Tolerances of which some figures are normally distributed as on measured gears.
+    """Tolerances in which some figures have the means, deviations and correlations of measured gears.
 
-    Their width is three standard deviations, and the truncation that of the others.
+    The width of a measured figure is three of its standard deviations. Its normal distribution is truncated
+    at this width, as that of every other figure is.
     """
 
     mean: Mapping[str, float] = field(default_factory=dict)
     """``gear.quantity`` to the mean deviation of the measured gears, m."""
     correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
-    """Correlation of two of them."""
+    """Two names of measured figures to their correlation, -1 to 1; a pair that is not named has 0."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -39,18 +46,18 @@ class MeasuredTolerances(Tolerances):
             within("tolerances.correlation", value, -1.0, 1.0)
             if pair[0] == pair[1] or not {*pair} <= {*self.mean}:
                 raise InputError("tolerances.correlation", "*".join(pair), "of two figures with a mean")
-        _ = self._factor
+        _ = self._factor  # raises where no gears can have the correlations
 
     @property
     def _factor(self) -> FloatArray:
-        """Root (m, m) of the correlation matrix of the measured figures."""
+        """Symmetric square root (m, m) of the correlation matrix of the m measured figures."""
         names = list(self.mean)
         matrix = np.eye(len(names))
         for (one, other), value in self.correlation.items():
             i, j = names.index(one), names.index(other)
             matrix[i, j] = matrix[j, i] = value
         values, vectors = np.linalg.eigh(matrix)
-        if values.min(initial=1.0) < -1e-9:
+        if values.min(initial=1.0) < -_ROUNDING:
             remedy = "State fewer or smaller correlations."
             raise InputError("tolerances.correlation", self._pairs, "one of gears that can exist", remedy)
         return np.asarray((vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)
@@ -63,15 +70,15 @@ class MeasuredTolerances(Tolerances):
         """Draw deviations (count, d) in m; those of measured figures correlate about their means."""
         deviation = super().sample(count, seed)
         names, widths = list(self.widths), np.array(list(self.widths.values()))
-        at = [names.index(name) for name in self.mean]
-        spread = widths[at] / PROCESS_SPREAD
-        correlated = deviation[:, at] / spread @ self._factor.T
-        deviation[:, at] = np.array(list(self.mean.values())) + correlated * spread
+        columns = [names.index(name) for name in self.mean]
+        standard = widths[columns] / PROCESS_SPREAD
+        correlated = deviation[:, columns] / standard @ self._factor.T
+        deviation[:, columns] = np.array(list(self.mean.values())) + correlated * standard
         return deviation
 
     @property
     def distributions(self) -> tuple[Any, ...]:
-        """Distribution of every deviation by itself, one of scipy's each."""
+        """Distribution of every single deviation, in the order of `widths`, as a frozen one of scipy."""
         from scipy.stats import truncnorm  # noqa: PLC0415 (start-up time)
 
         ends = -PROCESS_SPREAD, PROCESS_SPREAD

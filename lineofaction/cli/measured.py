@@ -30,7 +30,7 @@ from lineofaction.gearbox.units import MM, UM
 def run_measured(
     file: InputFile,
     sheet: Path | None,
-    mounted: tuple[str, Flank, float | None],
+    mounted: tuple[str, Flank, float | None, bool],
     output: Path | None,
     *,
     as_json: bool,
@@ -38,7 +38,7 @@ def run_measured(
     """Write the case with the measured deviations; without a sheet, write the sheet that the case would give.
 
     Of a folder of sheets the population is written.
-    `mounted`: name of the inspected gear, its loaded flanks and the cut-off in mm, the fields of `Inspected`.
+    `mounted`: the fields of `Inspected`.
     """
     case, inspected_gear = read_model(Case, file), Inspected(*mounted)
     if output is not None:

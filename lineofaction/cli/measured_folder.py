@@ -26,10 +26,11 @@ from lineofaction.gearbox.schemas import Case
 from lineofaction.gearbox.schemas.plan import omission_warnings
 from lineofaction.gearbox.units import UM
 
-_OF_A_CASE = ("profile_slope", "profile_form", "helix_slope", "helix_form")
-"""Traits of measured gears that are also fields of a case's tooth flanks, so that a study can vary them."""
-_PITCH = ("mean", "largest")
-"""Figures of a pitch deviation."""
+_OF_A_CASE = {"profile_slope": -1, "profile_form": 1, "helix_slope": -1, "helix_form": 1}
+"""Sign of the traits of measured gears that are also flank figures of a case, so that a study can vary them.
+
+A slope of a case removes material where a deviation is in excess.
+"""
 _SIGNIFICANT = 2.0
 """Correlations of fewer standard errors than this are not stated: they may be chance."""
 _LONGEST = 300
@@ -78,25 +79,6 @@ def _gears(folder: Path, chart: Chart, cutoff_mm: float | None) -> list[Inspecte
 
 def _as_json(people: Population, gear: str) -> Json:
     between, within = (np.sqrt(np.diag(matrix)) / UM for matrix in (people.between, people.within))
-    traits = [
-        {
-            "name": f"{name}_um",
-            "mean": people.mean[k] / UM,
-            "between_gears": between[k],
-            "between_teeth": within[k],
-            "common": people.common[k],
-        }
-        for k, name in enumerate(people.names)
-    ]
-    pitches = [
-        {
-            "name": f"{name}_um",
-            "gears": values.size,
-            "mean": values.mean() / UM,
-            "largest": values.max() / UM,
-        }
-        for name, values in people.pitches.items()
-    ]
     traces = {
         kind: {
             "number": traces.number,
@@ -109,9 +91,13 @@ def _as_json(people: Population, gear: str) -> Json:
     return {
         "gears": list(people.gears),
         "teeth": people.teeth,
-        "traits": traits,
+        "traits": list(people.names),
+        "mean_um": (people.mean / UM).tolist(),
+        "between_gears_um": between.tolist(),
+        "between_teeth_um": within.tolist(),
+        "common": people.common.tolist(),
         "correlation": people.correlation.tolist(),
-        "pitches": pitches,
+        "pitches_um": {name: (values / UM).tolist() for name, values in people.pitches.items()},
         "traces": traces,
         "population": list(_rows(people, gear)),
     }
@@ -126,34 +112,32 @@ def _rows(people: Population, gear: str) -> Iterator[str]:
     names = [name for name in people.names if name in _OF_A_CASE]
     at = [people.names.index(name) for name in names]
     for name, k in zip(names, at, strict=True):
-        yield f"{gear}.{name}_um={people.mean[k] / UM:.3f}/{np.sqrt(people.between[k, k]) / UM:.3f}"
+        mean, spread = _OF_A_CASE[name] * people.mean[k] / UM, np.sqrt(people.between[k, k]) / UM
+        yield f"{gear}.{name}_um={mean:.3f}/{spread:.3f}"
     for i, later in enumerate(names):
         for j, earlier in list(enumerate(names))[:i]:
-            correlation = people.correlation[at[i], at[j]]
+            correlation = _OF_A_CASE[later] * _OF_A_CASE[earlier] * people.correlation[at[i], at[j]]
             if abs(correlation) > _SIGNIFICANT / np.sqrt(len(people.gears) - 1.0):
                 yield f"{gear}.{earlier}_um*{gear}.{later}_um={correlation:.2f}"
 
 
 def _show(people: Population, answer: Json) -> None:
     out = console()
-    head = ("trait", "mean, µm", "gears, µm (1 s)", "teeth, µm (1 s)", "common")
-    keys = ("mean", "between_gears", "between_teeth", "common")
+    columns = (answer[key] for key in ("mean_um", "between_gears_um", "between_teeth_um", "common"))
+    figures = zip(*columns, strict=True)
     rows = [
-        (trait["name"].removesuffix("_um"), *(engineering(trait[key], 3) for key in keys))
-        for trait in answer["traits"]
+        (name, *(engineering(value, 3) for value in row))
+        for name, row in zip(people.names, figures, strict=True)
     ]
     title = (
         f"{len(people.gears)} gears, {people.teeth} teeth: gears by the mean of their teeth, teeth about it"
     )
+    head = ("trait", "mean, µm", "gears, µm (1 s)", "teeth, µm (1 s)", "common")
     out.print(table(head, rows, title, ("trait",)))
-    if answer["pitches"]:
+    if people.pitches:
         pitches = [
-            (
-                row["name"].removesuffix("_um"),
-                str(row["gears"]),
-                *(engineering(row[key], 3) for key in _PITCH),
-            )
-            for row in answer["pitches"]
+            (name, str(values.size), engineering(values.mean() / UM, 3), engineering(values.max() / UM, 3))
+            for name, values in people.pitches.items()
         ]
         out.print(table(("pitches", "gears", "mean, µm", "largest, µm"), pitches, "", ("pitches",)))
     for kind, traces in people.traces.items():

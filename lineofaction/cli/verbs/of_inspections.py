@@ -43,10 +43,14 @@ def _measured(
         float | None,
         typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
     ] = None,
+    others: Annotated[
+        Literal["designed", "mean"],
+        typer.Option(help="Teeth that were not measured: as designed, or the mean of those that were."),
+    ] = "designed",
     output: Annotated[
         Path | None, to_file("Case (TOML) to write; without a sheet CSV, of a folder JSON.")
     ] = None,
     json: AsJson = False,
 ) -> None:
     """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
-    measured.run_measured(case, sheet, (gear, loaded, cutoff_mm), output, as_json=json)
+    measured.run_measured(case, sheet, (gear, loaded, cutoff_mm, others == "mean"), output, as_json=json)

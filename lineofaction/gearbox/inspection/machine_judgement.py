@@ -51,8 +51,8 @@ def judged(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -
 
     Raises `ValueError`: nothing is printed of its profiles, and the tips show that their sign is wrong.
     """
-    results = dict(_results(file, gear))
-    pairs = [(value, results[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in results]
+    computed = dict(results(file, gear))
+    pairs = [(value, computed[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in computed]
     differences = [
         _difference(value, result) for value, result in pairs if abs(value.value - result) > LIMIT_UM + 1e-9
     ]
@@ -86,7 +86,8 @@ def evaluated(trace: Trace, conventions: Conventions, gear: Toothing) -> tuple[f
     return float(sign * slope * length), float(np.ptp(rest)), float(np.ptp(values))
 
 
-def _results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
+def results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
+    """Yield each result that is recomputed, by its figure, flank and tooth, in um."""
     for trace in file.traces:
         if trace.kind is not None:
             figures = zip(_FIGURES[trace.kind], evaluated(trace, file.conventions, gear), strict=True)

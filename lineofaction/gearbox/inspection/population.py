@@ -1,9 +1,10 @@
 """A population of measured gears: mean and covariance of their deviations, between gears and between teeth.
 
-Traits are the slopes of a flank over the usable profile and the face width, and its forms: as a range, and,
-where the file has the measured curves (traces), as the height of a parabola. The deviation of a gear is the
-mean of its measured teeth. The variance of these means has a part by the differences of teeth, which is
-subtracted to get the variance between gears (analysis of variance, one way).
+Traits are deviations as a case states them of single teeth: slopes over the usable profile and the face
+width, and forms, as a range, and, where the file has the measured curves (traces), as the height of a
+parabola. The deviation of a gear is the mean of its measured teeth. The variance of these means has a part by
+the differences of teeth, which is subtracted to get the variance between gears (analysis of variance, one
+way).
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ from fzg_reference import FOLDER, needs_fzg_reference
 from machine_texts import GEAR, Wave, heading, machine_text, wave_texts
 from spur_case import spur_case
 
-from fe_contact.geometry import Gear
+from fe_contact.flank.modification import FlankModification
+from fe_contact.geometry import Gear, ToothFlank
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.inspection.measured_gear import Chart
 from lineofaction.gearbox.inspection.population import gear_files, inspected_gear, population, values_beside
@@ -203,6 +204,34 @@ def test_the_verb_prints_the_population_and_says_what_it_leaves_out(tmp_path: Pa
     assert done.stdout.startswith(said)
     with pytest.raises(BadInput, match="two gears or more"):
         population([inspected_gear(gear_files(folder)[0], LOADED)], "gears")
+
+
+def test_the_rows_for_a_study_remove_what_measured_flanks_lack(tmp_path: Path) -> None:
+    """Figures of a case remove where deviations of a tooth are in excess: both surfaces cancel."""
+    case, folder = tmp_path / "case.toml", tmp_path / "gears"
+    folder.mkdir()
+    case.write_text(spur_case(torques=[100.0]), encoding="utf-8")
+    rolls = np.linspace(*sorted((GEAR.form_roll_length, GEAR.tip_roll_length)), 201)
+    flank = ToothFlank(1, profile_slope=9e-6, profile_form=2e-6, helix_slope=-5e-6, helix_form=3e-6)
+    head = "tooth,flank,trace,roll_length_mm,face_position_mm,deviation_um"
+    rows = [head]
+    for roll, value in zip(rolls, flank.excess(GEAR, rolls, np.zeros(201)), strict=True):
+        rows.append(f"1,left,profile,{1e3 * roll:.6f},,{1e6 * value:.6f}")
+    faces = np.linspace(-12.5e-3, 12.5e-3, 201)
+    for face, value in zip(faces, flank.excess(GEAR, np.full(201, rolls.mean()), faces), strict=True):
+        rows.append(f"1,left,helix,,{1e3 * face:.6f},{1e6 * value:.6f}")
+    for name in ("a.csv", "b.csv"):
+        (folder / name).write_text("\n".join(rows), encoding="utf-8")
+    done = printed("measured", case, folder, "--gear", "pinion", "--loaded", "left")
+    stated = dict(row.split("=") for row in done["population"] if "*" not in row)
+    figures = {
+        name.removeprefix("pinion.").removesuffix("_um"): 1e-6 * float(text.split("/")[0])
+        for name, text in stated.items()
+    }
+    modified = FlankModification(**figures)
+    place = np.meshgrid(rolls, faces, indexing="ij")
+    both = modified.removed(GEAR, *place) + flank.excess(GEAR, *place)
+    assert np.abs(both - both.mean()).max() < 0.15e-6
 
 
 @needs_fzg_reference

@@ -91,7 +91,7 @@ class Inputs(ToleranceInputs):
         description="Measured gears in place of the tolerances of the class: GEAR.FIGURE=MEAN/DEVIATION, in "
         "the unit of the figure, and GEAR.FIGURE*GEAR.FIGURE=CORRELATION (loa measured of a folder); helices "
         "deviate in no plane model",
-        examples=[["wheel.profile_slope_um=11.5/3.9", "wheel.helix_slope_um=-2.1/0.2"]],
+        examples=[["wheel.profile_slope_um=-11.5/3.9", "wheel.helix_slope_um=2.1/0.2"]],
     )
     limit: str | None = Field(
         default=None,

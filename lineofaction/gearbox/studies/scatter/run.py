@@ -60,7 +60,7 @@ _TOLERATED = {
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
-_MEASURED = "For example wheel.profile_slope_um=11.5/3.9."
+_MEASURED = "For example wheel.profile_slope_um=-11.5/3.9."
 _LIMITS = "For example 1=0.5um, 2=-12dB, 1-pinion=80nm, pinion 3=0.2um."
 
 
