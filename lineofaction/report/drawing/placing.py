@@ -1,4 +1,7 @@
-"""Points, notes and labels of a plot: how many, where, and how its words are written."""
+"""Points, notes and labels of a plot: their number and their places; and the rewriting of its texts.
+
+A note is a short text beside a point of a curve. Places are parts of the panel, 0 to 1 from left and bottom.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,11 @@ import numpy as np
 
 from lineofaction.report.drawing.figure import Axis, FloatArray, Note, Panel
 
-# of an 8 point text in a panel of the usual size, in parts of its width and height
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
+"""Width of a character, height of a text, distance from its point, and rise above it.
+
+They are those of an 8 point text in a panel of the usual size, over the panel's width and height.
+"""
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
 _MARGIN = 0.05
 """Margin over the height of the panel, above its curves, and below them where the axis has no limits. A text
@@ -20,6 +26,7 @@ beyond the margin runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 _ROOM = 0.05  # share of the height above and below the curves of an axis without limits
+_LEADING = 0.3  # distance of two labels, in rows of text
 Description = TypeVar("Description")
 
 
@@ -109,7 +116,7 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     """
     lines = [line for line in panel.lines if line.label and _drawable(line.y, panel.y).size]
     ends = np.array([_drawable(line.y, panel.y)[-1] for line in lines])
-    heights = row * np.array([line.label.count("\n") + 1.3 for line in lines])
+    heights = row * np.array([line.label.count("\n") + 1.0 + _LEADING for line in lines])
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
     middles = spread_positions(at, heights)
     return [
@@ -126,12 +133,13 @@ def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
     """
     order = np.argsort(wanted, kind="stable")
     below = np.cumsum(heights[order]) - 0.5 * heights[order]  # middle of each if all were stacked from 0
-    blocks: list[tuple[float, int]] = []
+    blocks: list[tuple[float, int]] = []  # mean shift, and number of texts that have it
     for offset in wanted[order] - below:
         mean, count = float(offset), 1
         while blocks and blocks[-1][0] >= mean:
-            other, many = blocks.pop()
-            mean, count = (mean * count + other * many) / (count + many), count + many
+            other_mean, other_count = blocks.pop()
+            mean = (mean * count + other_mean * other_count) / (count + other_count)
+            count += other_count
         blocks.append((mean, count))
     shift = np.concatenate([np.full(count, mean) for mean, count in blocks]) if blocks else np.empty(0)
     middles = np.empty(wanted.size)
