@@ -230,16 +230,16 @@ def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) ->
     lost = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
     total = square.sum(axis=(0, 1))
     return MeasuredVibration(
-        housing.points,
-        response.speed,
-        response.order,
-        response.frequency,
-        _velocity(housing, response, force),
-        covered,
-        tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
-        np.divide(lost, total, out=np.zeros(covered.shape), where=total > 0.0),
-        bool(np.any(response.bearing_force[:, 3:])),
-        response.floor is not None,
+        point=housing.points,
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        velocity=_velocity(housing, response, force),
+        covered=covered,
+        omitted=tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
+        omitted_force=np.divide(lost, total, out=np.zeros(covered.shape), where=total > 0.0),
+        moments=bool(np.any(response.bearing_force[:, 3:])),
+        floor=response.floor is not None,
     )
 
 

@@ -119,7 +119,13 @@ def solve_few(
     parts /= parts.sum()
     turns = np.exp(2j * np.pi / ring.teeth * np.outer(np.arange(ring.teeth), list(known)))
     solved = np.tensordot(parts * turns, np.stack(list(known.values())), axes=1).real
-    return ClosedRing(basis, solutions, solved, turns.real @ parts, float(residual.sum(axis=0).max()))
+    return ClosedRing(
+        basis=basis,
+        solutions=solutions,
+        solved=solved,
+        shares=turns.real @ parts,
+        error=float(residual.sum(axis=0).max()),
+    )
 
 
 def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatArray:
