@@ -22,13 +22,11 @@ from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
 MIN_SIGNIFICANT = 1e-12
-"""Share of A's largest entry: compliance by forces that flank loads pass to the cuts, below which it is
+"""Share of A's largest entry below which the compliance by forces on the cuts, passed on by flank loads, is
 rounding.
 """
 MIN_PASSED = 1e-7
-"""Share of A's largest entry: the same below which loads are not solved for, where not every harmonic is
-solved.
-"""
+"""Share of A's largest entry below which this compliance is left out, where not every harmonic is solved."""
 MIN_ENERGY = 1e-8
 """Share of A's largest entry: energy under unit loads below which a direction is left out of the space."""
 LARGEST_ERROR = 3e-7
