@@ -79,10 +79,10 @@ class SceneTable:
             for stage, mesh in zip(shafts.stages, meshes, strict=True)
         ]
         return SceneTable(
-            {key: value for key, value in table.items() if value != []},
-            motion.drivers[0] if motion.drivers else None,
-            forces,
-            scene_parts(layout, flow, shafts, bearings.seats, named),
+            table={key: value for key, value in table.items() if value != []},
+            leader=motion.drivers[0] if motion.drivers else None,
+            forces=forces,
+            parts=scene_parts(layout, flow, shafts, bearings.seats, named),
         )
 
 
