@@ -249,9 +249,9 @@ def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArra
     if cycles == 0:
         return amplitudes
     which, rest = np.divmod(harmonics, cycles)
-    there = (rest == 0) & (which < lines.size - 1)
-    turned = lines[which[there]] * np.exp(2j * math.pi * which[there] * offset / period)
-    amplitudes[there] = turned if pitches > 0 else turned.conj()
+    is_line = (rest == 0) & (which < lines.size - 1)
+    turned = lines[which[is_line]] * np.exp(2j * math.pi * which[is_line] * offset / period)
+    amplitudes[is_line] = turned if pitches > 0 else turned.conj()
     return amplitudes
 
 

@@ -54,9 +54,9 @@ class EnergyAudit:
     @property
     def residual(self) -> float:
         """The residual of the balance, J; 0 for an exact integration."""
-        gained = self.kinetic + self.stored_bushings + self.stored_meshes
-        lost = self.bushings + self.meshes + self.friction
-        return self.drive + self.load + self.position + self.axes - lost - gained
+        stored_energy = self.kinetic + self.stored_bushings + self.stored_meshes
+        losses = self.bushings + self.meshes + self.friction
+        return self.drive + self.load + self.position + self.axes - losses - stored_energy
 
     @property
     def turnover(self) -> float:
@@ -93,8 +93,8 @@ class EnergyAudit:
     @classmethod
     def from_arrays(cls, work: FloatArray, stored: FloatArray, fallen: float = 0.0) -> EnergyAudit:
         """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
-        gained, largest_stored = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
-        return cls(*(float(value) for value in (*work, *gained, largest_stored, fallen)))
+        increase, largest_stored = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
+        return cls(*(float(value) for value in (*work, *increase, largest_stored, fallen)))
 
     def check(self) -> Check:
         """Return the check of the balance: residual over the turnover, and largest fall of a loss, J."""

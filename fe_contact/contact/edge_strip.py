@@ -60,10 +60,10 @@ class EdgeStrips(NamedTuple):
     """Half-width of the patch on a half plane, m."""
 
 
-def edge_table(strips: EdgeStrips, there: BoolArray) -> FloatArray:
+def edge_table(strips: EdgeStrips, present: BoolArray) -> FloatArray:
     """Return strips (Q, n) as a table (Q, n, 8), without those of slices that are not there (Q, n)."""
     table = np.stack(np.broadcast_arrays(*strips), axis=-1)
-    return np.where(there[..., None] & (table[..., :1] != 0.0), table, 0.0)
+    return np.where(present[..., None] & (table[..., :1] != 0.0), table, 0.0)
 
 
 def no_edges(slices: int) -> FloatArray:

@@ -110,11 +110,11 @@ class PointProblem(NamedTuple):
 class RowBodies(NamedTuple):
     """Arrays that all problems of one row of bodies have in common."""
 
-    there: BoolArray
+    present: BoolArray
     """Slices that any contact can press on. Shape (n,)."""
     compliance: FloatArray
     tilt: FloatArray
-    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `there`."""
+    """`compliance`, `tilt`: Arrays `bodies` and `tilt` of `PointProblem`, for all slices of `present`."""
     curve: FloatArray
     first: IntArray
     """`curve`, `first`: Arrays of `PointProblem` for the points of one pair. Shapes (points, w), (points,).
@@ -124,14 +124,14 @@ class RowBodies(NamedTuple):
 @inner(error_model="numpy")
 def row_bodies(every: PointProblems, row: int) -> RowBodies:
     """Return the arrays that all positions of row `row` share, in any base pitch."""
-    there = every.present[row]
-    slices = np.flatnonzero(there)
+    present = every.present[row]
+    slices = np.flatnonzero(present)
     motion, tilt = every.bodies[row][slices][:, slices], np.zeros((0, 0))
     motion = _turned(every.heights, _turned(every.heights, motion))
     if every.tilt.size:
         tilt = _turned(every.heights, _turned(every.heights, every.tilt[row][slices][:, slices]))
     curve, first = _banded(every.curves)
-    return RowBodies(there, motion, tilt, curve, first)
+    return RowBodies(present, motion, tilt, curve, first)
 
 
 @inner(error_model="numpy")
@@ -144,9 +144,9 @@ def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
 def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointProblem, IntArray]:
     """Return the problem of a position on the bodies of its row, and its contacts among all candidates."""
     row, (points, count) = p % every.bodies.shape[0], every.curves.shape
-    pairs = np.cumsum(bodies.there[::count]) - 1  # of all pairs among those that are there
+    pairs = np.cumsum(bodies.present[::count]) - 1  # number of each pair among those present
     touching = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
-    radius = every.radius[p % every.radius.shape[0]][bodies.there]
+    radius = every.radius[p % every.radius.shape[0]][bodies.present]
     law = local_law(
         every.about[p][touching], every.width[p][touching], every.modulus[row][touching], every.length
     )
@@ -154,7 +154,7 @@ def problem_on(every: PointProblems, bodies: RowBodies, p: int) -> tuple[PointPr
     point = touching % points
     first = pairs[touching // points] * count + bodies.first[point]
     arms = every.motion_arm[p][touching], every.torque_arm[p][touching]
-    edge = every.edge[p % every.edge.shape[0]][bodies.there]
+    edge = every.edge[p % every.edge.shape[0]][bodies.present]
     of_bodies = bodies.compliance, bodies.tilt, radius, edge
     return PointProblem(*of_bodies, bodies.curve[point], first, every.gap[p][touching], *arms, law), touching
 
@@ -174,8 +174,8 @@ def _banded(curves: FloatArray) -> tuple[FloatArray, IntArray]:
     points, count = curves.shape
     first, width = np.zeros(points, dtype=np.int64), 1
     for i in range(points):
-        there = np.flatnonzero(curves[i])
-        first[i], width = there[0], max(width, there[-1] - there[0] + 1)
+        nonzero = np.flatnonzero(curves[i])
+        first[i], width = nonzero[0], max(width, nonzero[-1] - nonzero[0] + 1)
     first = np.minimum(first, count - width)
     columns = np.empty((points, width))
     for i in range(points):

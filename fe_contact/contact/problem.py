@@ -227,9 +227,9 @@ class Candidates:
 
     def on_mean(self, values: FloatArray) -> FloatArray:
         """Return values (P, m) of the candidates on the mean of each slice (P, n), of those that exist."""
-        there = np.isfinite(self.gap).reshape(len(values), self.slices.pair.size, -1)
-        total = np.where(there, values.reshape(there.shape), 0.0).sum(axis=2)
-        return np.asarray(total / np.maximum(there.sum(axis=2), 1))
+        can_touch = np.isfinite(self.gap).reshape(len(values), self.slices.pair.size, -1)
+        total = np.where(can_touch, values.reshape(can_touch.shape), 0.0).sum(axis=2)
+        return np.asarray(total / np.maximum(can_touch.sum(axis=2), 1))
 
     def on_slices(self, force: FloatArray) -> FloatArray:
         """Return forces (..., m) of the candidates as forces (..., n) on the slices."""
@@ -259,8 +259,10 @@ class Candidates:
 
     def following(self, touch: Touch) -> Candidates:
         """Return the candidates with touching points whose `shift` is that of the middles of strips."""
-        there = self.touching(touch)
-        return self.touching(replace(touch, shift=touch.shift + there.strips.middle - self.strips.middle))
+        moved_problem = self.touching(touch)
+        return self.touching(
+            replace(touch, shift=touch.shift + moved_problem.strips.middle - self.strips.middle)
+        )
 
 
 @dataclass(frozen=True)

@@ -37,8 +37,8 @@ class DeviatingTeeth(NamedTuple):
 
     def gap(self, pair: ParallelAxes, rolls: tuple[FloatArray, FloatArray], face: FloatArray) -> FloatArray:
         """Return the sum of the gaps at roll lengths of both gears, m."""
-        there = MeetingTeeth(pair, self.meeting, *rolls, face)
-        return np.asarray(sum((term(there) for term in self.gaps), np.zeros(())))
+        teeth = MeetingTeeth(pair, self.meeting, *rolls, face)
+        return np.asarray(sum((term(teeth) for term in self.gaps), np.zeros(())))
 
     def extents(self) -> list[tuple[int, Extent]]:
         """Return of each gap its gear and its extent on the teeth that meet."""

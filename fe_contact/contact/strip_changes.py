@@ -146,8 +146,8 @@ class ClosingLag:
         if len(breaks[0]) != len(breaks[1]):
             return np.asarray(shift)  # a relief that is none yet holds nothing
         for after, before in zip(*breaks, strict=True):
-            there, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
-            shift = np.where(self.at_break & (np.abs(before_move) < near), there - before_move, shift)
+            after_move, before_move = (term.distance(strips.s_1, strips.s_2) for term in (after, before))
+            shift = np.where(self.at_break & (np.abs(before_move) < near), after_move - before_move, shift)
         return np.asarray(shift)
 
     def nodes(

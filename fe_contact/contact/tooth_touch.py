@@ -68,9 +68,12 @@ def tooth_touch(
     Load patches stay where the common flanks touch: they define `shift`. Deviations of single teeth count
     as a lag: a pitch error of gear 2 turns its flank, and a lag of the same size closes it on any slope.
     """
-    there = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
+    candidates = np.nonzero(touch.gap != np.inf)  # more than a third of the candidates cannot touch
     parts = list(
-        zip(*(np.array_split(indices, there[0].size // _AT_ONCE + 1) for indices in there), strict=True)
+        zip(
+            *(np.array_split(indices, candidates[0].size // _AT_ONCE + 1) for indices in candidates),
+            strict=True,
+        )
     )
     results = []
     for at in parts:

@@ -148,12 +148,12 @@ def expected_error(
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
     """Return the median error by mesh of mean and of peak-to-peak, over the mean's rise under load."""
-    made = plan.discretization
-    if not isinstance(made, FaceDiscretization):
+    discretization = plan.discretization
+    if not isinstance(discretization, FaceDiscretization):
         return PLANE[plan.level]
     if is_relieved_helical(pair):
         mean, ripple = QUIET[plan.level]
-        return made.remaining * mean, made.remaining * ripple
+        return discretization.remaining * mean, discretization.remaining * ripple
     helical, wound = helical_share(pair), (RELIEVED if _modified(pair) else HELICAL)[plan.level]
     mean, ripple = ((1.0 - helical) * a + helical * b for a, b in zip(SPUR[plan.level], wound, strict=True))
     return mean, ripple
@@ -169,24 +169,24 @@ def _modified(pair: ParallelAxes) -> bool:
 
 def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
     """Return the errors of mean and peak-to-peak by source, each (2, C) in m."""
-    made = plan.discretization
+    discretization = plan.discretization
     mean, ripple = known.mean, known.peak_to_peak
     values = np.stack([mean, ripple])
     by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
     nothing = np.zeros_like(by_mesh)
     slices, plane = nothing.copy(), nothing.copy()
-    if isinstance(made, FaceDiscretization):
+    if isinstance(discretization, FaceDiscretization):
         by_overlap = QUIET_SLICES if _is_quiet(pair, plan) else HELICAL_SLICES
         part = max(by_overlap * pair.overlap_ratio, SPUR_SLICES)
-        slices[1] = part * (SLICES / made.slices) ** SLICE_ORDER * known.added
-    elif made.corrected:
+        slices[1] = part * (SLICES / discretization.slices) ** SLICE_ORDER * known.added
+    elif discretization.corrected:
         plane = np.outer(CORRECTION * np.array(finite_width_excess(pair)) * (1.0, WIDTH_RIPPLE), mean)
-    elif bias := plane_bias(pair, made):
+    elif bias := plane_bias(pair, discretization):
         plane = bias.largest(mean, ripple)
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
-    method = left(pair, known.force, values, over_face=isinstance(made, FaceDiscretization))
+    method = left(pair, known.force, values, over_face=isinstance(discretization, FaceDiscretization))
     positions = nothing.copy()
-    over_allowed = FACE_POSITIONS if isinstance(made, FaceDiscretization) else PLANE_POSITIONS
+    over_allowed = FACE_POSITIONS if isinstance(discretization, FaceDiscretization) else PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)
     return {"mesh": by_mesh, "slices": slices, "positions": positions, "plane": plane, "method": method}
 

@@ -198,7 +198,9 @@ def make_plan(
     )
 
 
-def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple[PatchRule, PatchRule, float]:
+def patch_rules(
+    pair: ParallelAxes, force: float, discretization: Discretization
+) -> tuple[PatchRule, PatchRule, float]:
     """Return the load patches, wider ones that measure their error, and the part of that change that is left.
 
     Patches are as wide as strips under half the largest load, and as the mesh asks; the wider ones as the
@@ -209,20 +211,22 @@ def patch_rules(pair: ParallelAxes, force: float, made: Discretization) -> tuple
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
     wanted, law = wanted_patch(pair, force), longest_strip(pair, LARGEST_SUPPORT * force) / STRIP_OVER_LAW
-    half, edge = _resolved(made, made.recipes)
+    half, edge = _resolved(discretization, discretization.recipes)
     half, edge = max(half, wanted), max(edge, EDGE_PATCH * pair.pinion.normal_module)
-    coarse, coarse_edge = _resolved(made, made.coarse_recipes)
-    slice_width = pair.face_width / (SLICE_OVER_PATCH * made.slices)
+    coarse, coarse_edge = _resolved(discretization, discretization.coarse_recipes)
+    slice_width = pair.face_width / (SLICE_OVER_PATCH * discretization.slices)
     wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
     left = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0) if half > wanted else 0.0
     coarse_edge = max(coarse_edge, edge)
     return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), left
 
 
-def _resolved(made: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]) -> tuple[float, float]:
+def _resolved(
+    discretization: Discretization, recipes: tuple[MeshRecipe | SectorRecipe, ...]
+) -> tuple[float, float]:
     """Return the half-width of a load patch and the length of one at a tip edge that meshes resolve, m."""
-    half = made.resolved * max(recipe.flank_size for recipe in recipes)
-    return half, made.resolved_edge * max(recipe.tip_size for recipe in recipes)
+    half = discretization.resolved * max(recipe.flank_size for recipe in recipes)
+    return half, discretization.resolved_edge * max(recipe.tip_size for recipe in recipes)
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:

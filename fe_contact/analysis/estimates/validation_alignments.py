@@ -46,7 +46,7 @@ MAX_HALVINGS = 5
 class AlignmentErrors:
     """Error between the nodes of an axis of alignments."""
 
-    made: SolvedTable
+    solved_table: SolvedTable
     """Solved table with the inserted alignments."""
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
@@ -71,64 +71,64 @@ class ValidationAlignments:
     goal_of: GoalOf | None
     """Nodes are inserted until their intervals meet the goal of the table."""
 
-    def errors(self, made: SolvedTable) -> AlignmentErrors:
+    def errors(self, solved_table: SolvedTable) -> AlignmentErrors:
         """Measure the error of every interval of a table; with a goal insert nodes until it is met."""
         truths: dict[float, FloatArray] = {}
         limit = ""
         for left in range(MAX_HALVINGS, -1, -1):
-            further = self._further(made, truths)
+            further = self._further(solved_table, truths)
             if not further.size:
                 break
             if not left:
                 limit = halvings_reached(MAX_HALVINGS)
                 break
-            more = with_inserted_nodes(made, self.axis, further)
+            more = with_inserted_nodes(solved_table, self.axis, further)
             if more is None:
                 limit = "a point between them has no solution"
                 break
-            made = more
-        self._solve(made, self._missing(made, truths, self._last_probes), truths)
-        error, change = self._spread(made, *self._errors(made, truths))
-        return AlignmentErrors(made, error, change, limit)
+            solved_table = more
+        self._solve(solved_table, self._missing(solved_table, truths, self._last_probes), truths)
+        error, change = self._spread(solved_table, *self._errors(solved_table, truths))
+        return AlignmentErrors(solved_table, error, change, limit)
 
     @property
     def _last_probes(self) -> tuple[float, ...]:
         """Return the held-out alignments of a finished axis; each center distance needs a compliance."""
         return MIDDLE if self.goal_of is None and self.axis == CENTER_DISTANCE else QUARTERS
 
-    def _further(self, made: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
+    def _further(self, solved_table: SolvedTable, truths: dict[float, FloatArray]) -> FloatArray:
         """Return the middles of intervals that miss the goal; solve the held-out points that measure it."""
         if self.goal_of is None:
             return np.empty(0)
-        nodes = getattr(made.table, self.axis)
+        nodes = getattr(solved_table.table, self.axis)
         middles = nodes[:-1] + MIDDLE[0] * np.diff(nodes)
-        self._solve(made, self._missing(made, truths, MIDDLE), truths)
-        beyond = self._beyond(made, truths)
+        self._solve(solved_table, self._missing(solved_table, truths, MIDDLE), truths)
+        beyond = self._beyond(solved_table, truths)
         if not beyond.all():
-            self._solve(made, self._missing(made, truths, QUARTERS, ~beyond), truths)
-            beyond = self._beyond(made, truths)
+            self._solve(solved_table, self._missing(solved_table, truths, QUARTERS, ~beyond), truths)
+            beyond = self._beyond(solved_table, truths)
         return np.asarray(middles[beyond])
 
-    def _beyond(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
+    def _beyond(self, solved_table: SolvedTable, truths: Mapping[float, FloatArray]) -> BoolArray:
         """Return the intervals (I,) of an axis that miss the goal; those without a solution do not count."""
         assert self.goal_of is not None
-        _, change = self._spread(made, *self._errors(made, truths))
-        goal = self.goal_of(made.table)
+        _, change = self._spread(solved_table, *self._errors(solved_table, truths))
+        goal = self.goal_of(solved_table.table)
         # of (2, F, M, D), which has quantities in the place of positions
-        allowed = np.moveaxis(allowed_errors(made.table, goal.tolerance), GRID.index(self.axis), 1)
+        allowed = np.moveaxis(allowed_errors(solved_table.table, goal.tolerance), GRID.index(self.axis), 1)
         minimum = np.minimum(allowed[:, 1:], allowed[:, :-1])  # (2, I, F, others)
         share = (change[[MEAN, PEAK_TO_PEAK]][..., None] / minimum).max(axis=(0, 2, 3))
         return np.asarray(share > goal.shares(self.axis))
 
     def _missing(
         self,
-        made: SolvedTable,
+        solved_table: SolvedTable,
         truths: Mapping[float, FloatArray],
         probes: tuple[float, ...],
         of: BoolArray | None = None,
     ) -> FloatArray:
         """Return the held-out alignments of intervals of an axis that are not solved yet."""
-        nodes = getattr(made.table, self.axis)
+        nodes = getattr(solved_table.table, self.axis)
         known = np.array([*truths, *nodes])
         chosen = np.ones(nodes.size - 1, bool) if of is None else of
         wanted = [
@@ -140,41 +140,43 @@ class ValidationAlignments:
         near = 1e-9 * np.diff(nodes).min()
         return np.array([at for at in wanted if not np.any(np.abs(known - at) <= near)])
 
-    def _solve(self, made: SolvedTable, at: FloatArray, truths: dict[float, FloatArray]) -> None:
+    def _solve(self, solved_table: SolvedTable, at: FloatArray, truths: dict[float, FloatArray]) -> None:
         """Solve held-out alignments, (R, l) in m each; NaN where a solution did not converge."""
         if not at.size:
             return
-        rows, loads = self._sample(made)
-        table = made.table
+        rows, loads = self._sample(solved_table)
+        table = solved_table.table
         other = np.array([self._other_node(table)])
-        points = alignment_points(made, {self.axis: at, self._other: other})
+        points = alignment_points(solved_table, {self.axis: at, self._other: other})
         starts = None
-        position = made.nodes.position
+        position = solved_table.nodes.position
         if self.axis == MISALIGNMENT:  # all of one center distance, of which the table has the compliance
             first = points.places[0]
-            take_compliance(made, first)
+            take_compliance(solved_table, first)
             first.contact.keep_rows(first.model, position, rows)
-            starts = [self._start(made, rows, loads, skew) for skew in at.tolist()]
+            starts = [self._start(solved_table, rows, loads, skew) for skew in at.tolist()]
         where = [position[rows]] * at.size
         load = table.force[loads]
         solved = deflected_operating_points(points.places, where, load, None, points.workers, starts=starts)
         truths.update(zip(at.tolist(), (curves[..., 0] for curves in solved), strict=True))
 
-    def _start(self, made: SolvedTable, rows: IntArray, loads: IntArray, at: float) -> Start:
+    def _start(self, solved_table: SolvedTable, rows: IntArray, loads: IntArray, at: float) -> Start:
         """Return the start of a misalignment between the solutions at its neighbor nodes."""
-        table = made.table
+        table = solved_table.table
         nodes, changes = table.misalignment, table.center_distance_change
         above = int(np.searchsorted(nodes, at))
         part = (at - nodes[above - 1]) / (nodes[above] - nodes[above - 1])
         nearest = int(np.argmin(np.abs(changes)))
-        lower, upper = (made.solved[m * changes.size + nearest] for m in (above - 1, above))
+        lower, upper = (solved_table.solved[m * changes.size + nearest] for m in (above - 1, above))
         first, second = (solution.force[np.ix_(rows, loads)] for _, solution in (lower, upper))
         return Start(lower[0].candidates, first + part * (second - first))
 
-    def _errors(self, made: SolvedTable, truths: Mapping[float, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    def _errors(
+        self, solved_table: SolvedTable, truths: Mapping[float, FloatArray]
+    ) -> tuple[FloatArray, FloatArray]:
         """Largest differences (I, l) in every interval and changes of the quantities (23, I, l), m."""
-        rows, loads = self._sample(made)
-        table, position = first_pitch(made.table), made.nodes.position[rows]
+        rows, loads = self._sample(solved_table)
+        table, position = first_pitch(solved_table.table), solved_table.nodes.position[rows]
         at = np.array(sorted(truths))
         other = self._other_node(table)
         alignment = (at[:, None], other) if self.axis == MISALIGNMENT else (other, at[:, None])
@@ -193,10 +195,10 @@ class ValidationAlignments:
         )
 
     def _spread(
-        self, made: SolvedTable, error: FloatArray, change: FloatArray
+        self, solved_table: SolvedTable, error: FloatArray, change: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Carry errors (I, l) and changes (23, I, l) on to all loads of a table."""
-        force, (_, loads) = made.table.force, self._sample(made)
+        force, (_, loads) = solved_table.table.force, self._sample(solved_table)
         return spread(force, loads, error, 1), spread(force, loads, change, 2)
 
     @property
@@ -208,10 +210,10 @@ class ValidationAlignments:
         """Return the node of the other axis that is nearest to zero."""
         return float(min(getattr(table, self._other).tolist(), key=abs))
 
-    def _sample(self, made: SolvedTable) -> tuple[IntArray, IntArray]:
+    def _sample(self, solved_table: SolvedTable) -> tuple[IntArray, IntArray]:
         """Return the positions of a pitch and the loads that are solved."""
-        rows = sampled_positions(made.nodes.position.size)
-        return rows, sample_of(made.table.force.size, LOADS)
+        rows = sampled_positions(solved_table.nodes.position.size)
+        return rows, sample_of(solved_table.table.force.size, LOADS)
 
 
 def first_pitch(table: SteDatabase) -> SteDatabase:

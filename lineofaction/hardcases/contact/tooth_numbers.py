@@ -75,11 +75,11 @@ def _twenty_to_two_hundred() -> Sequence[Measured]:
     pinion = Gear(teeth=20, bore_diameter=20e-3, **common)  # type: ignore[arg-type]
     wheel = Gear(teeth=200, bore_diameter=0.2, **common)  # type: ignore[arg-type]
     position = np.linspace(0.0, 0.98, 50)
-    there = posed(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
+    case = posed(GearPair(pinion, wheel), [20.0]).with_model(corner_contact=False)
     back = posed(GearPair(wheel, pinion), [200.0]).with_model(corner_contact=False)
-    problem, driven = there.solve(position)
-    driving = back.solve((1.0 - position) % 1.0, there.plan.load)[1]
-    cornered, solution = posed(GearPair(pinion, wheel), [20.0]).solve(position, there.plan.load)
+    problem, driven = case.solve(position)
+    driving = back.solve((1.0 - position) % 1.0, case.plan.load)[1]
+    cornered, solution = posed(GearPair(pinion, wheel), [20.0]).solve(position, case.plan.load)
     return (
         *soundness(cornered, solution),
         Measured(
