@@ -13,14 +13,14 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 NEAR = 1e-3
-"""Way over half a patch by which patches are displaced to see how their forces change."""
+"""Distance over half a patch, by which patches are displaced for the derivative of their forces."""
 
 _STRETCH = 0.25
-"""Relative change of the length of a patch at an edge, by which the change of its forces is measured."""
+"""Relative change of the length of a patch at an edge, for the derivative of its forces."""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
-    """Return the share of gear 1 in compliances (P, n), 0.5 where there is none."""
+    """Return the share of gear 1 in compliances (P, n) of both gears, 0.5 where these are zero."""
     return np.asarray(np.divide(pinion, both, out=np.full(both.shape, 0.5), where=both > 0.0))
 
 
@@ -38,24 +38,24 @@ def contact_problem(
     compliances : (FlankCompliance, FlankCompliance)
         Driving and driven gear, per unit face width.
     couple_teeth : bool
-        False drops what the load on one tooth moves on another.
+        False neglects the motion of one tooth by the load on another.
 
     Notes
     -----
-    A corner force acts along the mating flank's normal, inclined to the tip gear's own. The tip gear moves
-    less along that line than along its own normal, and by reciprocity is moved less: both scale with the
-    lever arm of the line, as for a rotation. Without this the corner stiffness reads up to 4 % too low, and
-    the error of STE grows with load.
+    A force on a tip corner acts along the mating flank's normal, which is inclined to the normal of the tip
+    gear's own flank. The tip gear moves less along that line than along its own normal, and by reciprocity a
+    force along it moves the gear less: both change with the lever arm of the line, as in a rotation. Without
+    this the stiffness at corners would be up to 4 % too low, and the error of STE would grow with load.
 
-    A gear that turns about its axis moves so. Under the load on its edge a tooth also bends about its root,
-    and the wedge at the tip yields across: the way along the flank is kappa times that of a turn, by the
-    finite elements, and 1 + kappa (lever - 1) takes the place of the lever.
+    That holds for a gear that turns about its axis. Under the load on its edge a tooth also bends about its
+    root, and the wedge at the tip yields across: by the finite elements the motion along the flank is kappa
+    times that of a rotation, and 1 + kappa (lever - 1) takes the place of the lever.
 
-    At edges the tilt is that of patches that grow from the edge, less the logarithm that the local law has.
+    At edges the tilt is that of patches that grow from the edge, less the logarithm in the local law.
 
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
-    driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
-    on tooth +j of gear 2.
+    driving gear turns against its load and the driven one with it, so that pair j is on tooth -j of gear 1
+    and on tooth +j of gear 2.
     """
     slices = candidates.slices
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
@@ -66,10 +66,21 @@ def contact_problem(
     for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
-        laid, way = _laid(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
+        displaced, distance = _displaced(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
         along = rows(flank.along) / slices.tip_inclinations[g]
         levers = rows(lever)
-        _add_gear(flank.s, blocks, along, laid, way, levers, slices.present, couple_teeth, compliance, tilt)
+        _add_gear(
+            flank.s,
+            blocks,
+            along,
+            displaced,
+            distance,
+            levers,
+            slices.present,
+            couple_teeth,
+            compliance,
+            tilt,
+        )
         diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
@@ -93,7 +104,7 @@ def half_planes(
 
 
 def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
-    """Compliance between the flanks of the teeth, shape (n, n, k, k)."""
+    """Return the compliance between the flanks of the teeth (n, n, k, k)."""
     k = flank.s.size
     rows = teeth - flank.teeth[0]
     if rows.min() < 0 or rows.max() >= flank.teeth.size:
@@ -102,18 +113,20 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
 
 
-def _laid(
+def _displaced(
     patch: Patches, mate: Patches, side: FloatArray, tip: float, end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return patches of one gear as they are and on either side of that, and how far apart those lie.
+    """Return patches of one gear, the same displaced down and up for a derivative, and the distance of these.
 
-    Centers, half-widths and edge shares (3, 3, P, n); ways (P, n) in m, positive towards tip 1. Patches at an
-    edge grow from it, the others are displaced as if they were plain ones.
+    The patches (3, 3, P, n) are, in this order, the given ones, the lower and the upper ones, each by center,
+    half-width and edge share. The distance from lower to upper ones (P, n) in m is positive towards tip 1.
+    Patches at an edge become shorter and longer instead, the others count as plain ones of the greatest
+    width.
 
     Parameters
     ----------
     patch, mate : Patches
-        Of this gear and of the other one.
+        Patches of this gear and of the other one.
     side : ndarray, shape (P, n)
         See `LoadedSlices.edge_side`.
     tip : float
@@ -123,24 +136,24 @@ def _laid(
     """
     short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
     widest = patch.half_width.max()
-    near, highest = NEAR * widest, end - widest
-    above = np.minimum(patch.center + near, highest)
+    step, highest = NEAR * widest, end - widest
+    above = np.minimum(patch.center + step, highest)
     plain = np.full(above.shape, widest), np.zeros(above.shape)
     at_edge = side != 0.0
     low, high = (
         np.where(at_edge, (stretched.center, stretched.half_width, stretched.edge_share), (center, *plain))
-        for stretched, center in ((short, above - 2.0 * near), (long, above))
+        for stretched, center in ((short, above - 2.0 * step), (long, above))
     )
     spread = 2.0 * _STRETCH * np.where(patch.at_tip, patch.edge_distance, mate.edge_distance)
-    way = np.where(at_edge, side * spread, tip * 2.0 * near)
-    return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), way
+    distance = np.where(at_edge, side * spread, tip * 2.0 * step)
+    return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), distance
 
 
 def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> FloatArray:
     """Return half of how the logarithm in the local law falls as strips at edges grow (P, n), 1/N."""
     first, second = slices.half_planes(*planes)
-    near, far = slices.patch_1.edge_distance, slices.patch_2.edge_distance
-    by_distance = np.where(slices.edge_side < 0.0, first / near, second / far)
+    distance_1, distance_2 = slices.patch_1.edge_distance, slices.patch_2.edge_distance
+    by_distance = np.where(slices.edge_side < 0.0, first / distance_1, second / distance_2)
     growth = math.log((1.0 + _STRETCH) / (1.0 - _STRETCH)) / (2.0 * _STRETCH)
     return np.asarray(0.5 * slices.edge_side * by_distance * growth)
 
@@ -150,18 +163,19 @@ def _add_gear(
     nodes: FloatArray,
     blocks: FloatArray,
     along: FloatArray,
-    laid: FloatArray,
-    way: FloatArray,
+    displaced: FloatArray,
+    distance: FloatArray,
     lever: FloatArray,
     present: BoolArray,
     couple_teeth: bool,
     out: FloatArray,
     tilt: FloatArray,
 ) -> None:
-    """Add b_i' S b_j of one gear for all positions, and to `tilt` how it changes as patch i moves to tip 1.
+    """Add b_i' S b_j of one gear for all positions to `out`, and its derivative to `tilt`.
 
-    `laid` and `way` are those of `_laid`, `along` (k, k) the motions along the flank over those of a rotation
-    that moves it across by 1.
+    The derivative is that by the motion of patch i towards tip 1. `displaced` and `distance` are those of
+    `_displaced`; `along` (k, k) has the motions along the flank over those of a rotation that moves the flank
+    across by 1.
     """
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
@@ -173,7 +187,7 @@ def _add_gear(
                 load[:, i] = 0.0
                 first[i], last[i] = nodes.size, 0
                 for k in range(3):
-                    center, half, share = laid[k, 0, p, i], laid[k, 1, p, i], laid[k, 2, p, i]
+                    center, half, share = displaced[k, 0, p, i], displaced[k, 1, p, i], displaced[k, 2, p, i]
                     low, high = load_vector(nodes, center, half, share, load[k, i])
                     first[i], last[i] = min(first[i], low), max(last[i], high)
         for i in range(n):
@@ -195,7 +209,7 @@ def _add_gear(
                     value = _turned(blocks[i, i], along, load[0, i], *ends)
                     change = _turned(blocks[i, i], along, load[2, i], *ends)
                     change -= _turned(blocks[i, i], along, load[1, i], *ends)
-                tilt[p, i, j] += change / (2.0 * way[p, i])
+                tilt[p, i, j] += change / (2.0 * distance[p, i])
                 if j <= i:
                     out[p, i, j] += value
                 if j < i:
@@ -206,7 +220,7 @@ def _add_gear(
 def _turned(
     block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
 ) -> float:
-    """Return the yield of an edge under its load, nodes first to last - 1, along the normal of its mate."""
+    """Return the motion of an edge under its own load along the mate's normal; nodes first to last - 1."""
     across = _work(block, load, first, last)
     turn = _work(along, load, first, last) / across
     return across * (1.0 + turn * (lever - 1.0)) ** 2

@@ -1,24 +1,26 @@
 r"""Strips near a tip edge: the center of their load, and the yield of the corner under them.
 
 The load patch of finite elements at an edge has one length. The strip is shorter under less load, so that its
-middle is nearer to the edge, where the bodies yield more; and it moves as flanks tilt, less if the edge holds
-it. With tau the tilt of the flanks by the bodies, positive towards tip 1, phi the angle by which rigid flanks
-open from the edge, s the direction away from it and h the force, the energy has the further part
+middle is nearer to the edge, where the bodies yield more. It also moves as flanks tilt, less so where the
+strip ends at the edge. With tau the tilt of the flanks by the bodies, positive towards tip 1, phi the angle
+by which rigid flanks open from the edge, s the direction away from it and h the force, the energy has the
+further part
 
     E = h s tau X(h, phi + s tau/2),    d(h X)/dh = M,
 
-X the way of the strip's centroid from that of the patch, M that of the middle of the strip: what a further
-load adds presses as a punch does. Half of the tilt counts in X, as E is its integral over the tilt. Free
-strips have X = -phi R, which leaves -h R tau^2/2, as anywhere on a flank.
+where X is the distance of the strip's centroid from that of the patch, and M that of the strip's middle,
+since a small further load presses as a punch does. Half of the tilt counts in X, as E is its integral over
+the tilt. Strips that do not end at the edge have X = -phi R, so that the tilt adds -h R tau^2/2, as anywhere
+on a flank.
 
-A strip beside the edge that does not reach it yields as on a half plane, however long it is; the part of the
-corner's softness that the local law has is put right by
+A strip near the edge that does not reach it yields as on a half plane, however long it is. The local law
+includes a part of the corner's softness; the approach that it lacks is
 
     Y = k_c [(1 - w) F ln(a) - int ln(h_G) dF + w int ln(h) dF],
 
-k_c what the corner yields over a half plane, w the part of it in the law, a the half-width of the patch, h
-half the strip and h_G the same, or the distance of the strip's middle from the edge while it does not reach
-it (docs/theory/contact.md).
+where k_c is the softness of the corner beyond that of a half plane, w the part of it in the law, a the
+half-width of the patch, h half the strip, and h_G the distance of the strip's middle from the edge, which is
+h where the strip reaches the edge (docs/theory/contact.md).
 """
 
 from __future__ import annotations
@@ -34,9 +36,11 @@ from host.loops import inner, njit
 SIDE, OFFSET, RADIUS, SOFTNESS, PATCH, MISSING, CORNER, LENGTH = range(8)
 """Columns of a table of edge strips (..., n, 8), in the order of the fields of `EdgeStrips`."""
 EDGE_REACH = 2.0
-"""Distance from an edge over half a patch within which strips may reach it, of twice the largest load too."""
+"""Distance from an edge over half a patch within which strips may reach it, even under twice the largest
+load.
+"""
 _SHORTEST = 1e-12
-"""Least c^2 of a strip's length at an edge, over that of the radius."""
+"""Least value of 4 p/(pi E*) over the radius, in place of loads too small to divide by."""
 
 
 class EdgeStrips(NamedTuple):
@@ -61,7 +65,7 @@ class EdgeStrips(NamedTuple):
 
 
 def edge_table(strips: EdgeStrips, present: BoolArray) -> FloatArray:
-    """Return strips (Q, n) as a table (Q, n, 8), without those of slices that are not there (Q, n)."""
+    """Return strips (Q, n) as a table (Q, n, 8), zeros where a slice is not present or not at an edge."""
     table = np.stack(np.broadcast_arrays(*strips), axis=-1)
     return np.where(present[..., None] & (table[..., :1] != 0.0), table, 0.0)
 
@@ -72,7 +76,7 @@ def no_edges(slices: int) -> FloatArray:
 
 
 class EdgeMotion(NamedTuple):
-    """Derivatives of the energy E by force and tilt, and the corner's yield that the local law lacks."""
+    """Derivatives of the energy E by force and tilt, and the approach Y by the corner."""
 
     by_force: float
     by_tilt: float
@@ -90,16 +94,18 @@ class EdgeMotion(NamedTuple):
 def edge_position(
     offset: float, radius: float, softness: float, force: float
 ) -> tuple[float, float, float, float, float]:
-    """Return where a strip at an edge presses.
+    """Return the position of a strip at an edge, and its derivatives.
+
+    `offset` is that of `EdgeStrips` with the tilt of the flanks added.
 
     Returns
     -------
     centroid, middle : float
         Distances from the edge, m.
-    turned, twice : float
-        First and second derivative of the centroid by the angle between the flanks, m.
+    by_angle, second_by_angle : float
+        First and second derivative of the centroid with respect to the angle between the flanks, m.
     growth : float
-        Length of the strip by 4 p/(pi E*); 0 if it is free.
+        Derivative of the strip's length with respect to 4 p/(pi E*); 0 if it does not end at the edge.
     """
     scaled = max(softness * force, _SHORTEST * radius)  # 4 p/(pi E*)
     if scaled * radius <= offset * max(offset, 0.0):
@@ -112,19 +118,19 @@ def edge_position(
 
 @inner(error_model="numpy")
 def edge_motion(edge: FloatArray, i: int, force: float, tilt: float) -> EdgeMotion:
-    """Return the motion by a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
+    """Return the motion under a force in N on slice i and a tilt of its flanks; `edge` (n, 8) is a table."""
     side, radius, softness, patch = edge[i, SIDE], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, PATCH]
     position = edge_position(edge[i, OFFSET] - 0.5 * radius * side * tilt, radius, softness, force)
-    centroid, middle, turned, twice, growth = position
-    # the length by the angle is -growth times the length, of which the middle is half
-    slid = -growth * middle if growth > 0.0 else -radius
+    centroid, middle, by_angle, second_by_angle, growth = position
+    # derivative of the middle by the angle: that of the length is -growth times the length
+    middle_by_angle = -growth * middle if growth > 0.0 else -radius
     corner, slope = _corner(edge, i, force)
     return EdgeMotion(
         side * tilt * (middle - patch),
-        force * (side * (centroid - patch) + 0.5 * tilt * turned),
+        force * (side * (centroid - patch) + 0.5 * tilt * by_angle),
         0.5 * side * tilt * growth * softness,
-        side * (middle - patch) + 0.5 * tilt * slid,
-        force * (turned + 0.25 * side * tilt * twice),
+        side * (middle - patch) + 0.5 * tilt * middle_by_angle,
+        force * (by_angle + 0.25 * side * tilt * second_by_angle),
         corner,
         slope,
     )
@@ -135,7 +141,7 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
     """Return Y in m, and its derivative by the force in m/N."""
     offset, radius, softness, part = edge[i, OFFSET], edge[i, RADIUS], edge[i, SOFTNESS], edge[i, MISSING]
     if part == 0.0 and offset <= 0.0:
-        return 0.0, 0.0  # all of it is in the law
+        return 0.0, 0.0  # the law has all of the corner's softness
     scaled = max(softness * force, _SHORTEST * radius)
     half, rigid, reached, far = math.sqrt(scaled * radius), 0.25 * scaled, 0.0, offset
     if half >= offset:
@@ -154,9 +160,9 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
 
 @njit(cache=True, error_model="numpy")
 def edge_motions(edge: FloatArray, tilt: FloatArray, pressed: FloatArray, motions: FloatArray) -> None:
-    """Add to motions (P, L, n) in m what strips at edges move under forces (P, L, n) in N.
+    """Add the motions by strips at edges under forces `pressed` (P, L, n) in N to `motions` (P, L, n) in m.
 
-    `edge` (Q, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, P a multiple of Q.
+    `edge` (Q, n, 8) is a table, `tilt` (Q, n, n) that of the contact problem, and P a multiple of Q.
     """
     for p in range(pressed.shape[0]):
         row, edges = tilt[p % tilt.shape[0]], edge[p % edge.shape[0]]
