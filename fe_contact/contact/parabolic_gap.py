@@ -13,19 +13,19 @@ from host.loops import inner, njit
 
 @njit(cache=True, error_model="numpy")
 def touching_offsets(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
+    """Return the points between `low` and `high` (n,) where gaps with one minimum are least, m."""
     touching = np.empty(gap.slope.size)
     for i in range(touching.size):
         position = 0.0
         rising = _slope(gap, i, position)
         end = low[i] if rising > 0.0 else high[i]
-        # the slope is made of straight pieces: from break to break until it changes its sign
+        # the slope is linear between breaks: go on from break to break until it changes its sign
         while rising != 0.0 and position != end:
             stop = end
             for k in range(gap.offset.shape[1]):
-                at = gap.offset[i, k]
-                if (position - at) * rising > 0.0 and (at - stop) * rising > 0.0:
-                    stop = at
+                offset = gap.offset[i, k]
+                if (position - offset) * rising > 0.0 and (offset - stop) * rising > 0.0:
+                    stop = offset
             curvature = _curvature(gap, i, 0.5 * (position + stop))
             slope = _one_sided_slope(gap, i, position, -rising)
             step = -slope / curvature if curvature > 0.0 else -rising * math.inf
@@ -41,7 +41,7 @@ def touching_offsets(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
 
 @inner(error_model="numpy")
 def _slope(gap: Gap, i: int, x: float) -> float:
-    """Return the slope of the gap, the side to which it falls if there is one; zero at a break that holds."""
+    """Return the slope of the gap on the side to which it decreases; zero if it increases to both sides."""
     left, right = _one_sided_slope(gap, i, x, -1.0), _one_sided_slope(gap, i, x, 1.0)
     if left > 0.0:
         return left
@@ -52,9 +52,9 @@ def _slope(gap: Gap, i: int, x: float) -> float:
 def _one_sided_slope(gap: Gap, i: int, x: float, side: float) -> float:
     slope: float = gap.slope[i] + gap.curvature[i] * x
     for k in range(gap.offset.shape[1]):
-        at = gap.offset[i, k]
-        right = at >= 0.0
-        beyond = (x - at) if right else (at - x)
+        offset = gap.offset[i, k]
+        right = offset >= 0.0
+        beyond = (x - offset) if right else (offset - x)
         inside = beyond > 0.0 or (beyond == 0.0 and (side > 0.0) == right)
         if inside:
             slope += (gap.jump[i, k] + gap.bend[i, k] * beyond) * (1.0 if right else -1.0)
@@ -65,15 +65,15 @@ def _one_sided_slope(gap: Gap, i: int, x: float, side: float) -> float:
 def _curvature(gap: Gap, i: int, x: float) -> float:
     curvature: float = gap.curvature[i]
     for k in range(gap.offset.shape[1]):
-        at = gap.offset[i, k]
-        if (x > at) if at >= 0.0 else (x < at):
+        offset = gap.offset[i, k]
+        if (x > offset) if offset >= 0.0 else (x < offset):
             curvature += gap.bend[i, k]
     return curvature
 
 
 @njit(cache=True, error_model="numpy")
 def shifted_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
-    """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
+    """Return the gap (n,) in m at the distance `shift` (n,) in m, and the gap about that point."""
     n, breaks = gap.offset.shape
     minimum, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
     position, bend = gap.offset.copy(), gap.bend.copy()
@@ -83,12 +83,12 @@ def shifted_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
         curvature[i] = gap.curvature[i]
         at_end = x == gap.low[i] or x == gap.high[i]
         for k in range(breaks):
-            at = gap.offset[i, k]
-            right = at >= 0.0
-            beyond = max((x - at) if right else (at - x), 0.0)
+            offset = gap.offset[i, k]
+            right = offset >= 0.0
+            beyond = max((x - offset) if right else (offset - x), 0.0)
             minimum[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
-            at_end = at_end or x == at
-            position[i, k] = at - x
+            at_end = at_end or x == offset
+            position[i, k] = offset - x
             if (position[i, k] >= 0.0) != right:
                 curvature[i] += gap.bend[i, k]
                 bend[i, k] = -gap.bend[i, k]
