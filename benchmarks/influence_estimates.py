@@ -85,8 +85,8 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
 
 def is_neglected(decision: Mapping[str, str], name: str) -> bool:
     """Whether an effect is off; three dimensions hold the finite width by themselves."""
-    held = name == FiniteWidth.name and decision[FaceLoadDistribution.name] == "on"
-    return decision[name] == "off" and not held
+    included = name == FiniteWidth.name and decision[FaceLoadDistribution.name] == "on"
+    return decision[name] == "off" and not included
 
 
 def _assessed(

@@ -113,8 +113,10 @@ class WorkMeter:
         seconds, highest = spent(self.workers) - self.began, peak_memory()
         expected = self.reference.seconds * host_slowness(self.cache)
         record(self.cache, {self.kind: expected}, {self.kind: seconds})
-        grown = float(highest - self.memory) if self.memory is not None and highest > self.peak else None
-        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, grown)
+        memory_growth = (
+            float(highest - self.memory) if self.memory is not None and highest > self.peak else None
+        )
+        return WorkCost(self.predicted.seconds, self.predicted.bytes, seconds, memory_growth)
 
 
 def announce(progress: Progress, stage: str, subject: str, cost: Cost) -> None:

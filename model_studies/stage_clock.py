@@ -32,9 +32,9 @@ class TimeTaken:
         """Return the time of both."""
         return TimeTaken(self.cpu_seconds + other.cpu_seconds, self.wall_seconds + other.wall_seconds)
 
-    def since(self, begun: TimeTaken) -> TimeTaken:
+    def since(self, earlier: TimeTaken) -> TimeTaken:
         """Return the time from one reading to this one."""
-        return TimeTaken(self.cpu_seconds - begun.cpu_seconds, self.wall_seconds - begun.wall_seconds)
+        return TimeTaken(self.cpu_seconds - earlier.cpu_seconds, self.wall_seconds - earlier.wall_seconds)
 
 
 class StageClock:
@@ -57,11 +57,11 @@ class StageClock:
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time the block as a stage; a context manager."""
-        begun = TimeTaken.now(self._remote)
+        start = TimeTaken.now(self._remote)
         try:
             yield
         finally:
-            self._end(name, begun)
+            self._end(name, start)
 
     def finish(self, name: str) -> None:
         """Book the time since the last stage ended, or since the clock was made."""
@@ -90,6 +90,6 @@ class StageClock:
             "peak_memory_bytes": max(peak_memory(), children_peak_memory()),
         }
 
-    def _end(self, name: str, begun: TimeTaken) -> None:
+    def _end(self, name: str, start: TimeTaken) -> None:
         self._last = TimeTaken.now(self._remote)
-        self.book(name, self._last.since(begun))
+        self.book(name, self._last.since(start))

@@ -82,10 +82,10 @@ def _warm_mesh(scene: Scene, warm: Temperatures, index: int) -> WarmMesh:
     acting = sum(sign * gear.base_radius for sign, gear in zip(signs, gears, strict=True))
     if not 0.0 < acting < distance:
         return WarmMesh(0.0, 0.0, 0.0)  # no pair: the mechanism says so
-    grown = [warm.strain(gear.thermal_expansion, gear.temperature) for gear in gears]
+    strains = [warm.strain(gear.thermal_expansion, gear.temperature) for gear in gears]
     radii = [sign * gear.base_radius * distance / acting for sign, gear in zip(signs, gears, strict=True)]
     strain, slope = _wall_strain(scene, warm, index)
-    growth = distance * strain - sum(r * e for r, e in zip(radii, grown, strict=True))
+    growth = distance * strain - sum(r * e for r, e in zip(radii, strains, strict=True))
     backlash = 2.0 * math.sqrt(1.0 - (acting / distance) ** 2) * growth * (-1.0 if internal else 1.0)
     return WarmMesh(growth, backlash, _misaligned(scene, index, slope))
 

@@ -260,7 +260,7 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
 
 def _moves(freedom: Sequence[str], kinetic_energy: FloatArray) -> list[Json]:
     """Return the motions of each mode, "shaft, how", with shares in the energy (m, n), the largest first."""
-    names, moves = [f"{shaft}, {how}" for shaft, how in freedom_parts(freedom)], []
+    names, moves = [f"{shaft}, {direction}" for shaft, direction in freedom_parts(freedom)], []
     for shares in kinetic_energy.tolist():
         summed = dict.fromkeys(names, 0.0)
         for name, share in zip(names, shares, strict=True):

@@ -79,10 +79,10 @@ class OptimizationRequest:
     @property
     def outside(self) -> tuple[str, ...]:
         """Variables that start beyond their bounds; a length without a relief is ignored."""
-        begun = zip(self.variables, self.start_design, strict=True)
+        start_values = zip(self.variables, self.start_design, strict=True)
         return tuple(
             v.name
-            for v, value in begun
+            for v, value in start_values
             if not v.low <= value <= v.high and not (v.quantity in LENGTHS and value == 0.0)
         )
 

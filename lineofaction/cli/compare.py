@@ -85,6 +85,6 @@ def run_compare(
         }
         print_json({"file": str(output), "differences": differences})
         return
-    said = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
-    for line in (*said, page.lead, f"written to {output}"):
+    lines = (f"{line.name}: {line.value}: {line.remark}" for line in page.headlines)
+    for line in (*lines, page.lead, f"written to {output}"):
         console().print(line, soft_wrap=True)

@@ -90,8 +90,8 @@ class TableFraction:
 
     def plan(self, stages: Mapping[str, float]) -> None:
         """Take the predicted cost of the stages of a pass that begins."""
-        begun, share = self._done, self._share * (1.0 - self._done)
-        self._progress = by_cost(lambda fraction: self._reach(begun + share * fraction), stages)
+        done_before, share = self._done, self._share * (1.0 - self._done)
+        self._progress = by_cost(lambda fraction: self._reach(done_before + share * fraction), stages)
 
     def at(self, stage: str, fraction: float) -> float:
         """Return the completed fraction of the table at a fraction of a stage."""

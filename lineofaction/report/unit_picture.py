@@ -92,8 +92,8 @@ def _alternative(bodies: Sequence[Body]) -> str:
     *more, last = [f"{count} {word}{'' if count == 1 else 's'}" for count, word in counts if count]
     shafts = ", ".join(body.name for body in bodies if body.kind == SHAFT)
     gears = ", ".join(body.name for body in bodies if body.kind in (PINION, WHEEL))
-    said = f"{', '.join(more)} and {last}" if more else last
-    return f"{said}. Shafts: {shafts}." + (f" Gears: {gears}." if gears else "")
+    counted_parts = f"{', '.join(more)} and {last}" if more else last
+    return f"{counted_parts}. Shafts: {shafts}." + (f" Gears: {gears}." if gears else "")
 
 
 def unit_png(bodies: tuple[Body, ...], hulls: tuple[Hull, ...] = ()) -> bytes:

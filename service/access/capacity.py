@@ -52,8 +52,8 @@ class Usage:
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
         """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have theirs."""
         if maximum is not None and self._counts[name] >= maximum:
-            who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
-            text = f"{who} {maximum} {self._what}, the limit. End one of them, or try again."
+            subject = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
+            text = f"{subject} {maximum} {self._what}, the limit. End one of them, or try again."
             raise TooManyHeld.after(_RETRY_S, text)
         if self._in_all is not None and self._counts.total() >= self._in_all:
             raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")

@@ -166,8 +166,8 @@ class Entry:
     ) -> None:
         """Enter the batch and its jobs; the first of equal ones bears their cost."""
         common = {"created": now(), "caller": self._caller.name, "project": self._project, **USUAL.columns()}
-        begun = {"state": "running", "stage": "jobs", "started": now()}
-        computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **begun)
+        initial_values = {"state": "running", "stage": "jobs", "started": now()}
+        computation = _entered(connection, process, f"{BATCH}{identifier}", {}, **initial_values)
         batch = {"id": identifier, "computation_id": computation, "parent": None, "place": 0, "weight": 0.0}
         rows = [common | batch | {"children": len(cases)} | self._terms.label.columns()]
         names, counted = [str(uuid.uuid4()) for _ in cases], set[str]()

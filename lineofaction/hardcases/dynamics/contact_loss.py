@@ -119,19 +119,22 @@ def _impacts() -> Sequence[Measured]:
     }
     depth = _SPEED / NATURAL
     # an error of one tolerance at an impact is one of speed, which every flight after it makes more of
-    grown = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
+    expected_difference = _TOLERANCE * _BACKLASH / depth * _IMPACTS**2 / 2.0
     difference = rms(
         _transmission_error(runs[METHODS[0], fine]) - _transmission_error(runs[METHODS[1], fine])
     )
     return (
         Measured(
             "two integrators apart, over a tolerance per impact and what flights make of it",
-            difference / (2.0 * 1e-2 * grown), maximum=1.0,
+            difference / (2.0 * 1e-2 * expected_difference), maximum=1.0,
         ),
-        Measured("off the closed form, likewise", max(off[m, coarse] for m in METHODS) / grown, maximum=1.0),
+        Measured(
+            "off the closed form, likewise",
+            max(off[m, coarse] for m in METHODS) / expected_difference, maximum=1.0,
+        ),
         Measured(
             "likewise at a hundredth of the tolerance",
-            1e2 * max(off[m, fine] for m in METHODS) / grown, maximum=1.0,
+            1e2 * max(off[m, fine] for m in METHODS) / expected_difference, maximum=1.0,
         ),
         Measured(
             "energy lost over forty impacts, over a tolerance per impact",

@@ -43,12 +43,12 @@ class _SteadyStudy(SceneStudy[Inputs, SteadyFigures, SteadyStates]):
         if before is None:
             return None
         speeds = np.array(inputs.speed_rpm) * RPM
-        how: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
+        options: Json = {"branch": inputs.branch, "repeat": inputs.repeat, "periods": inputs.settling_periods}
         try:
-            cost = _study_cost(steady_cost(sized(scene), speeds, **how))
+            cost = _study_cost(steady_cost(sized(scene), speeds, **options))
             if cost.seconds <= LONG:
                 return cost
-            single = steady_cost(sized(scene), speeds[-1:], **how)
+            single = steady_cost(sized(scene), speeds[-1:], **options)
         except (InputError, SolveError):
             return None  # the study says it, on its own tables
         return replace(cost, remedy=_remedy(single, inputs.speed_rpm[-1]))
