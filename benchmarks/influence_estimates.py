@@ -133,8 +133,8 @@ def _table_of_effects(found: Sequence[LoadedInfluence]) -> str:
     for effect, group in by_effect(found).items():
         cells = []
         for k in range(2):
-            seen = [one.estimated[k] / one.measured[k] for one in group if abs(one.measured[k]) >= FLOOR]
-            median = f"{np.median(seen):.2f}" if seen else ""
+            ratios = [one.estimated[k] / one.measured[k] for one in group if abs(one.measured[k]) >= FLOOR]
+            median = f"{np.median(ratios):.2f}" if ratios else ""
             cells.append(f"{per_cent_right(group, k):.0f} % | {median}")
         lines.append(f"| {effect} | {len(group)} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"

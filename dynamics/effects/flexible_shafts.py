@@ -80,8 +80,8 @@ def _stretches(mechanism: Mechanism, rotor: Rotor) -> bool:
     gears = {gear.name: gear for gear in scene.gears if gear.shaft == rotor.shaft.name}
     meshing = [name for mesh in scene.meshes for name in (mesh.driver, mesh.driven) if name in gears]
     helical = any(gears[name].base_helix_angle != 0.0 for name in meshing)
-    wanted = helical or "z" in additions.requested
-    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and wanted
+    has_axial_force = helical or "z" in additions.requested
+    return rotor.axial_stiffness > 0.0 and "z" in additions.possible and has_axial_force
 
 
 def _points_of_application(

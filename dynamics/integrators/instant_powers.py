@@ -94,7 +94,7 @@ def _in_elements(
     elements, force, elastic = system.elements, work.force, work.local.elastic
     rate, drift = work.local.rate, work.local.drift
     for e in range(elements.law.size):
-        law, first, end, lost = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
+        law, first, end, element_loss = elements.law[e], elements.first[e], elements.first[e + 1], 0.0
         if law == FLANK:
             mesh += (force[first] - elastic[first]) * rate[first]
             position -= elastic[first] * rate[first]
@@ -114,14 +114,14 @@ def _in_elements(
             elif law == SPATIAL_FLANK and slides(elements, e, r):
                 friction += force[r] * (rate[r] + drift[r])
             else:
-                lost += (force[r] - elastic[r]) * rate[r]
+                element_loss += (force[r] - elastic[r]) * rate[r]
         if law == SPATIAL_FLANK:
-            mesh += lost
+            mesh += element_loss
             power, stored = power_along_axes(elements, work.local, e)
             axes += stored - power
             position -= elastic[first] * rate[first] + stored
         else:
-            bearing += lost
+            bearing += element_loss
     return bearing, mesh, friction, supplied, frames, position, axes
 
 

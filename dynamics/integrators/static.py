@@ -144,8 +144,8 @@ def _newton(
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         update = _solve(arrays, balance.stiffness, balance.force, q)
         q, balance = _line_search(arrays, time, q, update, external, size, parting)
-    lost = bool(np.any(_per_mesh(arrays, balance.local.force) <= LOST_CONTACT * scale))
-    status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
+    lost_contact = bool(np.any(_per_mesh(arrays, balance.local.force) <= LOST_CONTACT * scale))
+    status = StaticStatus.UNBALANCED if lost_contact else StaticStatus.ITERATION_LIMIT
     return StaticSolution(status, q, balance.local.force[system.driving_rows], size, ITERATION_LIMIT)
 
 

@@ -71,7 +71,7 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
     assembled by itself, so the residual tells what the linear solves and the sum of the parts leave.
     """
     gains: dict[str, list[FloatArray]] = {mesh.name: [] for mesh in at.system.scene.meshes}
-    lost: dict[tuple[str, str], list[FloatArray]] = {}
+    losses: dict[tuple[str, str], list[FloatArray]] = {}
     loaded = False
     for part in speed_blocks(steady.omega.shape, steady.displacement.shape[2]):
         u, absorbed = steady.displacement[part], dict[tuple[str, str], FloatArray]()
@@ -88,15 +88,15 @@ def power_balance(at: Excited, speed: FloatArray, steady: Steady) -> PowerBalanc
         for name, kind, power in _losses(at, speed[part], u, rate):
             absorbed[name, kind] = absorbed.get((name, kind), 0.0) + power
         for key, power in absorbed.items():
-            lost.setdefault(key, []).append(power)
+            losses.setdefault(key, []).append(power)
     if not loaded:
         gains.pop(LOADS, None)
     return PowerBalance(
         tuple(gains),
         np.array([np.concatenate(powers) for powers in gains.values()]).reshape(-1, *steady.omega.shape),
-        tuple(name for name, _ in lost),
-        tuple(kind for _, kind in lost),
-        np.array([np.concatenate(powers) for powers in lost.values()]).reshape(-1, *steady.omega.shape),
+        tuple(name for name, _ in losses),
+        tuple(kind for _, kind in losses),
+        np.array([np.concatenate(powers) for powers in losses.values()]).reshape(-1, *steady.omega.shape),
     )
 
 

@@ -158,8 +158,8 @@ def _check_steps(offsets: Mapping[str, Sequence[Turn]], teeth: Mapping[str, int]
     """
     names = list(offsets)
     for gear, name in zip(names[:1] * len(names), names[1:], strict=False):
-        for index, (ahead, wanted) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
-            angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - wanted for k in range(teeth[gear]))
+        for index, (ahead, offset) in enumerate(zip(offsets[gear], offsets[name], strict=True)):
+            angles = ((ahead + k) * Fraction(teeth[name], teeth[gear]) - offset for k in range(teeth[gear]))
             off = min((float(angle - round(angle)) for angle in angles), key=abs)
             if abs(off) > TOOTH_FIT:
                 value = f'planet {index + 1}, off by {off:.6g} teeth of "{name}"'

@@ -65,9 +65,9 @@ class EnergyAudit:
         And what springs hold from the start: a run that loses next to nothing is assessed by that. The power
         that drive and load exchange is thousands of times more, and would hide any error.
         """
-        lost = self.bushings + self.meshes + abs(self.friction)
+        losses = self.bushings + self.meshes + abs(self.friction)
         supplied = abs(self.position) + abs(self.axes)
-        return lost + supplied + abs(self.stored_bushings) + abs(self.stored_meshes) + self.held
+        return losses + supplied + abs(self.stored_bushings) + abs(self.stored_meshes) + self.held
 
     @property
     def relative(self) -> float:
@@ -98,13 +98,13 @@ class EnergyAudit:
 
     def check(self) -> Check:
         """Return the check of the balance: residual over the turnover, and largest fall of a loss, J."""
-        lost = self.fallen > FALLEN * self.turnover
+        falls = self.fallen > FALLEN * self.turnover
         missing = self.relative > UNACCOUNTED
         reason = f"{engineering(100.0 * self.relative, 2)} % of {self.turnover:.3g} J is not accounted for"
         if missing:
             reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
-        if lost:
+        if falls:
             reason = f"{reason}; a loss fell by {self.fallen:.3g} J, so it supplied energy"
-        figures, holds = {"unaccounted": self.relative, "fallen": self.fallen}, not (lost or missing)
+        figures, holds = {"unaccounted": self.relative, "fallen": self.fallen}, not (falls or missing)
         assumption = "work is balanced and losses only grow"
         return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)

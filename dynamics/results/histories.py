@@ -75,20 +75,20 @@ class _Signals(NamedTuple):
     """Static transmission error, m. Shape (m, T)."""
 
 
-def unfiltered(system: System, seen: Observed, states: States) -> _Signals:
+def unfiltered(system: System, observed: Observed, states: States) -> _Signals:
     """Return the signals of points of the motion."""
-    position = seen.position[: len(system.scene.meshes)]
+    position = observed.position[: len(system.scene.meshes)]
     static = np.empty_like(position)
     for f, force in enumerate(system.flanks.nominal_force):
         static_deflections(system.flanks.static, f, position[f], float(force), static[f])
-    return _Signals(states.q, states.v, seen.coordinate, seen.force, static)
+    return _Signals(states.q, states.v, observed.coordinate, observed.force, static)
 
 
-def filtered(system: System, states: States, seen: Observed) -> _Signals:
+def filtered(system: System, states: States, observed: Observed) -> _Signals:
     """Return the signals behind the anti-alias filter.
 
     Modal freedoms that the filter has not taken are left out, and the coordinates they move are those of the
-    motion's points, as `seen`: no output has them.
+    motion's points in `observed`: no output has them.
     """
     rows, channels, modal = states.minimum.shape[1], states.filtered, system.arrays.sparse.modal
     n, meshes = modal.first, system.flanks.nominal_force.size
@@ -99,15 +99,15 @@ def filtered(system: System, states: States, seen: Observed) -> _Signals:
     if amplitudes.shape[1] > 0:
         coordinate += system.arrays.direction[:, n:] @ displacement.T
     else:
-        coordinate[modal.row] = seen.coordinate[modal.row]
+        coordinate[modal.row] = observed.coordinate[modal.row]
     q, v = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
     return _Signals(q, v, coordinate, force, static)
 
 
 def histories(
-    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed, signals: _Signals
+    system: System, time: FloatArray, laws: FloatArray, states: States, observed: Observed, signals: _Signals
 ) -> dict[str, Any]:
-    """Return the series of `RunResult` made of `signals`, for the `states` at `time` (T,) as `seen`.
+    """Return the series of `RunResult` at `time` (T,), from states, observed points and signals.
 
     `laws` (4, k, T) is the motion of the laws. Positions, contact and the extremes of the mesh forces are
     those of the unfiltered motion.
@@ -125,7 +125,7 @@ def histories(
         "freedom": system.freedoms.name if outputs.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
-        "position": seen.position[: len(scene.meshes)],
+        "position": observed.position[: len(scene.meshes)],
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
         "dynamic_transmission_error": signals.coordinate[driving],
         "static_transmission_error": signals.static,
@@ -133,8 +133,8 @@ def histories(
         "coast_force": _coast_force(system, signals.force),
         "least_mesh_force": np.ascontiguousarray(states.minimum[:, driving].T),
         "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
-        "elastic_force": seen.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
-        "contact": _contact(system, seen.force),
+        "elastic_force": observed.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
+        "contact": _contact(system, observed.force),
         **_axis_series(system, signals.coordinate, signals.force),
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], signals.force, q, v),
@@ -149,20 +149,20 @@ def histories(
 
 
 def checked_series(
-    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed
+    system: System, time: FloatArray, laws: FloatArray, states: States, observed: Observed
 ) -> dict[str, Any]:
     """Return the series that a run is checked by (`RunChecks`): of points of the motion, not filtered."""
     driving = system.driving_rows
     return {
         "time": time,
-        "position": seen.position[: len(system.scene.meshes)],
-        "dynamic_transmission_error": seen.coordinate[driving],
-        "mesh_force": seen.force[driving],
-        "coast_force": _coast_force(system, seen.force),
+        "position": observed.position[: len(system.scene.meshes)],
+        "dynamic_transmission_error": observed.coordinate[driving],
+        "mesh_force": observed.force[driving],
+        "coast_force": _coast_force(system, observed.force),
         "least_mesh_force": states.minimum[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
-        **_axis_series(system, seen.coordinate, seen.force),
-        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.quanta)[0],
+        **_axis_series(system, observed.coordinate, observed.force),
+        "bearing_force": _on_the_ground(system, laws, observed.force, states.q, states.v, states.quanta)[0],
     }
 
 

@@ -89,10 +89,10 @@ class NodeRule:
 
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:
         """Return the rule by which positions take their share of a tolerance, and no more than usual."""
-        wanted = POSITION_SHARE * allowed.relative / self.tolerance
-        closer = min(max(wanted, CLOSEST), 1.0)
+        share = POSITION_SHARE * allowed.relative / self.tolerance
+        closer = min(max(share, CLOSEST), 1.0)
         limit = round(self.maximum / math.sqrt(closer))
-        minimum = FLOOR_SHARE * allowed.least_scale * wanted / closer  # the floor is as asked, however close
+        minimum = FLOOR_SHARE * allowed.least_scale * share / closer  # the floor is as asked, however close
         return replace(self, tolerance=closer * self.tolerance, maximum=limit, least_ripple=minimum)
 
     def ripple(self, curves: FloatArray) -> FloatArray:
@@ -210,13 +210,17 @@ def patch_rules(
     cosine = math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
-    wanted, law = wanted_patch(pair, force), longest_strip(pair, LARGEST_SUPPORT * force) / STRIP_OVER_LAW
+    least_half, law = wanted_patch(pair, force), longest_strip(pair, LARGEST_SUPPORT * force) / STRIP_OVER_LAW
     half, edge = _resolved(discretization, discretization.recipes)
-    half, edge = max(half, wanted), max(edge, EDGE_PATCH * pair.pinion.normal_module)
+    half, edge = max(half, least_half), max(edge, EDGE_PATCH * pair.pinion.normal_module)
     coarse, coarse_edge = _resolved(discretization, discretization.coarse_recipes)
     slice_width = pair.face_width / (SLICE_OVER_PATCH * discretization.slices)
-    wider = max(min(coarse, slice_width), WIDER * half if half > wanted else half)
-    left = PATCHES_SEEN * (1.0 - (wanted / half) ** 2) / ((wider / half) ** 2 - 1.0) if half > wanted else 0.0
+    wider = max(min(coarse, slice_width), WIDER * half if half > least_half else half)
+    left = (
+        PATCHES_SEEN * (1.0 - (least_half / half) ** 2) / ((wider / half) ** 2 - 1.0)
+        if half > least_half
+        else 0.0
+    )
     coarse_edge = max(coarse_edge, edge)
     return PatchRule(half, edge, edge_load, law), PatchRule(wider, coarse_edge, edge_load, law), left
 

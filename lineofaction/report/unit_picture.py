@@ -100,13 +100,13 @@ def unit_png(bodies: tuple[Body, ...], hulls: tuple[Hull, ...] = ()) -> bytes:
     """Draw bodies and the surfaces about them with names of shafts and gears; return the PNG file's bytes."""
     longest = max(len(_short(body.name)) for body in bodies if body.kind != BEARING)
     across = CHARACTER * longest + AWAY + EDGE
-    seen = rendered(bodies, Camera.on(bodies, SIZE, (across, ABOVE), hulls), COLORS, hulls)
+    picture = rendered(bodies, Camera.on(bodies, SIZE, (across, ABOVE), hulls), COLORS, hulls)
     sheet = Sheet(figsize=(SIZE[0] / DPI, SIZE[1] / DPI), dpi=DPI)
     FigureCanvasAgg(sheet)
-    sheet.figimage(seen.color)
-    columns = np.flatnonzero(np.any(seen.color < 1.0, axis=(0, 2)))
-    _write(sheet, _points(bodies, seen, (SHAFT,), 0.0), float(columns[0]) - AWAY, "right")
-    _write(sheet, _points(bodies, seen, (PINION, WHEEL), 1.0), float(columns[-1]) + AWAY, "left")
+    sheet.figimage(picture.color)
+    columns = np.flatnonzero(np.any(picture.color < 1.0, axis=(0, 2)))
+    _write(sheet, _points(bodies, picture, (SHAFT,), 0.0), float(columns[0]) - AWAY, "right")
+    _write(sheet, _points(bodies, picture, (PINION, WHEEL), 1.0), float(columns[-1]) + AWAY, "left")
     buffer = BytesIO()
     sheet.savefig(buffer, format="png", dpi=DPI, metadata={"Title": TITLE})
     return buffer.getvalue()
@@ -117,12 +117,12 @@ def _short(name: str) -> str:
 
 
 def _points(
-    bodies: Sequence[Body], seen: Rendered, kinds: tuple[str, ...], side: float
+    bodies: Sequence[Body], picture: Rendered, kinds: tuple[str, ...], side: float
 ) -> list[tuple[str, float, float]]:
     """Return names of bodies that are seen, each with a pixel of its own near a side, from top to bottom."""
     points = []
     for index, body in enumerate(bodies):
-        rows, columns = np.nonzero(seen.body == index)
+        rows, columns = np.nonzero(picture.body == index)
         if body.kind in kinds and rows.size:
             column = int(np.quantile(columns, 0.05 + 0.9 * side, method="nearest"))
             in_column = rows[columns == column]

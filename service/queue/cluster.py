@@ -246,14 +246,14 @@ class Cluster:
                     self._say(f"scheduler {self._address}: not {fault}. {tip}" if fault else "")
                     looked = time.monotonic()
                 with self._lock:
-                    wanted = dict(self._tasks)
-                dropped = following.keys() - wanted.values()
+                    current = dict(self._tasks)
+                dropped = following.keys() - current.values()
                 for task in dropped:
                     following.pop(task).cancel()
-                for name in {task.name for task in dropped} | left - wanted.keys():
+                for name in {task.name for task in dropped} | left - current.keys():
                     await self._forget(client, name)
                 left = set()
-                for task in wanted.values():
+                for task in current.values():
                     if not task.ended and (task not in following or following[task].done()):
                         following[task] = asyncio.create_task(self._follow(client, task))
                 with suppress(TimeoutError):

@@ -59,13 +59,15 @@ def program() -> str:
     return f"lineofaction {solver_version()}, Python {'.'.join(python_version_tuple()[:2])}{lacks}"
 
 
-def do_job(line: bytes, files: Mapping[str, bytes], topic: str, wanted: str) -> Done | None:
+def do_job(line: bytes, files: Mapping[str, bytes], topic: str, expected_program: str) -> Done | None:
     """Do an order in a child process, with the contents of the stored results it reads; None: it is unwanted.
 
     Events of the topic report how far it is. A worker of another `program` than the wanted one does nothing.
     """
-    if program() != wanted:
-        text = f"The Dask worker has {program()}, the service {wanted}: start workers of that version."
+    if program() != expected_program:
+        text = (
+            f"The Dask worker has {program()}, the service {expected_program}: start workers of that version."
+        )
         return Done(Outcome(failure=text, lost=True), None, CacheReads(), (), (), b"")
     from distributed import get_worker  # noqa: PLC0415 (an extra)
 

@@ -142,8 +142,8 @@ class DerivedPitches:
             return curves_of_point(point, position, load, np.arange(contact.pitches))
         return _flat(np.stack([envelope.ste, envelope.sum(_ARM)], axis=-1))
 
-    def _known(self, *wanted: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
-        return list(zip((self.contact.position, self.contact.load), wanted, strict=True))
+    def _known(self, *values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+        return list(zip((self.contact.position, self.contact.load), values, strict=True))
 
     def _changed(self, contact: CycleContact, rows: IntArray, loads: IntArray) -> FloatArray:
         states = [contact.nominal()[1]]

@@ -131,14 +131,14 @@ class ValidationAlignments:
         nodes = getattr(solved_table.table, self.axis)
         known = np.array([*truths, *nodes])
         chosen = np.ones(nodes.size - 1, bool) if of is None else of
-        wanted = [
+        probed = [
             low + part * (high - low)
             for (low, high), wished in zip(pairwise(nodes.tolist()), chosen, strict=True)
             if wished
             for part in probes
         ]
         near = 1e-9 * np.diff(nodes).min()
-        return np.array([at for at in wanted if not np.any(np.abs(known - at) <= near)])
+        return np.array([at for at in probed if not np.any(np.abs(known - at) <= near)])
 
     def _solve(self, solved_table: SolvedTable, at: FloatArray, truths: dict[float, FloatArray]) -> None:
         """Solve held-out alignments, (R, l) in m each; NaN where a solution did not converge."""

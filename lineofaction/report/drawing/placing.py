@@ -118,23 +118,23 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     ]
 
 
-def spread_positions(wanted: FloatArray, heights: FloatArray) -> FloatArray:
+def spread_positions(preferred: FloatArray, heights: FloatArray) -> FloatArray:
     """Return the middles of texts (n,) of given heights without overlap, nearest to the wanted places.
 
     The sum of squared shifts is least among all in this order (pool adjacent violators); then the stack is
     moved into 0 to 1, its top first.
     """
-    order = np.argsort(wanted, kind="stable")
+    order = np.argsort(preferred, kind="stable")
     below = np.cumsum(heights[order]) - 0.5 * heights[order]  # middle of each if all were stacked from 0
     blocks: list[tuple[float, int]] = []
-    for offset in wanted[order] - below:
+    for offset in preferred[order] - below:
         mean, count = float(offset), 1
         while blocks and blocks[-1][0] >= mean:
             other, many = blocks.pop()
             mean, count = (mean * count + other * many) / (count + many), count + many
         blocks.append((mean, count))
     shift = np.concatenate([np.full(count, mean) for mean, count in blocks]) if blocks else np.empty(0)
-    middles = np.empty(wanted.size)
+    middles = np.empty(preferred.size)
     middles[order] = np.minimum(np.maximum(shift, 0.0), 1.0 - float(heights.sum())) + below
     return middles
 

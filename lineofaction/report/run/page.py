@@ -155,9 +155,9 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     Raises `BadInput`: the run does not hold what the view names.
     """
     signal = selected_signal(run, view)
-    seen = along_direction(run, signal)
+    projected = along_direction(run, signal)
     over_time = signal_over_time(run, signal)
-    spectrum = (signal_spectrum(seen, signal),) if has_spectrum(run) else ()
+    spectrum = (signal_spectrum(projected, signal),) if has_spectrum(run) else ()
     section = Section(signal.heading, "" if spectrum else TOO_SHORT, figures=(over_time, *spectrum))
     if not run.mesh:
         return (section,)
@@ -199,8 +199,8 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
     if not has_orders(run, signal.mesh):
         return ()
-    seen = along_direction(run, signal)
-    orders, frequencies = order_blocks(seen, signal), frequency_blocks(seen, signal)
+    projected = along_direction(run, signal)
+    orders, frequencies = order_blocks(projected, signal), frequency_blocks(projected, signal)
     of_orders = order_map(run, signal, orders)
     figures = (
         levels_over_speed(run, signal, orders),
