@@ -83,16 +83,16 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
     coordinate : (R,) array
         Local coordinates of the force elements there.
     """
-    places = supports_by_name(system.rotors)
+    supports = supports_by_name(system.rotors)
     names, rotors = system.supports.name, system.rotors
-    strain = np.array([seat_motion(rotors, *places[name]) @ motion for name in names]).reshape(-1, SEAT)
+    strain = np.array([seat_motion(rotors, *supports[name]) @ motion for name in names]).reshape(-1, SEAT)
     carried = np.array([carried_seat(rotors, name) @ motion for name in names]).reshape(-1, SEAT)
     total = strain + carried
     seat = carried + _condensed_seats(system, total)
     yielded, clearance, elements = total - seat, np.zeros_like(total), system.arrays.elements
     for e, at in enumerate(system.bearings, start=len(system.elements) - len(system.bearings)):
         along = np.linalg.pinv(at.directions) @ at.directions
-        if np.any(np.abs(places[names[at.support]][1].seat_stiffness @ along) > 0.0):
+        if np.any(np.abs(supports[names[at.support]][1].seat_stiffness @ along) > 0.0):
             continue
         rows = slice(elements.first[e], elements.first[e + 1])
         free = _free_fraction(system.arrays, e, coordinate[rows])
@@ -102,10 +102,10 @@ def bearing_strain(system: System, motion: FloatArray, coordinate: FloatArray) -
 
 def _condensed_seats(system: System, total: FloatArray) -> FloatArray:
     """Return the motions (b, 5) of seats in massless housings by those of the shafts in them (b, 5)."""
-    places, names = supports_by_name(system.rotors), list(system.supports.name)
+    supports, names = supports_by_name(system.rotors), list(system.supports.name)
     displacement = np.zeros_like(total)
     for housing in condensed_housings(system.scene, system.rotors):
-        parts = [places[name][1] for name in housing.bushings]
+        parts = [supports[name][1] for name in housing.bushings]
         at = [names.index(name) for name in housing.bushings]
         stiffness = np.zeros((SEAT * len(at), SEAT * len(at)))
         for k, part in enumerate(parts):

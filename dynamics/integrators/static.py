@@ -158,8 +158,8 @@ def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
     if not np.any(free):
         return values
     vector = arrays.reference.vector[free]
-    taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ values)
-    return np.asarray(values - arrays.mass @ vector.T @ taken)
+    reaction = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ values)
+    return np.asarray(values - arrays.mass @ vector.T @ reaction)
 
 
 def _balance(arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray) -> ForceBalance:

@@ -83,8 +83,8 @@ class CarryingStrips:
     ) -> CarryingStrips:
         p, _, m = at
         touch, shape = candidates.touch, (*added_arm.shape, candidates.pair.size)
-        places = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
-        strips = Strips(pair, *places, middle, half)
+        touching = touch.s_1[p, m], touch.s_2[p, m], touch.roll_1[p, m], candidates.face_position[m]
+        strips = Strips(pair, *touching, middle, half)
         return cls(
             shape,
             np.ravel_multi_index(at, shape),

@@ -143,19 +143,19 @@ def _refinements(
     ways: FloatArray, values: FloatArray, on: IntArray, halving: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Return the next points between points (3, n) of contacts `on` (m,), and the gain by a parabola."""
-    places, gains = np.empty(on.size), np.empty(on.size)
+    positions, gains = np.empty(on.size), np.empty(on.size)
     for m in range(on.size):
         i = on[m]
         low, middle, high = ways[0, i], ways[1, i], ways[2, i]
         position, gains[m] = _parabola(ways, values, i)
         longer = high if high - middle > middle - low else low
         if halving or middle in (low, high):
-            places[m] = 0.5 * (middle + longer)
+            positions[m] = 0.5 * (middle + longer)
         else:
             direction = longer - middle if position == middle else position - middle
             distance = max(abs(position - middle), _NEAREST * (high - low))
-            places[m] = min(max(middle + math.copysign(distance, direction), low), high)
-    return places, gains
+            positions[m] = min(max(middle + math.copysign(distance, direction), low), high)
+    return positions, gains
 
 
 @njit(cache=True, error_model="numpy")
@@ -171,10 +171,10 @@ def _narrow(
     `new` has contacts, new points, their gaps, and the depths of the parabolas, (m,) each. A contact goes on
     while a gap or a parabola is lower by more than `allowed`, or `always`.
     """
-    on, places, heights, gains = new
+    on, positions, heights, gains = new
     more, count = np.empty(on.size, dtype=np.int64), 0
     for m in range(on.size):
-        i, position, height = on[m], places[m], heights[m]
+        i, position, height = on[m], positions[m], heights[m]
         lower, outer = height < values[1, i], 2 if position > ways[1, i] else 0
         if always or gains[m] > allowed[i] or values[1, i] - height > allowed[i]:
             more[count] = i

@@ -183,17 +183,17 @@ class Candidates:
         """Gap about the touching points in the normal section, arrays (P, m) and (P, m, B)."""
         return self.gap_at(...)
 
-    def gap_at(self, places: Any) -> Gap:
-        """Return the gap about some of the candidates, which `places` selects from arrays (P, m)."""
+    def gap_at(self, index: Any) -> Gap:
+        """Return the gap about some of the candidates, which `index` selects from arrays (P, m)."""
         normal, touch = math.cos(self.base_helix_angle), self.touch
         return Gap(
-            touch.slope[places] * normal,
-            touch.curvature[places] * normal,
-            touch.low[places],
-            touch.high[places],
-            touch.offset[places],
-            touch.jump[places] * normal,
-            touch.bend[places] * normal,
+            touch.slope[index] * normal,
+            touch.curvature[index] * normal,
+            touch.low[index],
+            touch.high[index],
+            touch.offset[index],
+            touch.jump[index] * normal,
+            touch.bend[index] * normal,
         )
 
     @cached_property

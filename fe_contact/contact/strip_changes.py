@@ -147,8 +147,8 @@ class ClosingLag:
 
     def slope(self, gear: int, gap: GapTerm, over: GapTerm) -> FloatArray:
         """Return how much steeper the flank of a gear is by a gap than by another near it (k,)."""
-        places, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
-        steeper = flank_slope(self.strips.pair, gear, difference, places, self._step)
+        coordinates, difference = (self.strips.s_1, self.strips.s_2), partial(self._difference, gap, over)
+        steeper = flank_slope(self.strips.pair, gear, difference, coordinates, self._step)
         return np.asarray(steeper + self.turns[gear] * self._shift(gap, over))
 
     def _shift(self, gap: GapTerm, over: GapTerm) -> FloatArray:
@@ -228,8 +228,8 @@ class FollowingPatches:
         free = (rest.slope == 0.0) & (np.abs(touch.shift) < c.slices.law_length) & np.isfinite(c.gap)
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(free & loaded)
-        places = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
-        at_rest = Strips(pair, *places, rest.middle[at], rest.half[at])
+        touching = touch.s_1[at], touch.s_2[at], touch.roll_1[at], c.face_position[at[1]]
+        at_rest = Strips(pair, *touching, rest.middle[at], rest.half[at])
         way = -math.cos(c.base_helix_angle) / rest.curvature[at]
         return cls(problem, pressed, at_rest, np.ravel_multi_index(at, c.gap.shape), way)
 
@@ -283,8 +283,8 @@ class TurnedForces:
         loaded = np.repeat(pressed.any(axis=1), c.pair.size // pressed.shape[2], axis=1)
         at = np.nonzero(loaded & np.isfinite(c.gap))
         zero = np.zeros(at[0].size)
-        places = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
-        closing = ClosingLag.of(Strips(pair, *places, zero, zero), c, at)
+        touching = c.touch.s_1[at], c.touch.s_2[at], c.touch.roll_1[at], c.face_position[at[1]]
+        closing = ClosingLag.of(Strips(pair, *touching, zero, zero), c, at)
         return cls(
             problem, pressed, _times(problem.bodies, pressed), closing, np.ravel_multi_index(at, c.gap.shape)
         )

@@ -125,11 +125,11 @@ def _shifted(
     flanks = _Flanks(pair, near, faces, gaps, teeth, surfaces)
     touching = _touching(flanks)
     shift, about = touching.shift, touching.about
-    places = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
-    places |= {"shift": shift + touching.off, "approach_error": touching.approach_error}
-    places |= flanks.closed(shift, touching.gap) | about._asdict()
+    changed = {"s_1": near.s_1 + shift, "s_2": near.s_2 - shift}
+    changed |= {"shift": shift + touching.off, "approach_error": touching.approach_error}
+    changed |= flanks.closed(shift, touching.gap) | about._asdict()
     result = {}
-    for name, values in places.items():
+    for name, values in changed.items():
         same_shape = plain[name].shape[1:] == values.shape[1:]
         all_values = plain[name].copy() if same_shape else np.zeros((touch.gap.size, *values.shape[1:]))
         all_values[possible] = values

@@ -121,8 +121,10 @@ def _write(file: InputFile, step: Path, output: Path, made: StepHousing) -> list
     free = in_place or revised or not target.exists()
     if not free and target.read_bytes() != step.read_bytes():
         raise BadInput.of("output", str(target), "free for the STEP file", "Choose another folder or name.")
-    taken = {part.get("name") for part in others}
-    unused = (name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in taken)
+    used_names = {part.get("name") for part in others}
+    unused = (
+        name for name in ("housing", *(f"housing {k}" for k in range(2, 102))) if name not in used_names
+    )
     housing = {"name": [*made.replaced, *unused][0], "step_file": step.name, **made.fields}
     table = base | {"housings": [*others, housing]}
     find = in_folder(output.parent)

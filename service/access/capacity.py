@@ -88,9 +88,9 @@ class RateLimits:
             return 0
         with self._lock:
             left, instant = self._level(key.name, limit)
-            taken = left >= 1.0
-            self._left[key.name] = (left - 1.0 if taken else left, instant)
-        return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
+            granted = left >= 1.0
+            self._left[key.name] = (left - 1.0 if granted else left, instant)
+        return 0 if granted else math.ceil((1.0 - left) * _MINUTE_S / limit)
 
     def quota(self, key: Holder) -> Quota | None:
         """Return the quota of a holder and its remainder; None: no limit."""

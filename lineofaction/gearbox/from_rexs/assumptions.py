@@ -67,8 +67,8 @@ def attribute_text(attribute: Attribute) -> str:
 
 def mend(error: BadInput) -> str:
     """Return the assumptions that replace the values at fault; empty: no component has one."""
-    places = [_ATTRIBUTE_FIELD.search(fault.field) for fault in error.faults]
-    known = [match for match in places if match is not None and listed_unit(match[2]) is not None]
+    matches = [_ATTRIBUTE_FIELD.search(fault.field) for fault in error.faults]
+    known = [match for match in matches if match is not None and listed_unit(match[2]) is not None]
     options = ", ".join(f"--assume {match[1]}.{match[2]}=VALUE" for match in known)
     return f" Or open it with {options}." if options else ""
 

@@ -182,14 +182,14 @@ def _flank(
     gear = chart.gear
     form, tip, half = gear.form_roll_length, gear.tip_roll_length, 0.5 * gear.face_width
     over = {"profile": (tip - form, np.sort([form, tip])), "helix": (2.0 * half, np.array([-half, half]))}
-    places, rests = [], []
+    coordinates, rests = [], []
     for name, (length, ends) in over.items():
         trace = splits.get((tooth, name))
-        places.append(ends if trace is None else trace.coordinate)
+        coordinates.append(ends if trace is None else trace.coordinate)
         rests.append(np.zeros(2) if trace is None else trace.rest)
         if trace is not None:
             (entry[f"{name}_slope_um"],) = _um(np.array([trace.slope / trace.length * length]))
-    return entry | {"flank_grid": _grid(places[0], places[1], np.add.outer(rests[0], rests[1]))}
+    return entry | {"flank_grid": _grid(coordinates[0], coordinates[1], np.add.outer(rests[0], rests[1]))}
 
 
 def _grid(rolls: FloatArray, faces: FloatArray, excess: FloatArray) -> dict[str, Any]:

@@ -64,14 +64,14 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     across = x.fraction(np.array([note.x for note in notes]), x.limits or (0.0, 1.0))
     along = y.fraction(np.array([note.y for note in notes]), y_range)
     size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
-    taken = [
+    occupied = [
         _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
     ]
     shifted, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
         boxes = {slot: _text(notes[k].text, across[k], along[k], *slot) for slot in _PLACES}
-        slot = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
-        taken.append(boxes[slot])
+        slot = next((at for at, box in boxes.items() if _is_free(box, occupied, lowest)), _PLACES[0])
+        occupied.append(boxes[slot])
         shifted[k] = replace(notes[k], row=slot[0], left=slot[1])
     return tuple(shifted)
 
@@ -83,11 +83,11 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     return _Box(start, start + width, low, low + _HEIGHT)
 
 
-def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
+def _is_free(box: _Box, occupied: Sequence[_Box], lowest: float) -> bool:
     """Whether a text lies in the panel and covers nothing."""
     across = box.left >= 0.0 and box.right <= 1.0
     along = box.low >= lowest and box.high <= 1.0 + _MARGIN
-    return across and along and not any(box.covers(other) for other in taken)
+    return across and along and not any(box.covers(other) for other in occupied)
 
 
 class _LineLabel(NamedTuple):
