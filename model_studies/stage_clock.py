@@ -67,24 +67,24 @@ class StageClock:
         """Book the time since the last stage ended, or since the clock was made."""
         self._end(name, self._last)
 
-    def book(self, name: str, time: TimeTaken) -> None:
+    def book(self, name: str, duration: TimeTaken) -> None:
         """Add the time of a stage that was taken apart."""
-        self.stages[name] = self.stages.get(name, TimeTaken()).plus(time)
+        self.stages[name] = self.stages.get(name, TimeTaken()).plus(duration)
 
     @property
     def seconds(self) -> dict[str, float]:
         """CPU seconds by stage."""
-        return {name: time.cpu_seconds for name, time in self.stages.items()}
+        return {name: duration.cpu_seconds for name, duration in self.stages.items()}
 
     @property
     def wall_seconds(self) -> dict[str, float]:
         """Wall seconds by stage."""
-        return {name: time.wall_seconds for name, time in self.stages.items()}
+        return {name: duration.wall_seconds for name, duration in self.stages.items()}
 
     def to_json(self) -> Json:
         """Return times by stage, their sum, and the peak memory in bytes."""
         return {
-            "stages": {name: asdict(time) for name, time in self.stages.items()},
+            "stages": {name: asdict(duration) for name, duration in self.stages.items()},
             "cpu_seconds": sum(self.seconds.values()),
             "wall_seconds": sum(self.wall_seconds.values()),
             "peak_memory_bytes": max(peak_memory(), children_peak_memory()),
