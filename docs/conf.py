@@ -27,7 +27,7 @@ extensions = [
 ]
 source_suffix = {".md": "markdown"}
 # In the source tree alone: decisions, notes on measurements.
-exclude_patterns = ["decisions/*", "lab/*", "paper/*"]
+exclude_patterns = ["decisions/*", "lab/*", "paper/*", "validation-table.md"]
 myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 

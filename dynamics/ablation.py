@@ -46,7 +46,7 @@ SETTLED = 0.5
 """Part of the run after which start-up transients are taken to have died out."""
 
 WARM_UP = 0.01
-"""Part of the duration that a scene runs for before it is timed."""
+"""Duration of the run before the timed one, over the duration of the scene."""
 _FIGURE = 2e-6
 """CPU seconds of the figures of a run, per sample and per mesh or bearing; for predictions of cost only."""
 

@@ -1,4 +1,8 @@
-"""Ablation: every effect of a model is toggled by itself, and its change is compared with its estimate."""
+"""Ablation: every effect of a model is toggled by itself, and its change is compared with its estimate.
+
+The *request* is the model with its effects on or off as decided. An effect that is toggled is off if the
+request has it on, and on otherwise; all others stay.
+"""
 
 from __future__ import annotations
 
@@ -13,12 +17,12 @@ from bounds.types import FloatArray, Json
 from model_studies.record import in_unit, under_key
 
 TRIFLE = 1e-3
-"""Relative change below which a report lists effects together."""
+"""Relative change below which an effect is negligible: a report lists such effects together."""
 
 
 @dataclass(frozen=True)
 class Figures:
-    """The figures that variants of a model are compared by; a library adds its own arrays."""
+    """The figures by which variants of a model are compared. Subclasses add further arrays."""
 
     mean: FloatArray = field(metadata=in_unit("m", "curve"))
     peak_to_peak: FloatArray = field(metadata=in_unit("m", "curve"))
@@ -26,11 +30,11 @@ class Figures:
     mesh, m. Shape (n,) each.
     """
     cpu_seconds: float
-    """Measured."""
+    """Measured CPU time of the variant, s."""
 
     @property
     def cost(self) -> float:
-        """CPU seconds that variants are compared by."""
+        """CPU seconds by which variants are compared."""
         return self.cpu_seconds
 
 
@@ -47,18 +51,18 @@ E = TypeVar("E", bound=Estimate)
 
 @dataclass(frozen=True)
 class EffectAblation(Generic[F, E]):
-    """One effect toggled."""
+    """One effect, with the figures of the model with and without it."""
 
     name: str
     on: bool
     """Whether the request has it on."""
     reason: str
-    """Why, from the ledger."""
+    """Reason of the request's decision, from the effect ledger."""
     with_effect: F
     without_effect: F
-    """`with_effect`, `without_effect`: One of them is the request itself."""
+    """`with_effect`, `without_effect`: Figures of both variants; one of them is the request itself."""
     estimate: E | None
-    """Estimated change without it; None: not known."""
+    """Estimated change by leaving the effect out; None: not known."""
 
     @property
     def toggled(self) -> F:

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 FLOORS = (
     ("verification",),
     ("lineofaction.cli",),
-    ("lineofaction.hardcases", "lineofaction.client"),
+    ("lineofaction.hardcases", "lineofaction.client", "lineofaction.validation"),
     ("service",),
     ("lineofaction.report",),
     ("lineofaction.gearbox",),

@@ -1,9 +1,11 @@
-"""Boundary elements on a closed hull: the sound of its own surface in free space, scattering included.
+"""Boundary elements on a closed hull: the sound of its vibration in free space, scattering included.
 
 Burton and Miller's combination of the boundary integral equation and its normal derivative has no irregular
 frequencies [1]_. Pressure is linear on the panels, normal velocity constant; the dense operators come from
-NGSolve (`boundary_operators`). The radiated power is that of the far field: it is a sum of squares, and
-unlike the product of pressure and velocity on the surface it is no small difference at low frequency.
+NGSolve (`layer_operators`). The radiated power is that of the far field, a sum of squares: the product of
+pressure and velocity on the surface is a small difference of large numbers at low frequency. Sizes: N nodes
+and T panels of the hull, M shapes of vibration, which are normal velocities of the panels. Inside, the time
+factor is e^{-i omega t}, as in the kernel e^{+ikr}; results are for e^{+i omega t}, hence the conjugates.
 
 References
 ----------
@@ -30,28 +32,29 @@ from model_studies.progress import Progress, by_cost, silent
 from model_studies.workers import InProcess, Workers
 
 MARGIN = 8
-"""Orders of spherical harmonics above the wavenumber times the radius; their part of the far field is below
-1e-6.
+"""Orders of spherical harmonics, in the directions of the far field, above the wavenumber times the radius of
+the hull. Higher orders are less than 1e-6 of the far field.
 """
 MIDDLES = 0.5 * (np.ones((3, 3)) - np.eye(3))  # barycentric coordinates of the edges' middles
 EDGES = 2.6
-"""Least number of the longest edges in a wavelength: gear cases are within 0.4 dB of six."""
+"""Least length of a sound wave over the longest edge of the hull: with it gear cases are within 0.4 dB of
+their result with six edges."""
 RESIDUAL = 1e-8
 """Greatest relative residual of the dense solve."""
 MAX_PANELS = 8000
 """Most panels of a hull: 8000 take 7 GB at the peak."""
 SHARES = {"operators": 0.98, "pressure": 0.02}
-"""Usual shares in the time."""
+"""Usual shares of the stages in the time of a frequency, for progress."""
 STAGE = "boundary elements"
 
 
 def _far_field_resistance(
     hull: Hull, wavenumber: float, pressure: ComplexArray, slope: ComplexArray
 ) -> ComplexArray:
-    """Return the integral over all directions of conj(p_i) p_j, (M, M), Pa^2 m^2, p r in the far field.
+    """Return the integral over all directions of conj(P_i) P_j, (M, M) in Pa^2 m^2.
 
-    The kernel is e^{+ikr}. Arguments: `pressure` (N, M) at the nodes, linear in between, `slope` (T, M) dp/dn
-    of panels.
+    P_j is the pressure of shape j in the far field times the distance. `pressure` (N, M) is that at the
+    nodes, linear in between; `slope` (T, M) is dp/dn of the panels.
     """
     center = hull.areas @ hull.centers / hull.area
     radius = float(np.linalg.norm(hull.nodes - center, axis=1).max())
@@ -95,13 +98,13 @@ class _SurfacePressure:
 
 @dataclass(frozen=True)
 class BoundaryElements:
-    """The radiation model without neglect but for its mesh; needs the extra `boundary-elements`."""
+    """The radiation model that neglects nothing but the error of its mesh; needs `boundary-elements`."""
 
     model_name: str = "boundary_elements"
     progress: Progress = field(default=silent, repr=False, compare=False)
     """Called as progress("boundary elements", fraction) while the operators of a frequency are assembled."""
     workers: Workers = field(default=InProcess(), repr=False, compare=False)
-    """Who assembles them, some panels each."""
+    """Executor that assembles the operators, in parts by panels."""
 
     def resistance(self, hull: Hull, frequency: float, shapes: ComplexArray, air: Air) -> ComplexArray:
         """Return the resistance in the far field; see `surface_pressure` for what it raises."""
@@ -168,8 +171,8 @@ def _solve(
 ) -> tuple[ComplexArray, float]:
     """Return the pressure (N, M) for its normal derivative `slope` (T, M), and the residual."""
     single, double = operators
-    # of the derived equation: i/k above the first irregular frequency, near ka = pi; it vanishes with k,
-    # where the plain equation is well conditioned and the derived one is not
+    # weight of the derived equation: i/k above the first irregular frequency, near ka = pi. At low k it goes
+    # to 0: there the plain equation is well conditioned, and the derived one is not.
     radius = hull.equivalent_radius
     coupling = 1j * wavenumber * radius**2 / (1.0 + (wavenumber * radius) ** 2)
     matrix = 0.5 * panels.mass.toarray() - np.asarray(panels.mean.T @ double)
@@ -177,7 +180,7 @@ def _solve(
     right = np.asarray(panels.mean.T @ (single @ slope + 0.5 * coupling * hull.areas[:, None] * slope))
     right = -right - coupling * (double.T @ slope)
     pressure: ComplexArray = np.linalg.solve(matrix, right)
-    scale = float(np.linalg.norm(right)) or 1.0
+    scale = float(np.linalg.norm(right)) or 1.0  # a hull at rest
     return pressure, float(np.linalg.norm(matrix @ pressure - right)) / scale
 
 
@@ -195,12 +198,12 @@ def exterior_pressure(
     shapes : (T, M) array
         Normal velocities of the panels, > 0 outwards.
     points : (P, 3) array
-        m.
+        Positions of the points, m.
 
     Returns
     -------
     (P, M) complex array
-        Pa per m/s, peak amplitudes of e^{+i omega t}.
+        Pressure of each shape at the points, Pa: peak amplitudes of e^{+i omega t}.
     """
     wavenumber = 2.0 * np.pi * frequency / air.sound_speed
     pressure = surface_pressure(hull, frequency, shapes, air).pressure

@@ -1,4 +1,8 @@
-"""Modal freedoms: amplitudes that force elements alone couple, and their compiled products."""
+"""Modal freedoms and their compiled products.
+
+A modal freedom is the amplitude of a mode. Its row of the mass, damping and stiffness matrices is diagonal,
+so that only force elements couple it to other freedoms. Modal freedoms are the last freedoms of a system.
+"""
 
 from __future__ import annotations
 
@@ -10,16 +14,17 @@ from dynamics.kernels.compiled import inner, inner_sums
 from dynamics.types import FloatArray, IntArray
 
 MIN = 16
-"""Freedoms from which on a dense block is faster than entries one by one."""
+"""Least number of modal freedoms: from it on a dense block is faster than the entries of sparse matrices."""
 TOGETHER = 4
-"""Rows of a product taken at a time: amplitudes and forces on them are read a fourth as often."""
+"""Rows of a product taken at a time: amplitudes and forces on them are read a fourth as often. The code below
+writes these four rows out."""
 
 
 class ModalFreedoms(NamedTuple):
     """The last b of n freedoms, from `first` on; b = 0 where there are fewer than `MIN`."""
 
     first: int
-    """Freedoms before them."""
+    """Number of the other freedoms, which come before the modal ones."""
     row: IntArray
     """Local coordinates that the modal freedoms move. Their number s is a multiple of `TOGETHER`: the last
     ones repeat. Shape (s,).
@@ -37,11 +42,15 @@ class ModalFreedoms(NamedTuple):
 def modal_freedoms_of(
     mass: FloatArray, damping: FloatArray, stiffness: FloatArray, direction: FloatArray, others: FloatArray
 ) -> ModalFreedoms:
-    """Find the modal freedoms of a system: matrices (n, n), `direction` (R, n), all `others` (..., n)."""
+    """Find the modal freedoms of a system with n freedoms.
+
+    Matrices are (n, n); `direction` (R, n) has the motion of local coordinates per freedom. A freedom with an
+    entry in `others` (..., n), such as directions of loads and inertial forces, is not modal.
+    """
     size, entries = mass.shape[0], (mass != 0.0) | (damping != 0.0) | (stiffness != 0.0)
-    joined = entries & ~np.eye(size, dtype=bool)
-    bound = np.any(joined, axis=1) | np.any(others != 0.0, axis=0)
-    first = int(np.max(np.flatnonzero(bound), initial=-1)) + 1
+    coupled_pairs = entries & ~np.eye(size, dtype=bool)
+    coupled = np.any(coupled_pairs, axis=1) | np.any(others != 0.0, axis=0)
+    first = int(np.max(np.flatnonzero(coupled), initial=-1)) + 1
     if size - first < MIN:
         first = size
     block = direction[:, first:]
@@ -59,6 +68,7 @@ def modal_freedoms_of(
 @inner_sums
 def _four_sums(modal: ModalFreedoms, r: int, q: FloatArray) -> tuple[float, float, float, float]:
     """Return four rows of the shape, from `r` on, times the amplitudes in `q` (n,)."""
+    # unsigned indices: the compiler then needs no code for negative ones
     a, b, c, d, first = 0.0, 0.0, 0.0, 0.0, np.uint64(modal.first)
     for i in range(np.uint64(modal.damping.size)):
         amplitude = q[first + i]
@@ -71,7 +81,7 @@ def _four_sums(modal: ModalFreedoms, r: int, q: FloatArray) -> tuple[float, floa
 
 @inner
 def add_modal_motion(modal: ModalFreedoms, q: FloatArray, coordinate: FloatArray) -> None:
-    """Add the motion by the amplitudes in `q` (n,) to local coordinates (R,); likewise rates."""
+    """Add the motion by the amplitudes in `q` (n,) to local coordinates (R,); with rates for both, rates."""
     for r in range(0, modal.row.size, TOGETHER):
         a, b, c, d = _four_sums(modal, r, q)
         coordinate[modal.row[r]] += a

@@ -17,7 +17,8 @@ from dynamics.errors import InputError
 from dynamics.shafts.bodies import TEMPERATURE
 from dynamics.types import FloatArray
 
-DEFAULT_DAMPING_RATIO = 0.05  # damping ratio where a scene states none
+DEFAULT_DAMPING_RATIO = 0.05
+"""Damping ratio of a shaft on its bearings where a scene states none."""
 SEAT = 5
 """Number of directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
 
@@ -55,9 +56,11 @@ _TANGENTIAL = Declared(
 
 
 class _Seat:
-    """Stiffness K, damping C and preload p of a bearing, whose force on its seat is K d + C d' - p.
+    """Fields and matrices that linear bearings share.
 
-    The radial and axial values are on the diagonals of K and C; the matrices are added to them.
+    A bearing of stiffness K, damping C and preload p exerts the force K d + C d' - p on its seat, where d
+    (5,) is the motion of the shaft against the seat. Radial and axial values are on the diagonals of K and C;
+    the matrices `stiffness` and `damping` are added to them.
     """
 
     name: str
@@ -80,6 +83,7 @@ class _Seat:
                 continue
             # 5 by 5, or 6 by 6 with the rotation about the axis in the last row and column
             matrix = check_matrix(name, getattr(self, name), (SEAT, SEAT + 1))
+            # matrix[SEAT:] is that last row, and empty for 5 by 5; the matrix is symmetric
             if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
                 bound = "zero in the row and column of the rotation about the axis"
                 raise InputError(name, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")
@@ -96,7 +100,7 @@ class _Seat:
 
     @property
     def added_stiffness(self) -> FloatArray:
-        """The stiffness matrix without radial and axial stiffness, (5, 5); zeros: no matrix."""
+        """The field `stiffness` alone, (5, 5), without radial and axial stiffness; zeros where it is None."""
         return seat_matrix(self.stiffness)
 
     @property

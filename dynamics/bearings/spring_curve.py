@@ -1,4 +1,9 @@
-"""A bearing's force against displacement in one direction, from a table; and its compiled law."""
+"""A bearing's force against displacement in one direction, from a table; and its compiled law.
+
+The curve consists of S *pieces*: straight below the table, cubic between its points, straight above it. A law
+works with a local coordinate in m and a force in N; a *lever*, a radius in m, turns tilts and moments into
+such.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +23,7 @@ from dynamics.kernels.routine import routine
 from dynamics.types import FloatArray
 
 DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
+"""Directions of a curve, in the order of the five motions of a bearing."""
 
 
 class SpringCurveLaws(NamedTuple):
@@ -26,7 +32,7 @@ class SpringCurveLaws(NamedTuple):
     force: Cubics
     """Force over displacement: N over m, or N m over rad."""
     energy: FloatArray
-    """Energy at the start of each piece less that at no displacement, J. Shape (S,)."""
+    """Energy at the start of each piece less that at zero displacement, J. Shape (S,) over all bearings."""
     lever: FloatArray
     """Coordinate over displacement: 1, or a radius in m for tilts. Shape (l,)."""
 
@@ -47,15 +53,15 @@ class SpringCurveLaws(NamedTuple):
 class SpringCurve(SceneBearingLaw):
     """A force on the ground by the displacement of the shaft in one direction of a bushing.
 
-    Acts beside what the bushing does linearly, its damping included. Through the points without overshoot
-    (Fritsch and Carlson); beyond the ends on with the slope there.
+    The force adds to the linear forces of the bushing, damping included. The curve passes through the points
+    without overshoot (Fritsch and Carlson) and continues with the end slopes beyond them.
     """
 
     bushing: str
-    """Bushing or planet bearing that the curve replaces."""
+    """Bushing or planet bearing to which the curve belongs."""
     direction: str
-    """One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
-    axis.
+    """One of x, y, z, tilt_x, tilt_y, with at most one curve each. On a planet bearing x points away from the
+    carrier's axis.
     """
     displacement: tuple[float, ...]
     """Displacements of the table, m, or rad for a tilt; strictly increasing, at least 2."""
@@ -90,7 +96,7 @@ class SpringCurve(SceneBearingLaw):
         return duty.lever if self.direction.startswith("tilt") else 1.0
 
     def rows(self, duty: BearingDuty) -> FloatArray:
-        """Return the displacement of its direction, (1, 5)."""
+        """Return the local coordinate per motion x, y, z, tilt_x, tilt_y of the bearing, (1, 5)."""
         return self.lever(duty) * np.eye(5)[[DIRECTIONS.index(self.direction)]]
 
     def array_entry(self, duty: BearingDuty) -> tuple[SpringCurve, BearingDuty]:
@@ -107,8 +113,8 @@ class SpringCurve(SceneBearingLaw):
             return 0.0
         ways, forces = np.array(self.displacement), np.array(self.force)
         straight = np.interp(0.0, ways, forces) + self.slope * ways
-        off = float(np.max(np.abs(forces - straight))) / self.slope
-        return min(off, float(np.max(np.abs(ways[[0, -1]]))))
+        deviation = float(np.max(np.abs(forces - straight))) / self.slope
+        return min(deviation, float(np.max(np.abs(ways[[0, -1]]))))  # no more than the reach of the table
 
     def scaled(self, factor: float) -> SpringCurve:
         """Return the curve with all its forces times `factor`."""
@@ -131,28 +137,30 @@ class SpringCurve(SceneBearingLaw):
         return None if self.direction == "z" else "direction"
 
     def pieces(self) -> tuple[FloatArray, FloatArray]:
-        """Return the starts of the cubics (S,) and their ascending coefficients (S, 4).
+        """Return the starts of the pieces (S,) and their ascending coefficients (S, 4).
 
-        The first piece is the straight line below the table and counts from its first point; the last is the
-        one beyond it.
+        A piece counts the displacement from its start. The first, straight one lies below the table: it
+        starts at the table's first point, as the second piece does, and counts backwards.
         """
         x, f = np.asarray(self.displacement, dtype=float), np.asarray(self.force, dtype=float)
         inside = scipy.interpolate.PchipInterpolator(x, f)
         slope = inside.derivative()
         first, last = [[f[0], float(slope(x[0])), 0.0, 0.0]], [[f[-1], float(slope(x[-1])), 0.0, 0.0]]
+        # scipy has coefficients in descending order, (4, S - 2)
         return np.array([x[0], *x]), np.concatenate([first, inside.c[::-1].T, last])
 
 
 def _energies(start: FloatArray, c: FloatArray) -> FloatArray:
-    """Energy at the start of each piece, 0 at no displacement."""
+    """Return the energy at the start of each piece, J, 0 at zero displacement; `c` (S, 4): coefficients."""
     inside = np.array([_area(c[k], start[k + 1] - start[k]) for k in range(1, start.size - 1)])
-    from_first = np.concatenate([[0.0, 0.0], np.cumsum(inside)])
+    from_first = np.concatenate([[0.0, 0.0], np.cumsum(inside)])  # two zeros: pieces 0 and 1 start together
+    # the piece that holds zero displacement
     piece = max(int(np.searchsorted(start[1:], 0.0, side="right")), 0)
     return np.asarray(from_first - from_first[piece] - _area(c[piece], -start[piece]))
 
 
 def _area(c: FloatArray, s: float) -> float:
-    """Integral of a cubic from 0 to s."""
+    """Return the integral of a cubic with ascending coefficients `c` from 0 to s."""
     return float(s * (c[0] + s * (c[1] / 2.0 + s * (c[2] / 3.0 + s * c[3] / 4.0))))
 
 

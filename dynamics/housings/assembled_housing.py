@@ -1,4 +1,7 @@
-"""The equations of motion of a meshed housing, some of whose faces are rigid or fixed."""
+"""The equations of motion of a meshed housing, some of whose faces are rigid or fixed.
+
+Sizes: n nodes of the mesh, f independent freedoms, s motions of all seats.
+"""
 
 from __future__ import annotations
 
@@ -18,19 +21,23 @@ from dynamics.solid_housing import Material, Ring
 from dynamics.types import FloatArray, IntArray
 
 LOOSE_STIFFNESS = 1e-12
-"""Stiffness against a rigid motion below which mounts do not hold it, relative to the stiffest."""
+"""Stiffness against a rigid motion below which mounts leave it free, relative to the stiffest motion."""
 BLOCK = 3
-"""Consecutive freedoms that are ordered as one: three of a node, half of those of a rigid face."""
+"""Consecutive freedoms that a solver may permute as one block: the three of a node, or three of the six of a
+rigid face."""
 
 
 @dataclass(frozen=True)
 class _RigidFace:
-    """Nodes that move as one body about a point (m); `fixed` ones do not move."""
+    """Nodes that move as one rigid body."""
 
     name: str
     nodes: IntArray
+    """Indices of the nodes of the mesh."""
     about: FloatArray
+    """Point about which the body rotates, m. Shape (3,)."""
     fixed: bool = False
+    """Whether the nodes do not move at all."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +45,7 @@ class _Freedoms:
     """Independent freedoms: three of each free node, then six of each rigid face."""
 
     motion: sp.csr_array
-    """Displacements of all nodes per freedom. (3 n, f) sparse array."""
+    """Displacements of all nodes per freedom, node by node. (3 n, f) sparse array."""
     free: IntArray
     """The free nodes."""
     faces: tuple[_RigidFace, ...]
@@ -50,11 +57,11 @@ class _Freedoms:
         return 3 * len(self.free) + 6 * number + np.arange(6)
 
     def rigid(self, points: FloatArray, about: FloatArray) -> FloatArray:
-        """Return the freedoms by rigid motions of all nodes, (f, 6), see `rigid_motions`."""
+        """Return the freedoms (f, 6) in each of the six rigid motions of the housing about `about`."""
         parts = [rigid_motions(points[self.free], about)]
         for face in self.faces:
-            turned = np.hstack([np.zeros((3, 3)), np.eye(3)])
-            parts += [rigid_motions(face.about[None], about), turned]
+            rotations = np.hstack([np.zeros((3, 3)), np.eye(3)])  # a rigid face rotates with the housing
+            parts += [rigid_motions(face.about[None], about), rotations]
         return np.vstack(parts)
 
 
@@ -69,12 +76,12 @@ def _independent_freedoms(points: FloatArray, faces: tuple[_RigidFace, ...]) -> 
         owner[face.nodes] = number
     free = np.flatnonzero(owner < 0)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
-    blocks = [(np.ones(rows.size), rows, np.arange(rows.size))]
+    blocks = [(np.ones(rows.size), rows, np.arange(rows.size))]  # entries: value, row, column
     moving = tuple(face for face in faces if not face.fixed)
     for number, face in enumerate(moving):
         values = rigid_motions(points[face.nodes], face.about)
-        at = (3 * face.nodes[:, None] + np.arange(3)).ravel()
-        row, column = np.broadcast_arrays(at[:, None], rows.size + 6 * number + np.arange(6))
+        face_rows = (3 * face.nodes[:, None] + np.arange(3)).ravel()
+        row, column = np.broadcast_arrays(face_rows[:, None], rows.size + 6 * number + np.arange(6))
         blocks.append((values.ravel(), row.ravel(), column.ravel()))
     value, row, column = (np.concatenate(parts) for parts in zip(*blocks, strict=True))
     motion = sp.coo_array(
@@ -96,30 +103,34 @@ def mass_and_stiffness(mesh: TetrahedralMesh, material: Material) -> tuple[sp.cs
     """
     shapes, slopes = over_volume(mesh.points, mesh.tetrahedra)
     lame, shear = material.lame
+    # slopes[3 i + j]: integral of the slope of shape a along i times that of b along j, (n, n)
     blocks = [[lame * slopes[3 * i + j] + shear * slopes[3 * j + i] for j in range(3)] for i in range(3)]
     for i in range(3):
         blocks[i][i] += shear * (slopes[0] + slopes[4] + slopes[8])
-    by_node = np.arange(3 * len(mesh.points)).reshape(3, -1).T.ravel()
+    by_node = np.arange(3 * len(mesh.points)).reshape(3, -1).T.ravel()  # from direction by direction
     stiffness = sp.block_array(blocks, format="csr")[by_node][:, by_node]
     return material.density * shapes, stiffness
 
 
 @dataclass(frozen=True)
 class AssembledHousing:
-    """M x'' + C x' + K x = B' f; q = B x."""
+    """The equations M x'' + C x' + K x = B' p of a housing under forces p on its seats; q = B x.
+
+    The damping C is that of the mounts.
+    """
 
     freedoms: _Freedoms
-    """Freedoms x; f in all."""
+    """The f freedoms x."""
     mass: sp.csr_array
     stiffness: sp.csr_array
     """`mass`, `stiffness`: Matrices M and K, the mounts' stiffness included. (f, f) sparse arrays."""
     mounts: tuple[sp.csr_array, sp.csr_array]
     """Stiffness and damping of the mounts alone. Tuple of two (f, f) sparse arrays."""
     seats: sp.csr_array
-    """B: motions q of the seats, one after the other. (s, f) sparse array."""
+    """B: motions q of the seats per freedom, seat by seat. (s, f) sparse array."""
     frames: tuple[SeatFrame, ...]
     loose: FloatArray
-    """Rigid motions that feet and mounts do not hold; six without any. Shape (f, k)."""
+    """The k rigid motions that feet and mounts leave free, by freedom; 6 without any foot. Shape (f, k)."""
     body: RigidBody
     """Mass, center and inertia of the mesh as a rigid body."""
 
@@ -189,12 +200,14 @@ def _motion(mesh: TetrahedralMesh, seat: tuple[SeatBore, SeatFrame], freedoms: _
 def _stiffness_and_damping_of_mounts(
     feet: tuple[Foot, ...], freedoms: _Freedoms
 ) -> tuple[sp.csr_array, sp.csr_array]:
+    """Return stiffness and damping of all mounts, (f, f) each."""
     size = freedoms.motion.shape[1]
     both = [sp.csr_array((size, size)), sp.csr_array((size, size))]
     for foot in feet:
         if foot.mount is None:
             continue
-        rows, columns = np.broadcast_arrays(*np.ix_(*2 * (freedoms.face(f"feet.{foot.name}"),)))
+        foot_freedoms = freedoms.face(f"feet.{foot.name}")
+        rows, columns = np.broadcast_arrays(*np.ix_(foot_freedoms, foot_freedoms))
         for number, matrix in enumerate(foot.mount.matrices()):
             entries = (matrix.ravel(), (rows.ravel(), columns.ravel()))
             both[number] = sp.csr_array(both[number] + sp.coo_array(entries, shape=(size, size)))
@@ -204,11 +217,13 @@ def _stiffness_and_damping_of_mounts(
 def _loose(
     points: FloatArray, feet: tuple[Foot, ...], freedoms: _Freedoms, stiffness: sp.csr_array
 ) -> FloatArray:
-    """Return the rigid motions without any stiffness against them, by freedom."""
+    """Return the rigid motions that no mount resists, by freedom, (f, k)."""
     if any(foot.mount is None for foot in feet):
         return np.zeros((freedoms.motion.shape[1], 0))
     center = points.mean(axis=0)
+    # rotations times the size of the housing, so that stiffnesses against all six motions are N/m
     size = np.array(3 * [1.0] + 3 * [float(np.linalg.norm(points - center, axis=1).max())])
     rigid = freedoms.rigid(points, center) / size
     value, vector = np.linalg.eigh(rigid.T @ (stiffness @ rigid))
+    # 1e-300: without any mount all six stiffnesses are 0
     return np.asarray(rigid @ vector[:, value <= LOOSE_STIFFNESS * max(value[-1], 1e-300)])

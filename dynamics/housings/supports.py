@@ -19,18 +19,23 @@ MOTIONS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation_z")
 """Directions of motion in the seat's own axes, z along the bore."""
 
 PRECISION = 1e-6
-"""Relative; a data sheet or a finite-element program writes its matrices with that many digits."""
+"""Relative asymmetry of a stiffness or damping matrix that counts as rounding: a data sheet or a finite-
+element program writes its matrices with six digits."""
+OBLIQUE = 0.9
+"""Largest cosine between the bore's axis and the mesh's x with which x is the reference of the seat's x."""
 
 
 @dataclass(frozen=True)
 class SeatBore:
-    """A bearing seat."""
+    """A bearing seat on the bore of a housing."""
 
     name: str
     bore: Bore
     ring: Ring = Ring.WEIGHTED_AVERAGE
+    """Whether the bore is a rigid ring, or elastic with a weighted average of its displacements."""
     motions: int = 5
-    """3: displacements, 5: tilts too, as a bearing holds a shaft; 6: rotation about the axis too."""
+    """Number of directions of `MOTIONS` in which the bearing holds its seat: 3 displacements, 5 with tilts, 6
+    with the rotation about the axis."""
 
     def __post_init__(self) -> None:
         if self.motions not in (3, 5, 6):
@@ -38,9 +43,9 @@ class SeatBore:
 
     @property
     def frame(self) -> SeatFrame:
-        """Position and axes."""
+        """Position and axes of the seat."""
         z = unit("axis", self.bore.axis)
-        near = np.eye(3)[0 if abs(z[0]) < 0.9 else 1]
+        near = np.eye(3)[0 if abs(z[0]) < OBLIQUE else 1]
         x = near - (near @ z) * z
         x /= np.linalg.norm(x)
         axes = np.stack([x, np.cross(z, x), z], axis=1)
@@ -65,15 +70,16 @@ class SeatFrame:
 
 
 def in_axes(frame: SeatFrame) -> FloatArray:
-    """Return a seat's motions by those along the axes of the mesh, (motions, 6)."""
+    """Return the matrix (motions, 6) from motions along the axes of the mesh to those of a seat."""
+    # two equal blocks: displacements and rotations turn alike
     return np.asarray(np.kron(np.eye(2), frame.axes.T)[: len(frame.motions)], dtype=float)
 
 
 def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_array:
-    """Return the rigid motion that is nearest to the displacements of a face, (6, 3 n).
+    """Return the matrix (6, 3 n) from the displacements of n nodes to the nearest rigid motion of a face.
 
-    Least squares over the area, with the shape functions of the elements: exact for rigid motions. Its
-    transpose spreads a force and moment at `about` over the nodes.
+    The motion, about the point `about`, is the least-squares fit over the area with the shape functions of
+    the elements: exact for rigid motions. The transpose spreads a force and moment at `about` over the nodes.
     """
     triangles = face.triangles(mesh)
     area, point = over_surface(mesh.points, triangles)
@@ -82,6 +88,7 @@ def mean_motion(mesh: TetrahedralMesh, face: Face, about: FloatArray) -> sp.csr_
     motion[..., range(3), range(3)] = 1.0
     for axis, direction in enumerate(np.eye(3)):
         motion[..., 3 + axis] = np.cross(direction, point - about)
+    # t triangles, p points of quadrature, a nodes of a triangle, i directions x, y, z; c, d the six motions
     normal = np.einsum("tp,tpic,tpid->cd", weight, motion, motion, optimize=True)
     right = np.einsum("tp,ap,tpic->ctai", weight, shape, motion, optimize=True)
     freedoms = 3 * triangles[:, :, None] + np.arange(3)
@@ -114,7 +121,7 @@ class Mount:
 
 @dataclass(frozen=True)
 class Foot:
-    """A face of the housing that stays plane and stands on the ground."""
+    """A rigid face of the housing that stands on the ground, fixed or on a mount."""
 
     name: str
     face: Face
@@ -127,6 +134,7 @@ class Foot:
 
 
 def _with_rotations(matrix: Matrix | None) -> FloatArray:
+    """Return a matrix of 3 or 6 rows as (6, 6), zero where it has no entries, without its asymmetry."""
     full = np.zeros((6, 6))
     if matrix is not None:
         rows = len(matrix)

@@ -1,7 +1,8 @@
-"""A run on its way: its workspace, and the loop that moves it on block by block into a sink.
+"""A run in progress: its workspace, and the loop that integrates it block by block into a sink.
 
-A march is a run on its way: it can stop after each block and go on, also in another process. A sink takes the
-output samples.
+A *march* is a run in progress: it can stop after each block and continue, also in another process. A *sink*
+takes the output samples. The *inner grid* has several points of time for each output sample; an anti-alias
+filter acts from it to the output. Named tuples go to compiled functions by address.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from dynamics.integrators.workspace import Count, Power, Workspace, geometric_st
 from dynamics.kernels.by_address import by_address
 from dynamics.kernels.compiled import compiled
 from dynamics.kernels.local_state import LocalState
+from dynamics.motion.motion import SPEED
 from dynamics.motion.observation import local_state, observe_laws
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
@@ -43,19 +45,21 @@ Progress = Callable[[float, str], None]
 Cancel = Callable[[], bool]
 CHUNKS = 50  # usual number of blocks of a run, between which progress is reported
 BLOCK_WORK = 25_000
-"""Samples times freedoms of a block that nobody waits for: 5 to 50 ms without the interpreter's lock."""
+"""Least samples times freedoms of a block without a listener for progress or cancelling: 5 to 50 ms in which
+the interpreter's lock is free."""
 FIRST_STEP = 1e-6  # size of the first step without a fixed one, s
+ROUNDING = 1e-12  # a last sample that rounding puts this part of the duration behind the end counts
 NO_SAMPLES = np.zeros(0, dtype=np.int64)
 STEP_SHARE = 0.07
 """Error allowed per step over the tolerance of the run.
 
-Measured on the run-up of a spur pair: with it the rms error of the run is 0.2 of the tolerance at damping
-ratios of 0.05, and 0.8 at 0.01, where steps' errors ring five times longer."""
+Measured on the run-up of a spur pair: with this share the rms error of the run is 0.2 of the tolerance at a
+damping ratio of 0.05, and 0.8 at 0.01, where the errors of steps ring five times longer."""
 NEWTON_SHARE = 0.01
 """Error of Newton's method over the error allowed per step.
 
-Stated steps have no such bound, and their error may lie far below any tolerance. What Newton's method leaves
-is of one sign and adds up, so there it goes on to rounding."""
+The remainders of Newton's method have one sign and add up. With a fixed step, whose error may lie far below
+any tolerance, the iteration therefore goes on to rounding."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +115,7 @@ class _SampleFigures:
 
 
 def _sample_figures(system: System, ring: SampleRing, points: int, samples: int) -> _SampleFigures:
-    """Read the figures off a ring after `points` of the inner grid and `samples` of the output."""
+    """Return the figures that a ring holds after `points` of the inner grid and `samples` of the output."""
     rows, stored = ring.local.force.size, system.scene.outputs.bearing_forces
     supports = system.bearing_stiffness.shape[:2] if stored else (0, 3)
     largest, rms = ring.peaks.largest.copy(), np.sqrt(ring.peaks.square / max(points, 1))
@@ -148,8 +152,7 @@ def stored_energy(
     Bodies move with the laws' speeds W_k times their kinematic vectors r_k, and their rate in `v` on top:
     T = v M v/2 + sum_k W_k r_k M v + sum_kl W_k W_l r_k M r_l/2.
     """
-    at = np.array([time])
-    speed = observe_laws(system, at)[2, :, 0]
+    speed = observe_laws(system, np.array([time]))[SPEED, :, 0]
     kinetic = (
         0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
     )
@@ -168,7 +171,7 @@ def _audited_energy(system: System, control: Control, time: float, work: Workspa
 
 @compiled
 def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
-    """Energies that flanks and that bearings store."""
+    """Return the energies that flanks and that bearings store, J."""
     mesh, bearing = 0.0, 0.0
     for e in range(elements.law.size):
         if elements.law[e] == FLANK or elements.law[e] == SPATIAL_FLANK:
@@ -212,9 +215,12 @@ class March:
 
     @property
     def structure(self) -> dict[Any, Known]:
-        """Arguments that `advance` gets by address, with what of each belongs to the structure of the run."""
+        """Arguments that `advance` gets by address, and the part of each that belongs to the run's structure.
+
+        Runs of one structure share compiled code.
+        """
         known = {"work": Known.DIMENSIONS, "ring": Known.DIMENSIONS}
-        fixed = {function: known.get(name, Known.ALL) for name, function in self.compiled._asdict().items()}
+        fixed = {argument: known.get(name, Known.ALL) for name, argument in self.compiled._asdict().items()}
         return {**fixed, by_address(self.widths.states(0)): Known.WIDTHS}
 
     @property
@@ -239,7 +245,7 @@ class Ending:
     work: FloatArray
     """Works over the run, J, in the order of `Power`. Shape (7,)."""
     fallen: float
-    """Largest fall of a loss below its highest value before, J."""
+    """Largest fall of a dissipated energy below its highest value before, J."""
     count: IntArray
     """Statistics, in the order of `Count`."""
     step_range: FloatArray
@@ -249,12 +255,12 @@ class Ending:
     figures: _SampleFigures
     """Peaks and rms over the run, and the rms of the part that the anti-alias filter removes."""
     modal_states: FloatArray
-    """q and v of the modal freedoms at the samples that were to be whole. Shape (W, 2, b)."""
+    """q and v of the b modal freedoms at the W `modal_samples` of the start. Shape (W, 2, b)."""
 
 
 def sample_count(system: System) -> int:
     """Return the number of output samples of a complete run."""
-    return int(np.floor(system.scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
+    return int(np.floor(system.scene.duration * system.sampling.rate * (1.0 + ROUNDING))) + 1
 
 
 def start_march(
@@ -264,7 +270,10 @@ def start_march(
     velocity: FloatArray | None = None,
     modal_samples: IntArray = NO_SAMPLES,
 ) -> March:
-    """Start at t = 0 from `start`, at rest or with the `velocity` (n,); `modal_samples` (W,) are complete."""
+    """Return a march at t = 0 from the equilibrium `start`, at rest or with the `velocity` (n,).
+
+    At the output samples `modal_samples` (W,) the states of the modal freedoms are kept too.
+    """
     if integration.method == "auto":
         integration = choose_method(system, start.displacement, integration).settings(integration)
     if integration.fixed_step is None:
@@ -287,7 +296,7 @@ def start_march(
 
 
 def sample_rest(march: March, sink: StateSink) -> None:
-    """Sample the start of a march that goes nowhere."""
+    """Sample the start of a march without integrating: the only sample of a run of no duration."""
     passed = march.compiled
     room = by_address(sink.room(0, 1))
     sample_step(passed.arrays, passed.work, passed.sampler, passed.ring, 1.0, 0.0, room)
@@ -300,7 +309,7 @@ def march_on(
     cancel: Cancel | None = None,
     after_block: Callable[[], None] | None = None,
 ) -> RunStatus:
-    """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
+    """Integrate to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration, rate = march.system.scene.duration, march.system.sampling.rate
     # least work of a block, samples times freedoms
     work = BLOCK_WORK if progress is None and cancel is None else 0
@@ -311,6 +320,7 @@ def march_on(
         stop = min(float(march.work.time[0]) + block, duration)
         status = advance_to(march, code, stop, sink)
         if progress is not None:
+            # 1e-300: a run may have no duration
             progress(min(float(march.work.time[0]) / max(duration, 1e-300), 1.0), "time integration")
         if not status.usable or march.work.time[0] >= duration:
             return status
@@ -321,9 +331,10 @@ def march_on(
 
 
 def advance_to(march: March, code: StructureCode, stop: float, sink: StateSink) -> RunStatus:
-    """Step until the time passes `stop`; the last step may pass it by the largest one."""
+    """Integrate until the time passes `stop`, by at most the largest step; samples go into `sink`."""
     rate, counts = march.system.sampling.rate, march.work.counts
     first = int(counts[Count.OUTPUT])
+    # floor + 1 samples lie before the end of the longest step; one more for rounding
     last = int(np.floor((stop + float(march.work.step_sizes[0])) * rate)) + 2
     room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
     counts[Count.FIRST_ROW] = first
@@ -333,10 +344,10 @@ def advance_to(march: March, code: StructureCode, stop: float, sink: StateSink) 
 
 
 def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -> Ending:
-    """Return the status of the march; the samples that the filter still holds go into `sink`.
+    """Return the ending of a march with `status`; the samples that the filter still holds go into `sink`.
 
-    They are filtered as if the motion went on turned about its last point. The march itself is then as it
-    was, and can go on.
+    For their filtering the motion is continued beyond its last point by its own past, rotated by 180 degrees
+    about that point. Afterwards the march is as before the call and can continue.
     """
     work, ring, passed = march.work, march.ring, march.compiled
     end, before, points = float(work.time[0]), *(int(work.counts[at]) for at in (Count.OUTPUT, Count.POINT))
@@ -352,7 +363,7 @@ def ending(march: March, sink: StateSink, status: RunStatus, taken: TimeTaken) -
         part[...] = values
     final = _audited_energy(march.system, march.control, end, work)
     done = work.work.copy()
-    done[Power.POSITION] += final[2] - march.initial[2]
+    done[Power.POSITION] += final[2] - march.initial[2]  # 2: energy of the meshes
     return Ending(
         status,
         samples,
@@ -384,7 +395,7 @@ def _control(system: System, integration: Integration) -> Control:
 
 
 def _step_range(work: Workspace) -> FloatArray:
-    """Smallest and largest accepted step; zeros without one."""
+    """Return the smallest and largest accepted step, s; zeros if no step was accepted."""
     if work.counts[Count.ACCEPTED] == 0:
         return np.zeros(2)
     return np.array(

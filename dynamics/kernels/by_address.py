@@ -4,6 +4,11 @@ numba passes a tuple by value: address, length and stride of every array in it. 
 hold a hundred arrays, so each call copied a thousand values, or, with all calls inlined to save the copies,
 compiled a thousand values through every function. By address a call passes one pointer, and a function loads
 what it reads. Attributes work alike on the tuple and on its address, in Python and compiled.
+
+At the address lie 64-bit *words*, field by field: of an array its address and its lengths, of a number its
+bits, of an inner tuple its words. A *kind* describes a field: (type character, dimensions) of an array, an
+`_AddressType` of a tuple, or the Python type of a number. The *structure* of a run is what compiled code may
+take as constant.
 """
 
 # numba annotates little of what extends it
@@ -34,31 +39,37 @@ from numba.np.arrayobj import make_array, populate_array
 
 WORD = ir.IntType(64)
 SCALARS = {bool: types.boolean, int: types.int64, float: types.float64}
+"""Compiled types of numbers."""
 ITEMS = {"d": types.float64, "l": types.int64, "q": types.int64, "?": types.boolean}
+"""Compiled types of the items of arrays, by numpy's type character; "l" or "q" depends on the platform."""
 
 Tuple = TypeVar("Tuple")
 TupleClass = TypeVar("TupleClass", bound=type)
 
 
 _numbers: dict[type, frozenset[str]] = {}
+"""Names given by `with_numbers`, by class."""
 _NO_BYTES = c_char * 0
+"""A buffer without length, which only has an address."""
 _seen: dict[type, tuple[list[Any], _AddressType]] = {}
+"""Kinds of the fields and compiled type of each class, from its first tuple."""
 
 
 def with_numbers(*names: str) -> Callable[[TupleClass], TupleClass]:
-    """Say which arrays of integers of a class differ between runs of scenes of one structure."""
+    """Return a decorator that names the arrays of integers of a class that differ within one structure."""
 
-    def said(cls: TupleClass) -> TupleClass:
+    def decorated(cls: TupleClass) -> TupleClass:
         _numbers[cls] = frozenset(names)
         return cls
 
-    return said
+    return decorated
 
 
 class _AddressType(types.Type):
-    """The compiled type of an address: the fields of the tuple there, each with its type and first word.
+    """The compiled type of the address of a tuple.
 
-    `size` is how many words it takes; `numbers` are arrays of integers that are no part of a structure.
+    `fields` are name, compiled type and first word of each field; `size` is the number of words. `numbers`
+    are names of arrays of integers that do not belong to the structure.
     """
 
     def __init__(
@@ -77,12 +88,12 @@ class _Addressed:
     """A named tuple and the words by which compiled functions find its arrays; attributes are the tuple's."""
 
     def __init__(self, value: Any) -> None:
-        self._listed: list[int] = []
-        self._numba_type_ = _lay_out(value, self._listed)
-        self._slots = np.array(self._listed, dtype=np.int64)
+        self._words: list[int] = []
+        self._numba_type_ = _lay_out(value, self._words)  # the attribute in which numba looks for a type
+        self._slots = np.array(self._words, dtype=np.int64)
         self._address = _address_of(self._slots)
         self.value = value
-        vars(self).update(zip(value._fields, value, strict=True))
+        vars(self).update(zip(value._fields, value, strict=True))  # faster than `__getattr__`
         if prepare := getattr(value, "prepare", None):
             prepare(self)
 
@@ -96,9 +107,9 @@ class _Addressed:
 def by_address(value: Tuple) -> Tuple:
     """Return `value`, a named tuple of C-contiguous arrays, numbers and such tuples, for compiled functions.
 
-    Numbers are frozen in it; arrays are shared, so what either side writes into them the other sees. All
-    tuples of a class have arrays of the same types and dimensions, or compiled functions would not fit. A
-    class that calls routines has `prepare`, which gets the tuple by address in each process it comes to.
+    Numbers are copied; arrays are shared, so that Python and compiled functions see each other's changes. All
+    tuples of a class must have arrays of the same types and dimensions, for which functions are compiled. A
+    class that calls routines has a method `prepare`, called with the tuple in each process to which it comes.
 
     Raises
     ------
@@ -114,7 +125,7 @@ def by_value(value: Tuple) -> Tuple:
 
 
 def _lay_out(value: Any, slots: list[int]) -> _AddressType:
-    """Append the words of a tuple, per array address and lengths, per number its bits; return its type."""
+    """Append the words of a tuple to `slots`; return its type."""
     kinds: list[Any] = []
     for field in value:
         if isinstance(field, np.ndarray):
@@ -123,7 +134,7 @@ def _lay_out(value: Any, slots: list[int]) -> _AddressType:
             slots.extend(field.shape)
         elif isinstance(field, _Addressed):
             kinds.append(field._numba_type_)
-            slots.extend(field._listed)
+            slots.extend(field._words)
         elif isinstance(field, tuple):
             kinds.append(_lay_out(field, slots))
         else:
@@ -141,7 +152,7 @@ def _lay_out(value: Any, slots: list[int]) -> _AddressType:
 
 
 def _address_of(array: Any) -> int:
-    """Return where the items of an array begin."""
+    """Return the address of the first item of an array."""
     try:
         return addressof(_NO_BYTES.from_buffer(array))  # a fifth of the time of `__array_interface__`
     except TypeError:  # for an array that cannot be written, or is not contiguous
@@ -151,7 +162,7 @@ def _address_of(array: Any) -> int:
 
 
 def _address_type(cls: Any, kinds: list[Any]) -> _AddressType:
-    first = [0, *accumulate(map(_size, kinds))]
+    first = [0, *accumulate(map(_size, kinds))]  # first word of each field, and the end
     fields = zip(cls._fields, map(_field_type, kinds), first[:-1], strict=True)
     return _AddressType(cls.__name__, tuple(fields), first[-1], _numbers.get(cls, frozenset()))
 
@@ -195,7 +206,7 @@ class _Fields(AttributeTemplate):
 
 @lower_getattr_generic(_AddressType)
 def _read_field(context: Any, builder: Any, kind: _AddressType, address: Any, name: str) -> Any:
-    """Return a tuple inside as the address of its own words, arrays and numbers as they are."""
+    """Return the compiled value of a field: the address of an inner tuple, or the array or number itself."""
     entry = kind.find(name)
     assert entry is not None  # typing has found it
     field, first = entry
@@ -218,7 +229,7 @@ def _array(context: Any, builder: Any, field: Any, location: Any) -> Any:
     shape = [_load(builder, builder.gep(location, [WORD(1 + axis)])) for axis in range(field.ndim)]
     size = context.get_abi_sizeof(item)
     strides = [WORD(size)]
-    for length in shape[:0:-1]:
+    for length in shape[:0:-1]:  # from the last axis to the second: C order
         strides.insert(0, builder.mul(strides[0], length, flags=["nsw"]))
     populate_array(array, data, shape, strides, size, None)
     return array._getvalue()

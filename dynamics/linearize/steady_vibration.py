@@ -2,7 +2,9 @@
 
 Harmonics are multiples of the frequency of the common period, after which all meshes and loads are in phase
 again. Axes of arrays: S speeds, H harmonics, n freedoms, R' rows (local coordinates) of the driving flanks, m
-meshes.
+meshes, f rows along which a unit force acts. A *receptance* is a displacement per force. *Swept* matrices are
+gyroscopic and frame terms, which change with the speed. A mesh excites in one of two ways: by its *static
+error*, an imposed STE, or by its *blocked force*, that of flanks whose transmission error stays at its mean.
 """
 
 from __future__ import annotations
@@ -28,19 +30,21 @@ from dynamics.linearize.whirl_modes import terms_at
 from dynamics.types import BoolArray, ComplexArray, FloatArray, IntArray
 
 Terms = tuple[FloatArray, FloatArray]
+"""Gyroscopic and frame terms of the damping and of the stiffness at one speed, (n, n) each."""
 EXCITATIONS = ("static_error", "blocked_force")
-BLOCK = 1_000_000  # entries of the matrices solved at once
+BLOCK = 1_000_000  # entries of the matrices that are solved at once
 NOTHING = 1e-12  # force over the largest exciting force, below which harmonics are left out
 ROUNDED = 1e-3
-"""Largest part of the exciting force that rounding of the elastic forces may be."""
+"""Largest rounding of the elastic forces, over the exciting force, at which a solution is accepted."""
 SWEPT = 0.34
-"""Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
-1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
+"""Rate of decay (1/s) that limits a resonance as a sweep does, over the root of the rate of the circular
+frequency (rad/s^2). An undamped oscillator of mass m that is swept at the rate h through its frequency w
+reaches at most the amplitude 1.17 sqrt(2 pi/h)/(2 m w) per force (Lewis, 1932)."""
 
 
 @dataclass(frozen=True)
 class Excited:
-    """A system about its equilibrium under the loads at a time, and its excitation."""
+    """A system about its equilibrium under the loads at a time, and the cycles of its flanks."""
 
     system: System
     time: float
@@ -72,8 +76,8 @@ class Steady:
     residual: float
     """Largest force left by the linear solves, over the largest exciting force."""
     receptance: ComplexArray
-    """Displacements per force on f rows: in `swept_vibration` those of the driving flanks;
-    empty where not requested. Shape (S, H, n, f).
+    """Displacements per force along f rows; f = 0 where not requested. The rows of `swept_vibration` are
+    those of the driving flanks. Shape (S, H, n, f).
     """
 
 
@@ -103,7 +107,7 @@ def steady_vibration(
     excitation: str = "static_error",
     progress: Callable[[float], None] | None = None,
 ) -> Steady:
-    """Return the vibration at `speed` (S,) in the excited ones of `harmonics` (H,)."""
+    """Return the vibration at `speed` (S,) in those of `harmonics` (H,) that are excited."""
     harmonics = excited_harmonics(at, speed, harmonics, (excitation,))
     return _vibration(at, speed, harmonics, excitation, progress=progress)[0]
 
@@ -122,9 +126,9 @@ def excited_harmonics(
 def with_blocked(
     at: Excited, speed: FloatArray, harmonics: IntArray, rows: FloatArray
 ) -> tuple[Steady, FloatArray]:
-    """Return `with_receptances`, and the largest transmission errors over the speeds by blocked forces.
+    """Return the vibration with the receptances of `rows` (f, n), and the response to the blocked forces.
 
-    (m, H), m.
+    The response is the largest dynamic transmission error over the speeds, (m, H) in m.
     """
     return _vibration(at, speed, harmonics, EXCITATIONS[0], rows, second=EXCITATIONS[1])
 
@@ -146,7 +150,7 @@ def swept_vibration(
     """Return the vibration at `speed` (S,) with the receptances of the meshes, all `harmonics` (H,).
 
     Where the speed changes at a `rate` (S,), rad/s^2, resonances are as high as they can grow while they are
-    passed. With `gyroscopic`, gyroscopic and frame terms are in.
+    passed: damping is added (`SWEPT`). `gyroscopic` includes gyroscopic and frame terms.
     """
     static, force = flank_forces(at, harmonics, "static_error")
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
@@ -173,7 +177,7 @@ def _vibration(
     second: str = "",
     progress: Callable[[float], None] | None = None,
 ) -> tuple[Steady, FloatArray]:
-    """Return the vibration in all `harmonics`, and the largest motion under the `second` excitation."""
+    """Return the vibration in all `harmonics`, and the largest response (m, H) to the `second` excitation."""
     static, force = flank_forces(at, harmonics, excitation)
     loads = load_harmonics(at.system, at.period, speed, harmonics, at.time)
     other = _pushed(at, flank_forces(at, harmonics, second)[1]) + loads if second else None
@@ -186,20 +190,24 @@ def _vibration(
 def receptances(at: Excited, omega: FloatArray, rows: FloatArray) -> ComplexArray:
     """Return the displacements (G, 1, n, f) per force along each of `rows` (f, n) at `omega` (G,), rad/s.
 
-    Where no frame turns they are the same at every speed.
+    They hold at every speed if no frame rotates.
     """
-    together = np.sum(rows, axis=0, dtype=complex)[None, None]
-    return _solve(at, together, omega[:, None], rows=rows)[0][..., 1:]
+    # the exciting force is needed only as the measure of the residual
+    combined = np.sum(rows, axis=0, dtype=complex)[None, None]
+    return _solve(at, combined, omega[:, None], rows=rows)[0][..., 1:]
 
 
 def speed_blocks(shape: tuple[int, ...], entries: int) -> list[slice]:
-    """Return the speeds of S and H harmonics that are computed at once, each with so many entries."""
+    """Return slices of the S speeds of `shape` (S, H) so that a slice has at most `BLOCK` entries.
+
+    `entries` is the number of entries for one speed and harmonic.
+    """
     block = max(BLOCK // max(shape[1] * entries, 1), 1)
     return [slice(start, start + block) for start in range(0, shape[0], block)]
 
 
 def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
-    """Circular frequencies (S, H), rad/s."""
+    """Return the circular frequencies (S, H), rad/s."""
     duration = np.array([[at.period.duration(w)] for w in speed])
     return np.asarray(2.0 * math.pi * harmonics / duration)
 
@@ -207,22 +215,23 @@ def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
 def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
     """Return the gyroscopic and frame terms (n, n) of damping and stiffness at each leading `speed`.
 
-    They grow with the speed, centripetal ones with its square: two speeds tell all.
+    They are proportional to the speed, centripetal ones to its square, so that two speeds determine them.
     """
     part = np.abs(speed) / np.max(np.abs(speed))
     gyroscopic, once = terms_at(system, law_speeds(system, float(np.max(np.abs(speed)))))
     twice = terms_at(system, law_speeds(system, 2.0 * float(np.max(np.abs(speed)))))[1]
-    swept, centripetal = 2.0 * once - 0.5 * twice, 0.5 * twice - once
-    return [(w * gyroscopic, w * swept + w * w * centripetal) for w in part]
+    # once = linear + centripetal, twice = 2 linear + 4 centripetal
+    linear, centripetal = 2.0 * once - 0.5 * twice, 0.5 * twice - once
+    return [(w * gyroscopic, w * linear + w * w * centripetal) for w in part]
 
 
 def flank_forces(
     at: Excited, harmonics: IntArray, kind: str = "static_error"
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the STE (m, H) and the force on the driving flanks' rows (R', H): it pushes d up with the STE.
+    """Return the STE (m, H) and the exciting force on the rows of the driving flanks (R', H).
 
-    Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
-    mesh force is held, they excite too.
+    A positive force increases the deflection d, as a positive STE does. Other forces of a flank (friction,
+    the moment of a load that moves along the face) excite too where they vary at constant mesh force.
     """
     cycles = at.cycles
     static = np.zeros((len(cycles), harmonics.size), dtype=complex)
@@ -231,7 +240,7 @@ def flank_forces(
         static[f] = harmonics_of(at, f, cycle.static_error, harmonics)
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
-                # the first force is the same all along
+                # the first row is that of the mesh force, which is constant in the static error
                 preload = harmonics_of(at, f, cycle.force[:, p], harmonics) if p else 0.0
                 force[row] = cycle.tangent[p, 0] * static[f] - preload
             else:
@@ -240,23 +249,26 @@ def flank_forces(
 
 
 def harmonics_of(at: Excited, index: int, values: FloatArray, harmonics: IntArray) -> ComplexArray:
-    """Return amplitudes (H,) in multiples of the common period of values (T,) over the table of a mesh."""
+    """Return the amplitudes (H,) of values (T,) over the table of a mesh, at harmonics of the common period.
+
+    They are zero for harmonics that are no multiples of the frequency at which the table repeats.
+    """
     mesh, pitches = at.system.scene.meshes[index], at.period.pitches[index]
     period, offset = mesh.table.period, float(at.system.phases.position[index])
     lines = 2.0 * np.fft.rfft(values) / values.size
     amplitudes = np.zeros(harmonics.size, dtype=complex)
-    cycles = abs(pitches) // period
+    cycles = abs(pitches) // period  # of the table in the common period; 0: the mesh is at rest
     if cycles == 0:
         return amplitudes
-    which, rest = np.divmod(harmonics, cycles)
-    is_line = (rest == 0) & (which < lines.size - 1)
-    turned = lines[which[is_line]] * np.exp(2j * math.pi * which[is_line] * offset / period)
-    amplitudes[is_line] = turned if pitches > 0 else turned.conj()
+    line, rest = np.divmod(harmonics, cycles)
+    present = (rest == 0) & (line < lines.size - 1)  # without the line at half the sampling rate
+    rotated = lines[line[present]] * np.exp(2j * math.pi * line[present] * offset / period)
+    amplitudes[present] = rotated if pitches > 0 else rotated.conj()  # conjugate: the mesh runs backwards
     return amplitudes
 
 
 def _empty_by_freedom(shape: tuple[int, ...], freedoms: int, columns: int) -> ComplexArray:
-    """Return room for (S, H, n, c) displacements that lies freedom by freedom in memory, as results do."""
+    """Return an empty array (S, H, n, c) for displacements, which lies freedom by freedom in memory."""
     return np.moveaxis(np.empty((freedoms, columns, *shape), dtype=complex), (2, 3), (0, 1))
 
 
@@ -270,11 +282,12 @@ def _solve(
     progress: Callable[[float], None] | None = None,
     fractions: bool = False,
 ) -> tuple[ComplexArray, float, FloatArray]:
-    """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
+    """Return the displacements (S, H, n, 1 + f), the relative residual, and the largest response (m, H).
 
-    The first are those of `force` (S or 1, H, n) on the freedoms, the others per force along each of
-    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing. Of the
-    `second` forces only the largest motion along each driving line of action is returned, (m, H).
+    The first displacements are those by `force` (S or 1, H, n) on the freedoms, the others those per force
+    along each of `rows` (f, n). The response is that to the forces `second` along the driving lines of
+    action, the largest over the speeds. `terms` are those of `gyroscopic_terms` at each speed, or empty.
+    `fractions` tries partial fractions by modes, which cost less. Blocks of speeds limit the memory.
     """
     linear, per_meter = at.linear, 1.0 / at.linear.scale
     mass, damping, total = (
@@ -292,7 +305,7 @@ def _solve(
     )
     parts = np.stack([total, mass, damping]).astype(complex)
     maximum = max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)
-    left, farthest = np.float64(0.0), np.zeros(per_meter.size)
+    left, farthest = np.float64(0.0), np.zeros(per_meter.size)  # residual force, and largest displacements
     for part in speed_blocks(omega.shape, per_meter.size**2):
         exciting = pushed if pushed.shape[0] == 1 else pushed[part]
         right = np.broadcast_to(exciting, (*omega[part].shape, *pushed.shape[2:]))
@@ -301,6 +314,7 @@ def _solve(
         with np.errstate(divide="ignore", invalid="ignore"):
             if by_modes is not None:
                 solution, miss = by_modes.solve(omega[part], exciting)
+                # `not <=` also for NaN; then this block and all later ones are solved directly
                 if not np.max(miss, initial=0.0) <= PRECISE * maximum:
                     by_modes = None
             if by_modes is None and small is None:
@@ -324,7 +338,7 @@ def _solve(
 
 
 def _first_eliminated(first: int, terms: Sequence[Terms]) -> int:
-    """Return the first freedom that modes eliminate; 0: none, as gyroscopic or frame terms act on them."""
+    """Return the first modal freedom to eliminate; 0: none, because `terms` act on modal freedoms."""
     acts = any(np.any(part[first:]) or np.any(part[:, first:]) for term in terms for part in term)
     return 0 if acts else first
 
@@ -337,7 +351,7 @@ def _swept(terms: Sequence[Terms], per_meter: FloatArray) -> list[FloatArray]:
 
 
 def _right_sides(force: ComplexArray, rows: FloatArray | None, second: ComplexArray | None) -> ComplexArray:
-    """Return `force` (S or 1, H, n), one along each of `rows` (f, n), and the `second`, side by side."""
+    """Return the right sides (S or 1, H, n, c): `force`, a unit force along each of `rows`, and `second`."""
     sides = [force[..., None]]
     if rows is not None:
         sides.append(np.broadcast_to(rows.T, (*force.shape, len(rows))))
@@ -349,7 +363,7 @@ def _right_sides(force: ComplexArray, rows: FloatArray | None, second: ComplexAr
 def _dense(
     parts: ComplexArray, omega: FloatArray | ComplexArray, swept: Sequence[FloatArray], right: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """Return the displacements (S, H, n, f) under `right`, and the residual of the first ones.
+    """Return the displacements (S, H, n, c) by `right`, and the residuals (S, H, n) of the first column.
 
     `parts` are K, M, C (3, n, n); `swept` are gyroscopic and frame terms (S, n, n), or nothing.
     """

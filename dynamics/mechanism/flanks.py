@@ -35,7 +35,7 @@ class Flanks:
     law: FlankLaws
     """Table, damping (N s/m) and reach (N), for the compiled loops."""
     coast: tuple[int, ...]
-    """The meshes whose coast flanks follow."""
+    """Indices of the meshes whose coast flanks come after the driving flanks, in their order."""
     static: PackedTables
     """The driving flanks' tables themselves, whatever the technique: the static reference."""
     tables: tuple[PlainTable, ...]
@@ -83,6 +83,7 @@ def flank_laws(mechanism: Mechanism) -> Flanks:
 
 def mean_stiffness(tables: PackedTables, flank: int, force: float) -> float:
     """Return the tangent stiffness of a flank at `force` (N), mean over the knots of its table, N/m."""
+    # first knot, first bucket, number of buckets, ...
     knot, _, buckets, *_ = (int(value) for value in tables.offset[flank])
     position = tables.shift[flank] + tables.knot[knot : knot + buckets // BUCKETS_PER_KNOT]
     stiffness = np.empty(position.size)

@@ -1,4 +1,11 @@
-"""Compiled look-up of mesh force, tangent stiffness and energy at a position and a deflection."""
+"""Compiled look-up of mesh force, tangent stiffness and deflection in the tables of flanks.
+
+A table has knots of position (base pitches) and levels of force (N). Between two knots the deflection (m) at
+a level and the stiffness (N/m) there are cubics in u, 0 to 1: columns 0 to 3 and 4 to 7 of a row of
+`table.row`. Between two levels the force is a cubic in w, 0 to 1, the part of the way in deflection.
+`table.offset[flank]` has: 0 first knot, 1 first bucket, 2 number of buckets, 3 first row, 4 first level, 5
+number of levels, which is also the number of rows of an interval.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +36,10 @@ def wrapped(position: float, period: float) -> float:
 
 @inner
 def position_interval(table: PackedTables, flank: int, position: float) -> tuple[int, float, float]:
-    """Return the first row of the interval that holds `position`, the coordinate in it, 1/width."""
+    """Return the first row of the interval that holds `position`, the coordinate u in it, and 1/width of it.
+
+    A bucket names the first interval that reaches into it, so that the walk from there is short.
+    """
     first, bucket, buckets = table.offset[flank, 0], table.offset[flank, 1], table.offset[flank, 2]
     phase = wrapped(position - table.shift[flank], table.period[flank])
     # rounding may carry a phase just below the period into a bucket behind the last
@@ -68,7 +78,7 @@ def table_force(
 ) -> tuple[float, float, int]:
     """Return transverse force (N), tangent stiffness (N/m) and the level interval, the next call's hint.
 
-    Zero below lift-off; straight on with the last stiffness above the last level.
+    The force is zero below lift-off. Above the last level it grows with the last stiffness.
     """
     row, u, _ = position_interval(table, flank, position)
     k, low, high = level_interval(table, flank, row, u, deflection, hint)
@@ -89,7 +99,10 @@ def table_force(
 def _force_cubic(
     table: PackedTables, row: int, level: int, u: float, span: float
 ) -> tuple[float, float, float]:
-    """Return the coefficients of w, w^2, w^3 in the force on a level interval of the width `span` (m)."""
+    """Return the coefficients of w, w^2, w^3 in the force on a level interval of the width `span` (m).
+
+    They are Hermite's: force and stiffness are those of the table at both levels.
+    """
     rise, fall = span * cubic_value(table.row, row, 4, u), span * cubic_value(table.row, row + 1, 4, u)
     step = table.level[level + 1] - table.level[level]
     return rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
@@ -136,7 +149,8 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
     high = cubic_value(table.row, row + k + 1, 0, u)
     if force >= table.level[first + k + 1]:
         return float(high + (force - table.level[first + k + 1]) / cubic_value(table.row, row + k + 1, 4, u))
-    # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
+    # Newton's method for w inside a bracket: the cubic is monotone, so that bisection can replace a step.
+    # The first guess is the chord; 100 steps are more than bisection needs for w to 1e-15.
     rise, c2, c3 = _force_cubic(table, row + k, first + k, u, high - low)
     w, minimum, maximum = excess / (rise + c2 + c3), 0.0, 1.0
     for _ in range(100):
@@ -156,7 +170,10 @@ def deflection_from(table: PackedTables, flank: int, position: float, force: flo
 
 @compiled
 def deflection_slope(table: PackedTables, flank: int, position: float, force: float) -> float:
-    """Return d(deflection)/d(position) at constant `force` > 0, m per base pitch: -F_x / F_d."""
+    """Return d(deflection)/d(position) at constant `force` > 0, m per base pitch.
+
+    It is -F_x / F_d by the derivatives of the force by position x and deflection d. Slopes are by u.
+    """
     deflection = table_deflection(table, flank, position, force)
     row, u, per_width = position_interval(table, flank, position)
     k, low, high = level_interval(table, flank, row, u, deflection, 0)

@@ -1,8 +1,9 @@
 """Compiled kinematic motion, mesh positions, local coordinates, external forces, accelerations at a time.
 
-The kinematic motion turns all shafts by exact ratios to k laws; freedoms q are the deviations from it. A free
-train, which no drive turns, has a rotation in q. Whole quanta of it, small parts of a revolution, move into
-the kinematic motion.
+The kinematic motion turns all shafts by exact ratios to k *laws*: speeds over time, which consist of pieces,
+each a cubic. Freedoms q are the deviations from it, v their rates. A *free train*, which no drive turns, has
+its own rotation in q; whole quanta of it, small parts of a revolution, are moved into the kinematic motion.
+Local coordinates are those of force elements; the *drift* of one is its rate in the kinematic motion.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ from dynamics.kernels.local_state import LocalState
 from dynamics.meshes.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
 
-# Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
-FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3  # columns of the motion of a law
+# Columns of the motion of the laws (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
+FULL_TURNS, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
 MOTION_COLUMNS = 4  # number of these columns
 QUANTA_PER_TURN = 2**20
 """A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
 exact power of two, so that counting them loses nothing."""
 QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
+"""A quantum of rotation, rad."""
 
 
 @compiled
@@ -52,6 +54,8 @@ def write_motion(reference: KinematicMotion, time: float, quanta: IntArray, moti
 
 @inner
 def _turns_phase(reference: KinematicMotion, mesh: int, law: int, full_turns: float) -> float:
+    """Return the base pitches that whole revolutions of a law add to a mesh, without whole periods."""
+    # all in integers: pitches times the denominator
     cycle = reference.denominator[mesh, law] * reference.period[mesh]
     remainder = (int(full_turns) % cycle) * reference.numerator[mesh, law] % cycle
     return float(remainder / reference.denominator[mesh, law])
@@ -63,9 +67,9 @@ def set_phases(
 ) -> None:
     """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion.
 
-    Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
-    integer number of periods, which drop exactly, and a remainder of integers: no digit is lost however far
-    the shafts turn. That takes divisions of integers; it stays in `local` until a revolution is over.
+    Base pitches per revolution of a law are a fraction of integers. So whole revolutions add an integer
+    number of periods, which drop exactly, and a remainder in integers: no digit is lost however far the
+    shafts turn. The remainder takes divisions of integers; `local` keeps it until a revolution is over.
     """
     for k in range(motion.shape[0]):
         if local.full_turns[k] != motion[k, FULL_TURNS]:
@@ -84,7 +88,10 @@ def set_phases(
 
 @inner
 def set_drift(elements: Elements, time: float, motion: FloatArray, local: LocalState) -> None:
-    """Write the time, the local rates of the kinematic motion, and the speeds of rotation."""
+    """Write into `local` the time, the drift of the coordinates, and the speeds of rotation of elements.
+
+    Rows before `elements.carried` have no drift, elements before `elements.turned` no speed of rotation.
+    """
     local.clock[0] = time
     for r in range(elements.carried, local.drift.size):
         local.drift[r] = 0.0
@@ -108,7 +115,10 @@ def add_motion(
     coordinate: FloatArray,
     rate: FloatArray,
 ) -> None:
-    """Add `q` to the positions, and write the elements' local coordinates and their rates."""
+    """Add the deviations `q` to the positions of meshes; write the local coordinates and their rates.
+
+    The rates are those by `v`, without the drift.
+    """
     add_body_motion(system, q, v, position, coordinate, rate)
     add_modal_motion(system.sparse.modal, q, coordinate)
     add_modal_motion(system.sparse.modal, v, rate)
@@ -134,7 +144,7 @@ def add_body_motion(
 
 @inner
 def law_speed(reference: KinematicMotion, law: int, motion: FloatArray, velocity: FloatArray) -> float:
-    """Return the speed of a law's shaft, rad/s; of a free train with its own rotation in `velocity` (n,)."""
+    """Return the speed of a law's shaft, rad/s, with the own rotation of a free train in `velocity` (n,)."""
     speed = motion[law, SPEED]
     if reference.freedom[law] >= 0:
         speed += velocity[reference.freedom[law]]
@@ -143,13 +153,13 @@ def law_speed(reference: KinematicMotion, law: int, motion: FloatArray, velocity
 
 @inner
 def move_free_trains(reference: KinematicMotion, quanta: IntArray, q: FloatArray) -> None:
-    """Move the own rotation of free trains from `q` into the reference, up to half a quantum.
+    """Move whole quanta of the own rotation of free trains from `q` into the kinematic motion.
 
-    It moves along the kinematic vector of the law, which changes no transmission error, no spring and no
-    position. What is left in `q` is small, so that no digit is lost however far the train turns.
+    `q` changes along the kinematic vector of the law, so that no transmission error, spring or position
+    changes. At most half a quantum stays in `q`, so that no digit is lost however far the train turns.
     """
     for k in range(reference.freedom.size):
-        if reference.freedom[k] < 0:
+        if reference.freedom[k] < 0:  # a drive
             continue
         count = math.floor(q[reference.freedom[k]] / QUANTUM + 0.5)
         if count == 0.0:
@@ -161,7 +171,10 @@ def move_free_trains(reference: KinematicMotion, quanta: IntArray, q: FloatArray
 
 @inner
 def external_force(system: SystemArrays, time: float, motion: FloatArray, force: FloatArray) -> None:
-    """Write loads, pin errors and the inertial force of the kinematic motion into `force` (n,)."""
+    """Write loads, pin errors and the inertial force of the kinematic motion into `force` (n,).
+
+    `system.constant` has pin errors, preloads and gravity. Loads and inertia do not reach modal freedoms.
+    """
     for i in range(force.size):
         force[i] = system.constant[i]
     for k in range(motion.shape[0]):

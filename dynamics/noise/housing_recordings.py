@@ -186,7 +186,8 @@ def pressure_signal(
 
     The modes follow the forces as in `motion_pieces`, and each panel is heard r/c later. Nothing wraps: the
     modes are integrated, and the paths are a finite impulse response. The housing starts at rest: silence
-    comes before the first sound. Raises `InputError` as `outer_hull`, `sound_paths` and `motion_pieces` do.
+    comes before the first sound. Raises `InputError`: there is one time alone, or as `outer_hull`,
+    `sound_paths` and `motion_pieces` do.
 
     Parameters
     ----------
@@ -201,6 +202,8 @@ def pressure_signal(
     rows = housing.modes[1].T @ housing.mass
     acceleration = motion_pieces(housing, time, force, rows, MotionQuantity.ACCELERATION)
     times = np.asarray(time, dtype=float)
+    if times.size < 2:
+        raise InputError("time", times.size, "at least two times", "Let the run last longer.")
     rate = (times.size - 1) / float(times[-1] - times[0])
     response, first = paths.impulse_response(rate)
     if estimate is not None:

@@ -42,6 +42,8 @@ from model_studies.progress import Progress, silent
 Bearing = TypeVar("Bearing", Bushing, PlanetBearing)
 MAX_PEAK_ERROR = 10.0
 """Largest error by peaks between the speeds, dB: speeds with a larger one do not resolve a resonance."""
+_SAME_ORDER = 9
+"""Decimal places up to which orders of two responses are compared."""
 
 
 @dataclass(frozen=True)
@@ -241,16 +243,34 @@ class SoundBand:
             total=tuple(rows),
         )
 
-    def about(self, power: OrderPower) -> SoundBand:
-        """Return the bands, as wide as they are, about the levels of other powers of the same orders, (H, S).
+    def about(self, order: FloatArray, power: OrderPower) -> SoundBand:
+        """Return the bands, as wide as they are, about the levels of other powers (H, S) of orders (H,).
 
         The levels are those of a response with varying stiffness, while the ranges were run with the mean
-        stiffness.
+        stiffness. An order that varying stiffness alone excites has the widest band of all orders.
         """
-        loudest = np.searchsorted(self.speed, self.loudest_speed)
-        levels = _levels(self.order, loudest, self.order, power).tolist()
-        return self._of_bands(
-            [replace(band, nominal=at) for band, at in zip(self._bands, levels, strict=True)]
+        known = self._of_orders(order, power)
+        loudest = np.searchsorted(known.speed, known.loudest_speed)
+        levels = _levels(order, loudest, order, power).tolist()
+        return known._of_bands(
+            [replace(band, nominal=at) for band, at in zip(known._bands, levels, strict=True)]
+        )
+
+    def _of_orders(self, order: FloatArray, power: OrderPower) -> SoundBand:
+        """Return the bands of other orders (H,), the widest for those that have none."""
+        if np.array_equal(order, self.order):
+            return self
+        row = {round(value, _SAME_ORDER): index for index, value in enumerate(self.order.tolist())}
+        widest = max(range(self.order.size), key=lambda index: self.largest[index].width)
+        rows = [row.get(round(value, _SAME_ORDER), -1) for value in order.tolist()]
+        own_loudest = self.speed[np.argmax(power.weighted_power, axis=1)]
+        taken = [widest if index < 0 else index for index in rows]
+        return replace(
+            self,
+            order=order,
+            loudest_speed=np.where(np.array(rows) < 0, own_loudest, self.loudest_speed[taken]),
+            largest=tuple(self.largest[index] for index in taken),
+            there=tuple(self.there[index] for index in taken),
         )
 
     def with_power_error(
@@ -346,6 +366,7 @@ def band_about(
     speed: FloatArray,
     orders: int,
     ranges: Mapping[str, Range],
+    order: FloatArray,
     power: OrderPower,
     error: FloatArray,
     progress: Progress = silent,
@@ -356,13 +377,15 @@ def band_about(
     ----------
     model, speed, orders, ranges, progress
         Arguments of `sound_band`.
+    order : (H,) array
+        Orders of the sound; those of a response with varying stiffness may be more than the bands'.
     power : OrderPower
         Power of the sound at these speeds, (H, S).
     error : (2, S, H) array
         Bounds of the error of its levels, dB: lower and upper; a negative error is a level that is too low.
     """
     below, above = np.maximum(error[1].T, 0.0), np.maximum(-error[0].T, 0.0)
-    band = sound_band(model, speed, orders, ranges, progress=progress).about(power)
+    band = sound_band(model, speed, orders, ranges, progress=progress).about(order, power)
     return band.with_power_error("radiation_model", power, below, above)
 
 

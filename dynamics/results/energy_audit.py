@@ -11,10 +11,10 @@ from dynamics.results.checks import Check
 from dynamics.types import FloatArray, Json
 
 UNACCOUNTED = 0.01
-"""Largest unaccounted energy over the turnover: more of it means that the steps miss the motion."""
+"""Largest unaccounted energy over the turnover: more of it means that the steps are too long."""
 FALLEN = 1e-3
-"""Largest fall of a loss over the turnover: a loss that falls by more has driven; a smaller fall is the error
-of a step's weights.
+"""Largest fall of a loss over the turnover. A loss that falls by more has supplied energy; a smaller fall is
+the error of the quadrature over a step.
 """
 
 
@@ -54,20 +54,21 @@ class EnergyAudit:
     @property
     def residual(self) -> float:
         """The residual of the balance, J; 0 for an exact integration."""
-        stored_energy = self.kinetic + self.stored_bushings + self.stored_meshes
-        losses = self.bushings + self.meshes + self.friction
-        return self.drive + self.load + self.position + self.axes - losses - stored_energy
+        gained = self.kinetic + self.stored_bushings + self.stored_meshes
+        lost = self.bushings + self.meshes + self.friction
+        return self.drive + self.load + self.position + self.axes - lost - gained
 
     @property
     def turnover(self) -> float:
-        """The energy turned over by vibration, J: lost, supplied by the tables or gained in springs.
+        """The energy turned over by vibration, J.
 
-        And what springs hold from the start: a run that loses next to nothing is assessed by that. The power
-        that drive and load exchange is thousands of times more, and would hide any error.
+        It is the energy lost, supplied by the tables, or gained in springs, and the energy that springs hold
+        from the start, which is the reference for a run without losses. The work of drive and load is not in
+        it: that is thousands of times more, and would hide any error.
         """
-        losses = self.bushings + self.meshes + abs(self.friction)
+        lost = self.bushings + self.meshes + abs(self.friction)
         supplied = abs(self.position) + abs(self.axes)
-        return losses + supplied + abs(self.stored_bushings) + abs(self.stored_meshes) + self.held
+        return lost + supplied + abs(self.stored_bushings) + abs(self.stored_meshes) + self.held
 
     @property
     def relative(self) -> float:
@@ -92,19 +93,24 @@ class EnergyAudit:
 
     @classmethod
     def from_arrays(cls, work: FloatArray, stored: FloatArray, fallen: float = 0.0) -> EnergyAudit:
-        """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
-        increase, largest_stored = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
-        return cls(*(float(value) for value in (*work, *increase, largest_stored, fallen)))
+        """Return the audit of works (7,) in the order of the first seven fields, and of energies (2, 3).
+
+        Rows of `stored`: start and end of the run; columns: kinetic energy, bushings, meshes.
+        """
+        gained, largest_stored = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
+        return cls(*(float(value) for value in (*work, *gained, largest_stored, fallen)))
 
     def check(self) -> Check:
         """Return the check of the balance: residual over the turnover, and largest fall of a loss, J."""
-        falls = self.fallen > FALLEN * self.turnover
+        supplies = self.fallen > FALLEN * self.turnover  # a loss that supplies energy
         missing = self.relative > UNACCOUNTED
         reason = f"{engineering(100.0 * self.relative, 2)} % of {self.turnover:.3g} J is not accounted for"
         if missing:
             reason = f"{reason}: shorten the fixed step, or lower the tolerance of the step control"
-        if falls:
+        if supplies:
             reason = f"{reason}; a loss fell by {self.fallen:.3g} J, so it supplied energy"
-        figures, holds = {"unaccounted": self.relative, "fallen": self.fallen}, not (falls or missing)
+        figures = {"unaccounted": self.relative, "fallen": self.fallen}
+        holds = not (supplies or missing)
         assumption = "work is balanced and losses only grow"
+        # the check is of no part of the scene: ""
         return Check("", assumption, "energy audit", holds, reason, figures, valid=holds)

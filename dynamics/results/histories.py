@@ -1,7 +1,10 @@
 """Time series of a run from its trajectory: forces, transmission errors, speeds.
 
-The trajectory holds deviations from the kinematic motion, in which all shafts turn by exact ratios. Quanta
-are the parts of a revolution by which the rotation of a train without a drive moved into that motion.
+The trajectory holds deviations q and their rates v from the kinematic motion, in which all shafts turn by
+exact ratios to k *laws* of motion. *Quanta* count the small parts of a revolution by which the rotation of a
+train without a drive was moved from q into that motion. *Local* forces and coordinates are those of the force
+elements: a mesh has a row for its driving flank, and rows for the axes of its table (misalignment, center
+distance). Sizes: T times, n freedoms, R local rows, m meshes, b bearings, s shafts, c couplings, d drives.
 """
 
 from __future__ import annotations
@@ -23,13 +26,14 @@ from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 FIELDS = (MISALIGNMENT, CENTER_DISTANCE_CHANGE)
-"""Axes of tables, as meshes and effects name them."""
+"""Axes of tables beside position and load, named like the fields of a mesh and the effects."""
 
 
 def _axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> dict[str, FloatArray]:
     """Return `misalignment`, `center_distance_change` and `load_arm`, (m, T) in m.
 
-    `coordinate` and `force` (R, T) are those of all rows. A series is (0, T) if its effect is on in no mesh.
+    `coordinate` and `force` (R, T) are those of all local rows. A series is (0, T) if its effect is on in no
+    mesh. A mesh whose axis does not move has the value of the scene.
     """
     meshes, samples = len(system.scene.meshes), force.shape[1]
     series = {}
@@ -43,31 +47,35 @@ def _axis_series(system: System, coordinate: FloatArray, force: FloatArray) -> d
     if arm.size:
         for mesh, row in axis_rows(system, 0, follows=False).items():
             pushed = force[system.driving_rows[mesh]]
-            lever = -force[row] / np.where(pushed > 0.0, pushed, 1.0)
+            lever = -force[row] / np.where(pushed > 0.0, pushed, 1.0)  # 1: no force, so the arm is 0
             sense = table_sense(system.scene, mesh, system.kinematics.mesh_sense[mesh])
             arm[mesh] = -sense * common_face_width(system.scene, mesh) * lever
     return {**series, LOAD_ARM: arm}
 
 
 def axis_rows(system: System, axis: int, *, follows: bool) -> dict[int, int]:
-    """Return the row of an axis of each driving flank that has one; if `follows`, of those that read it."""
+    """Return the local row of an axis of the table, by mesh; a mesh without such a row is left out.
+
+    `axis` is an index in `FIELDS`. With `follows` only meshes whose table is read at the moving coordinate.
+    """
     elements, laws = system.arrays.elements, system.arrays.elements.laws.spatial_flank
     rows = {}
     for mesh in range(len(system.scene.meshes)):
         if elements.law[mesh] != SPATIAL_FLANK:
             continue
-        row = laws.row[elements.entry[mesh], axis]
+        row = laws.row[elements.entry[mesh], axis]  # counted from the element's first row; 0: no such row
         if row > 0 and (laws.follows[elements.entry[mesh], axis] == 1 or not follows):
             rows[mesh] = int(elements.first[mesh] + row)
     return rows
 
 
 class _Signals(NamedTuple):
-    """The signals that series are made of at T times: n freedoms, R local coordinates, m meshes."""
+    """The signals from which the series are made, at T times."""
 
     q: FloatArray
     v: FloatArray
-    """`q`, `v`: Modal freedoms may be missing at their end. Shape (T, n) each."""
+    """`q`, `v`: Deviations and their rates. The modal freedoms, the last ones, may be missing. Shape (T, n)
+    each."""
     coordinate: FloatArray
     force: FloatArray
     """`coordinate`, `force`: Local coordinates and local forces of the elements. Shape (R, T) each."""
@@ -75,23 +83,24 @@ class _Signals(NamedTuple):
     """Static transmission error, m. Shape (m, T)."""
 
 
-def unfiltered(system: System, observed: Observed, states: States) -> _Signals:
-    """Return the signals of points of the motion."""
-    position = observed.position[: len(system.scene.meshes)]
+def unfiltered(system: System, seen: Observed, states: States) -> _Signals:
+    """Return the signals at the sampled times, without the anti-alias filter."""
+    position = seen.position[: len(system.scene.meshes)]
     static = np.empty_like(position)
     for f, force in enumerate(system.flanks.nominal_force):
         static_deflections(system.flanks.static, f, position[f], float(force), static[f])
-    return _Signals(states.q, states.v, observed.coordinate, observed.force, static)
+    return _Signals(states.q, states.v, seen.coordinate, seen.force, static)
 
 
-def filtered(system: System, states: States, observed: Observed) -> _Signals:
+def filtered(system: System, states: States, seen: Observed) -> _Signals:
     """Return the signals behind the anti-alias filter.
 
-    Modal freedoms that the filter has not taken are left out, and the coordinates they move are those of the
-    motion's points in `observed`: no output has them.
+    Without modal freedoms among the filtered channels these are left out, and the coordinates that they move
+    are taken unfiltered from `seen`: no output has them.
     """
     rows, channels, modal = states.minimum.shape[1], states.filtered, system.arrays.sparse.modal
     n, meshes = modal.first, system.flanks.nominal_force.size
+    # channels in their order: local forces, q, v, STE of the meshes, modal amplitudes and their rates
     force, q, v, static, amplitudes = np.split(channels, np.cumsum([rows, n, n, meshes]), axis=1)
     coordinate = system.arrays.elements.offset + q @ system.arrays.direction[:, :n].T
     coordinate, force, static = (np.ascontiguousarray(part.T) for part in (coordinate, force, static))
@@ -99,18 +108,18 @@ def filtered(system: System, states: States, observed: Observed) -> _Signals:
     if amplitudes.shape[1] > 0:
         coordinate += system.arrays.direction[:, n:] @ displacement.T
     else:
-        coordinate[modal.row] = observed.coordinate[modal.row]
+        coordinate[modal.row] = seen.coordinate[modal.row]
     q, v = (np.concatenate(parts, axis=1) for parts in ((q, displacement), (v, rate)))
     return _Signals(q, v, coordinate, force, static)
 
 
 def histories(
-    system: System, time: FloatArray, laws: FloatArray, states: States, observed: Observed, signals: _Signals
+    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed, signals: _Signals
 ) -> dict[str, Any]:
-    """Return the series of `RunResult` at `time` (T,), from states, observed points and signals.
+    """Return the series of `RunResult` by the names of its fields.
 
-    `laws` (4, k, T) is the motion of the laws. Positions, contact and the extremes of the mesh forces are
-    those of the unfiltered motion.
+    `laws` (4, k, T) is the motion of the laws at `time` (T,). Forces, speeds and displacements are those of
+    `signals`; positions, contact and the extremes of mesh forces are unfiltered, from `seen` and `states`.
     """
     scene = system.scene
     q, v, quanta = signals.q, signals.v, states.quanta
@@ -125,7 +134,7 @@ def histories(
         "freedom": system.freedoms.name if outputs.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
-        "position": observed.position[: len(scene.meshes)],
+        "position": seen.position[: len(scene.meshes)],
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
         "dynamic_transmission_error": signals.coordinate[driving],
         "static_transmission_error": signals.static,
@@ -133,8 +142,8 @@ def histories(
         "coast_force": _coast_force(system, signals.force),
         "least_mesh_force": np.ascontiguousarray(states.minimum[:, driving].T),
         "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
-        "elastic_force": observed.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
-        "contact": _contact(system, observed.force),
+        "elastic_force": seen.elastic[driving] if outputs.elastic_forces else np.empty((0, time.size)),
+        "contact": _contact(system, seen.force),
         **_axis_series(system, signals.coordinate, signals.force),
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], signals.force, q, v),
@@ -149,20 +158,20 @@ def histories(
 
 
 def checked_series(
-    system: System, time: FloatArray, laws: FloatArray, states: States, observed: Observed
+    system: System, time: FloatArray, laws: FloatArray, states: States, seen: Observed
 ) -> dict[str, Any]:
-    """Return the series that a run is checked by (`RunChecks`): of points of the motion, not filtered."""
+    """Return the unfiltered series by which a run is checked (`RunChecks`)."""
     driving = system.driving_rows
     return {
         "time": time,
-        "position": observed.position[: len(system.scene.meshes)],
-        "dynamic_transmission_error": observed.coordinate[driving],
-        "mesh_force": observed.force[driving],
-        "coast_force": _coast_force(system, observed.force),
+        "position": seen.position[: len(system.scene.meshes)],
+        "dynamic_transmission_error": seen.coordinate[driving],
+        "mesh_force": seen.force[driving],
+        "coast_force": _coast_force(system, seen.force),
         "least_mesh_force": states.minimum[:, driving].T,
         "largest_mesh_force": states.largest[:, driving].T,
-        **_axis_series(system, observed.coordinate, observed.force),
-        "bearing_force": _on_the_ground(system, laws, observed.force, states.q, states.v, states.quanta)[0],
+        **_axis_series(system, seen.coordinate, seen.force),
+        "bearing_force": _on_the_ground(system, laws, seen.force, states.q, states.v, states.quanta)[0],
     }
 
 
@@ -192,9 +201,10 @@ def _accelerations(
 
 
 def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: _Signals) -> FloatArray:
-    """Return q'' (n, T) from the equations of motion: linear in the signals, filtered as they are.
+    """Return q'' (n, T) from the equations of motion.
 
-    `laws` (k, T) are the accelerations of the laws.
+    They are linear in the signals, so that q'' is filtered if these are. `laws` (k, T) has the accelerations
+    of the laws.
     """
     arrays = system.arrays
     force = arrays.inertial.T @ laws + arrays.constant[:, None]
@@ -207,14 +217,14 @@ def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: _
 def _on_the_ground(
     system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, quanta: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return forces and moments on the ground, (b, 3, T) each; none of them if not requested.
+    """Return forces and moments on the ground, (b, 3, T) each; (0, 3, T) each if not requested.
 
-    Moments are none at all where no bearing holds tilt.
+    Moments are (0, 3, T) also where no bearing holds tilt.
     """
     none = np.empty((0, 3, q.shape[0]))
     if not system.scene.outputs.bearing_forces:
         return none, none
-    reaction = system.bearing_force(local, q, v)
+    reaction = system.bearing_force(local, q, v)  # (b, 3 or 6, T): force, then moment
     force, moment = reaction[:, :3], reaction[:, 3:]
     turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, quanta)
     if not _holds_tilt(system):
@@ -233,7 +243,7 @@ def _holds_tilt(system: System) -> bool:
 def _seen_from_the_ground(
     system: System, force: FloatArray, laws: FloatArray, quanta: IntArray
 ) -> FloatArray:
-    """Turn vectors on the ground from the carrier's frame into the fixed one, (b, 3, T)."""
+    """Rotate vectors of bearings in a carrier's frame into the fixed one, (b, 3, T), in place."""
     ratio = system.kinematics.float_ratio
     turned = laws[FULL_TURNS] + laws[FRACTION] + quanta.T / QUANTA_PER_TURN
     for bearing, frame in enumerate(system.supports.frame):
@@ -249,8 +259,8 @@ def _seen_from_the_ground(
 def _coupling_torque(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
     """Torque about +z from the first shaft of each coupling on the second, (c, T)."""
     couplings = system.couplings
-    strains = system.freedoms.keep(couplings.motion)
-    strains = strains[..., : q.shape[1]]
+    strains = system.freedoms.keep(couplings.motion)  # relative motions per freedom, (c, 6, n)
+    strains = strains[..., : q.shape[1]]  # without modal freedoms, where q lacks them
     elastic = np.einsum("cl,cln,tn->ct", couplings.stiffness[:, ROTATION], strains, q)
     viscous = np.einsum("cl,cln,tn->ct", couplings.damping[:, ROTATION], strains, v)
     return np.ascontiguousarray(-elastic - viscous)
@@ -280,7 +290,7 @@ def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:
     """Speed of every shaft about +z, (s, T)."""
     speed = system.kinematics.float_ratio @ laws
     for column, freedom in enumerate(system.freedoms.column):
-        if freedom < 6 * len(system.rotors) and freedom % 6 == ROTATION:
+        if freedom < 6 * len(system.rotors) and freedom % 6 == ROTATION:  # six freedoms a rigid shaft
             speed[freedom // 6] += v[:, column]
     return np.asarray(speed)
 
@@ -293,7 +303,10 @@ def _drive_torque(
     q: FloatArray,
     v: FloatArray,
 ) -> FloatArray:
-    """Torque that imposes the motion of each drive, (d, T): balance of its shaft, or its spring's."""
+    """Return the torque that imposes the motion of each drive, (d, T), N m.
+
+    It balances the drive's shaft, or the spring between drive and shaft. `acceleration` (k, T) is the laws'.
+    """
     drive = system.arrays.drive
     torque = drive.inertia @ acceleration + drive.direction @ force - drive.constant[:, None]
     freedoms = q.shape[1]

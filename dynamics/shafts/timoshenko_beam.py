@@ -44,9 +44,9 @@ def timoshenko_beam(
 ) -> TimoshenkoBeam:
     """Return the beam of `sections` from left to right.
 
-    Two-node elements whose shape functions solve the static equations between nodes, in cones too:
-    deflections under forces at nodes are exact. Shear is constant in an element, so natural frequencies
-    converge with the square of its length in their part that shear makes, with the fourth power in the rest.
+    The shape functions of its two-node elements solve the static equations between nodes, in cones too, so
+    that deflections under forces at nodes are exact. Shear is constant in an element. The error of a natural
+    frequency falls with the square of the element length in the share of shear, else with its fourth power.
     Rotary inertia and shear are in the consistent mass (Przemieniecki, Theory of Matrix Structural Analysis,
     1968). Raises `InputError`: without a section, for a station off the beam, or for a `longest` that is not
     above zero.
@@ -68,46 +68,53 @@ def timoshenko_beam(
         if not on_length(finite(f"stations[{index}]", station), length):
             bound = Text.of("on the beam, ", from_to(0.0, length, "m"))
             raise InputError(f"stations[{index}]", station, bound)
-    starts = zip(sections, ends, strict=False)
+    starts = zip(sections, ends, strict=False)  # the last of the ends starts no section
+    # further nodes in steep cones, in which diameters change much
     graded = [start + share * part.length for part, start in starts for share in part.grading]
     node = _nodes(ends, [*graded, *(nearest_on(station, length) for station in stations)], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
     pieces = []
     for left, right in pairwise(node):
+        # the section that holds the middle of the element
         index = int(np.searchsorted(ends, 0.5 * (left + right), side="right")) - 1
         start, span = ends[index], sections[index].length
         pieces.append(Piece(sections[index], float((left - start) / span), float((right - start) / span)))
     for k, (m, s) in enumerate(zip(*_coupled(beam_elements(pieces)), strict=True)):
-        rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)
+        rows = slice(PER_NODE * k, PER_NODE * k + 2 * PER_NODE)  # freedoms of the nodes k and k + 1
         mass[rows, rows] += m
         stiffness[rows, rows] += s
     return TimoshenkoBeam(node, mass, stiffness)
 
 
 def _nodes(ends: FloatArray, stations: Sequence[float], longest: float) -> FloatArray:
-    """Return ends of sections, `stations`, and equal parts between them where these are too long."""
+    """Return the nodes (N,), m: ends of sections, `stations`, and equal parts of intervals above `longest`.
+
+    Positions that differ by rounding are one node.
+    """
     positions = np.sort(np.concatenate([ends, np.asarray(stations, dtype=float)]))
     distinct_nodes = np.concatenate([[True], np.diff(positions) > SAME_POSITION * ends[-1]])
     nodes = positions[distinct_nodes]
     parts = []
     for left, right in pairwise(nodes):
+        # rounding of a length that fits exactly adds no node
         count = max(math.ceil((right - left) / longest * (1.0 - SAME_POSITION)), 1)
         parts.append(np.linspace(left, right, count, endpoint=False))
     return np.concatenate([*parts, nodes[-1:]])
 
 
 def _coupled(elements: ElementMatrices) -> tuple[FloatArray, FloatArray]:
-    """Mass and stiffness (k, 12, 12) of elements in all freedoms of their nodes."""
+    """Return mass and stiffness (k, 12, 12) of k elements in all freedoms of their two nodes."""
     size = (elements.axial.shape[0], 2 * PER_NODE, 2 * PER_NODE)
     mass, stiffness = np.zeros(size), np.zeros(size)
-    # u_x' = tilt_y, u_y' = -tilt_x
+    # bending in x with tilt_y, in y with tilt_x: u_x' = tilt_y, u_y' = -tilt_x
     for first, tilt, slope in ((0, 4, 1.0), (1, 3, -1.0)):
         sign = np.array([1.0, slope, 1.0, slope])
         sign = sign[:, None] * sign
         dofs = np.array([first, tilt, first + PER_NODE, tilt + PER_NODE])
         mass[:, dofs[:, None], dofs] = sign * elements.bending_mass
         stiffness[:, dofs[:, None], dofs] = sign * elements.bending
+    # tension along z (freedom 2) and torsion about z (freedom 5): rods
     for first, rod_mass, rod in (
         (2, elements.axial_mass, elements.axial),
         (5, elements.torsional_mass, elements.torsion),

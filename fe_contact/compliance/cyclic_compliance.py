@@ -19,6 +19,7 @@ from fe_contact.compliance.cache import (
 )
 from fe_contact.compliance.condensation_cost import predict_cost
 from fe_contact.compliance.flank import FlankCompliance3D, refuse_broken_laws
+from fe_contact.compliance.front_memory import shared_factors
 from fe_contact.compliance.tooth_reach import usual_reach
 from fe_contact.errors import InputError, integer
 from fe_contact.geometry import Toothing, tooth_profile
@@ -108,16 +109,21 @@ def flank_compliances_3d(
         else predict_cost(gear.right_handed(), recipe, cache=cache).seconds
         for key, gear, recipe in zip(keys, gears, recipes, strict=True)
     }
-    progress = by_cost(report, costs)
-    compliances = computed_once(
-        keys,
-        lambda i: flank_compliance_3d(
-            gears[i], recipes[i], support=support, cache=cache, report=partial(progress, keys[i])
-        ),
-    )
+    # the largest one first: the others find room in its memory
+    order = sorted(range(len(keys)), key=lambda i: -costs[keys[i]])
+    sequence = [keys[i] for i in order]
+    progress = by_cost(report, {key: costs[key] for key in sequence})
+
+    def computed(place: int) -> FlankCompliance3D:
+        i = order[place]
+        done = partial(progress, keys[i])
+        return flank_compliance_3d(gears[i], recipes[i], support=support, cache=cache, report=done)
+
+    with shared_factors():
+        compliances = dict(zip(sequence, computed_once(sequence, computed), strict=True))
     return tuple(
         compliance if compliance.base_helix_angle * gear.helix_angle >= 0.0 else compliance.mirrored()
-        for gear, compliance in zip(gears, compliances, strict=True)
+        for gear, compliance in zip(gears, (compliances[key] for key in keys), strict=True)
     )
 
 

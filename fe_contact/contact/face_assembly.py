@@ -10,7 +10,13 @@ import numpy as np
 
 from fe_contact.compliance import FlankCompliance3D
 from fe_contact.contact.assembly import NEAR, half_planes, share_of_pinion
-from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads
+from fe_contact.contact.face_patch import (
+    FaceGrid,
+    FaceLoads,
+    add_compliance,
+    face_loads,
+    means_and_differences,
+)
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -142,15 +148,11 @@ class _DisplacedGear(_FaceGear):
     def _loads(self, position: IntArray, on: IntArray) -> FaceLoads:
         at = position[::2], on[::2] // 2
         widest = self.patches.half_width.max()
-        step, center = NEAR * widest, self.patches.by_slice(*at)[0]
-        center = np.minimum(center, self.grid.s[-1] - widest - step)
-        shape = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
-        above, below = (face_loads(self.grid, center + shift, *shape) for shift in (step, -step))
-        per_step = 0.5 * self.tip / step
-        plain, change = above.plus(0.5, below, 0.5), above.plus(per_step, below, -per_step)
-        alternating = (np.stack(values, axis=1) for values in zip(plain, change, strict=True))
-        nodes, forces, used = (values.reshape(on.size, *values.shape[2:]) for values in alternating)
-        return FaceLoads(nodes, forces, used)
+        near, center = NEAR * widest, self.patches.by_slice(*at)[0]
+        center = np.minimum(center, self.grid.s[-1] - widest - near)
+        alike = np.full(center.shape, widest), np.zeros(center.shape), self.low[on[::2]], self.high[on[::2]]
+        above, below = (face_loads(self.grid, center + way, *alike) for way in (near, -near))
+        return means_and_differences(above, below, 0.5 * self.tip / near)
 
 
 def _face_gears(

@@ -45,14 +45,6 @@ class FaceLoads(NamedTuple):
         """Return the loads selected by `keep`."""
         return FaceLoads(self.nodes[keep], self.forces[keep], self.used[keep])
 
-    def plus(self, factor: float, other: FaceLoads, other_factor: float) -> FaceLoads:
-        """Return the sums of these loads and of as many others, each times its factor."""
-        count, other_count = self.used.max(), other.used.max()
-        nodes = np.concatenate([self.nodes[:, :count], other.nodes[:, :other_count]], axis=1)
-        nodes = np.where(nodes < 0, nodes[:, :1], nodes)
-        forces = factor * self.forces[:, :count], other_factor * other.forces[:, :other_count]
-        return FaceLoads(nodes, np.concatenate(forces, axis=1), np.full(len(nodes), nodes.shape[1]))
-
 
 @njit(cache=True)
 def face_loads(
@@ -106,6 +98,23 @@ def face_loads(
         for i in range(used[p]):
             slot[nodes[p, i]] = -1
     return FaceLoads(nodes, forces, used)
+
+
+@njit(cache=True)
+def means_and_differences(first: FaceLoads, second: FaceLoads, half: float) -> FaceLoads:
+    """Return for each slice the mean of two loads, and `half` times their difference: 2 n loads in turn."""
+    n, count, others = first.used.size, first.used.max(), second.used.max()
+    nodes = np.empty((2 * n, count + others), dtype=np.int64)
+    forces = np.empty((2 * n, count + others))
+    for p in range(n):
+        for k in range(count + others):
+            loads, i, sign = (first, k, 1.0) if k < count else (second, k - count, -1.0)
+            node = loads.nodes[p, i]
+            # numbers beyond the used ones are no forces, on any node
+            nodes[2 * p : 2 * p + 2, k] = first.nodes[p, 0] if node < 0 else node
+            forces[2 * p, k] = 0.5 * loads.forces[p, i]
+            forces[2 * p + 1, k] = sign * half * loads.forces[p, i]
+    return FaceLoads(nodes, forces, np.full(2 * n, count + others))
 
 
 @inner()

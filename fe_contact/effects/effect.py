@@ -1,8 +1,9 @@
 """An effect: one optional piece of physics that can be switched on or off.
 
-An effect is a file: its decision, what it contributes, what of it acts across the face, and the scene without
-it. The composer knows none by name and applies them in any order. Neutral settings (nothing to contribute)
-leave the results bit-identical.
+An effect is a class in a file of its own: its decision, its contribution to the contact model, its parts that
+act across the face, and the scene without it. The code that composes the contact model knows no effect by
+name and applies effects in any order. An effect that has nothing to contribute is *neutral*: with it the
+results are bit-identical. A *plane* model is a transverse section: nothing in it changes across the face.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class ContactScene:
 
     @property
     def largest_misalignment(self) -> float:
-        """The misalignment that is largest in size, m; of two of one size the positive one."""
+        """The misalignment that is largest in magnitude, m; of two with the same magnitude the positive."""
         return float(max(self.misalignment, key=lambda growth: (abs(growth), growth)))
 
     def effect(self, name: str) -> Effect:
@@ -65,11 +66,12 @@ class ContactScene:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether a scene calls for an effect."""
+    """The decision on an effect in a scene."""
 
     on: bool
+    """Whether the scene calls for the effect."""
     reason: str
-    """Why, in words an engineer would use."""
+    """The reason of the decision, in words of an engineer."""
     neutral: bool = False
     """Whether the scene holds nothing that the effect could add: on or off is the same."""
 
@@ -77,20 +79,25 @@ class Verdict:
 class Effect:
     """An effect. Its defaults are those of an effect on the gap that a plane model can hold.
 
-    Class attributes: `name`; `needs` and `adds` (terms such as "position", "load", "gap", "coupling",
-    "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used;
-    `of_bodies`, whether finite elements have it; `brings`, what it alone brings and the rest of the model may
-    ask for: a field of `ContactModel`, figures of the flanks by direction, an axis of the table.
+    Terms of `needs` and `adds` are for example "position", "load", "gap", "coupling", "table axis".
     """
 
     name: ClassVar[str]
     needs: ClassVar[tuple[str, ...]]
+    """Terms of the model that the effect reads."""
     adds: ClassVar[tuple[str, ...]]
+    """Terms of the model that the effect adds."""
     cost: ClassVar[str]
+    """Cost of the effect, in words."""
     sources: ClassVar[tuple[str, ...]]
+    """Literature and standards behind the effect."""
     valid_for: ClassVar[str]
+    """Range in which the effect may be used, in words."""
     of_bodies: ClassVar[bool] = False
+    """Whether the effect is in the finite elements of the bodies."""
     brings: ClassVar[str] = ""
+    """Key of what this effect alone brings, by which other code finds the effect (`named`): a field of
+    `ContactModel`, a direction of flank modifications, or an axis of the table."""
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """Assess whether `scene` needs this effect, and why."""
@@ -110,15 +117,16 @@ class Effect:
     def without(self, scene: ContactScene) -> ContactScene | None:
         """Return the scene as if there were nothing for the effect.
 
-        None: a tolerance does not neglect it; it costs nothing, or its influence is estimated coarsely.
+        None: the effect is never neglected within a tolerance, because it costs nothing or because the
+        estimate of its influence is too coarse.
         """
         return None
 
     def extent(self, scene: ContactScene) -> Extent:
-        """Return bounds of the change of the transmission error anywhere without the effect, by its gaps.
+        """Return bounds of the change of the transmission error without the effect, at any position.
 
-        Gaps shift the transmission error by no more than their bounds, at single places too, which a sample
-        may pass by. Without gaps it acts everywhere alike: no bounds beside the estimate.
+        A gap shifts the transmission error by no more than its bounds, also at single positions that a sample
+        of positions misses. An effect without gaps acts alike at all positions; its bounds are empty.
         """
         model = self.contribute(scene, ContactModel())
         extent = sum((term.extent(scene.pair) for term in model.gaps), Extent())
@@ -134,7 +142,7 @@ class Effect:
 
 
 def named(registry: Sequence[Effect], brings: str) -> str:
-    """Return the name of the effect that brings something; empty where there is none."""
+    """Return the name of the effect whose `brings` is the key given; empty where there is none."""
     return next((effect.name for effect in registry if effect.brings == brings), "")
 
 

@@ -1,4 +1,9 @@
-"""Modifications along the profile (ISO 21771-1): crowning, slope, reliefs and the edge of the tip."""
+"""Modifications along the profile (ISO 21771-1): crowning, slope, reliefs and the edge of the tip.
+
+A `Polynomial` removes ``weight depth (u^m v^n - mean)`` with the exponents `powers` = (m, n); u runs from -1
+at the form point to 1 at the tip over the roll length, v from -1 to 1 over the face. A `ProfileRelief`
+removes its amount over a length from the tip (`_at_tip`) or from the form circle into the flank.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +21,8 @@ _PROFILE = Direction.PROFILE
 
 @dataclass(frozen=True, kw_only=True)
 class _ProfileCrowning(Polynomial):
+    """Parabola with its highest point in the middle of the roll length."""
+
     profile_crowning: float = amount(_PROFILE, "Profile crowning at both ends of the profile", 5e-6)
     powers: ClassVar[tuple[int, int]] = (2, 0)
 
@@ -56,18 +63,20 @@ class _ProfileCrowningRoot(ProfileRelief):
 
 @dataclass(frozen=True, kw_only=True)
 class _ProfileSlope(Polynomial):
+    """Straight line over the roll length; the figure is its difference from end to end."""
+
     profile_slope: float = slope(
         _PROFILE,
         "Profile slope, linear over the roll length; > 0 removes half at the tip, adds half at the root",
         5e-6,
     )
     powers: ClassVar[tuple[int, int]] = (1, 0)
-    weight: ClassVar[float] = 0.5
+    weight: ClassVar[float] = 0.5  # u goes from -1 to 1: half the figure at either end
 
 
 @dataclass(frozen=True, kw_only=True)
 class _ProfileForm(Polynomial):
-    """Form deviation f_falpha of all teeth alike, as that of single teeth: its mean line is zero."""
+    """Form deviation f_falpha that all teeth share: a parabola whose mean line over the profile is zero."""
 
     profile_form: float = slope(
         _PROFILE,
@@ -77,7 +86,7 @@ class _ProfileForm(Polynomial):
         later=True,
     )
     powers: ClassVar[tuple[int, int]] = (2, 0)
-    mean: ClassVar[float] = 1.0 / 3.0
+    mean: ClassVar[float] = 1.0 / 3.0  # mean of u^2 from -1 to 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,4 +117,4 @@ class AlongProfile(
     _RootRelief,
     CutTip,
 ):
-    """All modifications along the profile, in the order of their figures."""
+    """All modifications along the profile. The order of the bases is the order of their fields."""

@@ -1,4 +1,10 @@
-"""Interference of a tip edge with the mating tooth of an internal pair, off the line of action."""
+"""Interference of a tip edge with the mating tooth of an internal pair, off the line of action.
+
+A tip edge passes through the mating tooth space while it is inside the mate's tip circle. `polar` is the
+angle (n,) of the edge about its own gear, rad, 0 on the line of centers. The rotation of the gears is 0 where
+the flanks meet at the pitch point. In the code x lies across the line of centers, y along it, both from the
+mate's center.
+"""
 
 from __future__ import annotations
 
@@ -16,17 +22,16 @@ if TYPE_CHECKING:
 
 
 _EDGE_SAMPLES = 1025
+"""Points of the path of a tip edge, and of the fillet that it may cut."""
 
 
 class _EdgePath(NamedTuple):
-    """A tip edge in the mating gear.
-
-    Its distance (n,) from the mate's center in m, and the arc (n,) in m by which it is inside the mate's
-    tooth; negative outside.
-    """
+    """The path of a tip edge in the mating gear."""
 
     radius: FloatArray
+    """Distance from the mate's center, m. Shape (n,)."""
     depth: FloatArray
+    """Arc by which the edge is inside the mate's tooth, m; negative outside. Shape (n,)."""
 
 
 def tip_interference(pair: ParallelAxes) -> float:
@@ -45,6 +50,7 @@ def pinion_edge_path(pair: ParallelAxes) -> _EdgePath:
     polar = _lens(pair.center_distance, pinion.tip_radius, ring.tip_radius)
     x, y = pinion.tip_radius * np.sin(polar), pair.center_distance + pinion.tip_radius * np.cos(polar)
     radius = np.hypot(x, y)
+    # rotation of the pinion from the pitch point, then the angle of the ring's facing flank
     turn = polar + _tip_involute(pinion) - involute_function(pair.working_pressure_angle)
     facing = _pitch_point_angle(pair) + turn / pair.speed_ratio - flank_angle(ring, radius)
     return _EdgePath(radius, radius * (np.arctan2(x, y) - facing))
@@ -56,6 +62,7 @@ def ring_edge_path(pair: ParallelAxes) -> _EdgePath:
     polar = _lens(-pair.center_distance, ring.tip_radius, pinion.tip_radius)
     x, y = ring.tip_radius * np.sin(polar), ring.tip_radius * np.cos(polar) - pair.center_distance
     radius = np.hypot(x, y)
+    # rotation of the pinion from the pitch point, then the angle of its facing flank
     turn = (polar + _tip_involute(ring) - working) * pair.speed_ratio
     facing = turn + working - pinion.base_thickness_half_angle + flank_angle(pinion, radius)
     return _EdgePath(radius, radius * (facing - np.arctan2(x, y)))
@@ -65,6 +72,7 @@ def flank_angle(gear: Toothing, radius: FloatArray) -> FloatArray:
     """Angle in rad from the tooth's center line to its right flank at `radius`, on involute and fillet."""
     pressure = np.arccos(np.minimum(1.0, gear.base_radius / radius))
     involute = gear.base_thickness_half_angle - gear.sign * (np.tan(pressure) - pressure)
+    # the fillet by samples from the form point to the root; np.interp needs increasing heights
     tool_angle = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, _EDGE_SAMPLES)
     height = -gear.sign * gear.trochoid.radius(tool_angle)
     fillet = np.interp(-gear.sign * radius, height, gear.trochoid.polar_angle(tool_angle))
@@ -77,13 +85,18 @@ def _on_fillet(gear: Toothing, radius: FloatArray) -> BoolArray:
 
 
 def _lens(offset: float, tip_radius: float, mating_tip_radius: float) -> FloatArray:
-    """Angles of a tip edge about its gear, at height `offset`, while it is inside the other tip circle."""
+    """Return the angles of a tip edge about its gear while it is inside the mating tip circle, rad.
+
+    `offset` is the center of the gear on the line of centers, counted from the mate's center, m.
+    """
+    # law of cosines; clipped where the circles do not cross
     cosine = (mating_tip_radius**2 - tip_radius**2 - offset**2) / (2.0 * offset * tip_radius)
     widest = math.acos(max(-1.0, min(1.0, cosine)))
     return np.linspace(-widest, widest, _EDGE_SAMPLES)
 
 
 def _tip_involute(gear: Toothing) -> float:
+    """Return the involute function at the tip circle, rad; 0 for a tip inside the base circle."""
     return involute_function(math.acos(min(1.0, gear.base_radius / gear.tip_radius)))
 
 
@@ -97,6 +110,6 @@ def _paths(pair: ParallelAxes) -> tuple[tuple[_EdgePath, Toothing], ...]:
 
 
 def _deepest(path: _EdgePath, mate: Toothing, on_fillet: bool) -> float:
-    """Largest depth on the mate's fillet or on its involute, at least 0."""
+    """Return the largest depth on the mate's fillet or on its involute, m, at least 0."""
     where = _on_fillet(mate, path.radius) == on_fillet
     return float(np.max(path.depth, initial=0.0, where=where))

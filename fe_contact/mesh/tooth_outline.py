@@ -1,4 +1,8 @@
-"""Outline of the right half of one tooth with the ring below it (of a ring gear: outside it)."""
+"""Outline of the right half of one tooth with the ring of the body below it (of a ring gear: outside it).
+
+The coordinate s runs along the flank, m: from the middle of the tooth space (`s_space`) over the end of the
+root circle (`s_root`) and the form point (`s_form`) to the tip edge (`s_tip`).
+"""
 
 from __future__ import annotations
 
@@ -13,15 +17,14 @@ from fe_contact.mesh.outline import Outline, Piece, arc, piece, radial_line
 from fe_contact.mesh.recipe import MeshRecipe
 from fe_contact.types import FloatArray
 
-LARGEST_ARC = math.radians(
-    12.0
-)  # of one quadratic edge: it leaves its circle by less than 1e-5 of the radius
-
-COARSE = 201  # samples of the size inside the material, where it changes slowly
-
-SNAP = 0.25  # a piece shorter than this part of an element is left to its neighbor
-
-THINNEST = 0.01  # rim that still limits the element size by its thickness, in normal modules
+LARGEST_ARC = math.radians(12.0)
+"""Largest arc of one quadratic edge, rad: the edge leaves its circle by less than 1e-5 of the radius."""
+COARSE = 201
+"""Points at which the element size is sampled inside the material, where it changes slowly."""
+SNAP = 0.25
+"""A piece shorter than this part of an element is joined to its neighbor."""
+THINNEST = 0.01
+"""Least thickness of a rim that limits the element size, in normal modules. A thinner rim counts as this."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +54,7 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     surface = [*_root_pieces(profile, s_low, recipe), flank, _tip_piece(profile, recipe)]
     inner = _inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
     s = np.empty(2 * len(ends) - 1)
-    s[::2], s[1::2] = ends, middles(ends)
+    s[::2], s[1::2] = ends, middles(ends)  # corner and mid-side nodes in turn
     return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
 
 
@@ -93,7 +96,7 @@ def _root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> lis
 
 
 def _fillet_end(profile: ToothProfile, recipe: MeshRecipe) -> float:
-    """Return where the fillet ends, s in m: with a land too short for an element of its own, beyond that."""
+    """Return the s at which the fillet ends, m: at the root land, or past a land too short for an element."""
     long_enough = profile.s_root - profile.s_space > SNAP * recipe.fillet_size
     return profile.s_root if long_enough else profile.s_space
 
@@ -118,7 +121,7 @@ def _tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
         return np.minimum(recipe.tip_size / radius + recipe.growth * (edge - angle), largest)
 
     tip = piece("tip", arc(radius), divide(edge, 0.0, size))
-    tip.nodes[0] = profile.flank(np.array([profile.s_tip]))[0]
+    tip.nodes[0] = profile.flank(np.array([profile.s_tip]))[0]  # exactly the last node of the flank
     return tip
 
 
@@ -126,7 +129,7 @@ def _inner_pieces(
     surface: list[Piece], half_pitch_angle: float, bottom_radius: float, recipe: MeshRecipe
 ) -> list[Piece]:
     """Return bottom, side and center, which lie inside the material, sized by the distance to the surface."""
-    sources = np.concatenate([p.nodes[1::2] for p in surface])
+    sources = np.concatenate([p.nodes[1::2] for p in surface])  # mid-side node of every edge
     lengths = np.concatenate([p.edge_lengths for p in surface])
     width = half_pitch_angle * bottom_radius
     size = spread(sources, lengths, recipe.growth, max(recipe.body_size, width))

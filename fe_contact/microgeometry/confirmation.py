@@ -1,4 +1,9 @@
-"""Full analysis of a design as `analyze` does it, with errors, at every node of the scatter."""
+"""Full analysis of a design as `analyze` does it, with errors, at every node of the scatter.
+
+The *scatter* is the distribution of misalignment and modifications about a design. Its *nodes* are the points
+of a quadrature rule over it. A *ripple* is the peak-to-peak transmission error at one load. Loads *counted*
+are the design torques, of which the objective is made; further torques are for the Harris map alone.
+"""
 
 from __future__ import annotations
 
@@ -68,12 +73,13 @@ class ConfirmedDesign:
     values: dict[str, float]
     """Values of the design variables, ``gear.quantity`` to m."""
     harris_map: HarrisMap
+    """Curves and ripples at all torques, counted or not."""
     figures: Evaluation
     """Pressures, factors and curves at the nodes and the design torques."""
     objective: Estimate
-    """Objective of the design. Its error adds the errors of the analysis and of the scatter's rule."""
+    """Objective of the design. Its error is the sum of those of the analysis and of the quadrature."""
     scatter_error: float = field(metadata=in_unit("m"))
-    """Error of the objective by the scatter's rule, m."""
+    """Error of the objective by the quadrature over the scatter, m."""
     violation: float
     """Largest excess over a limit, relative to the limit."""
     table: SteDatabase | None = field(default=None, metadata=NOT_STORED)
@@ -93,10 +99,12 @@ def confirm(
     cache : Path, optional
         Directory of flank compliances.
     """
-    search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
+    search, counted = problem.evaluator, study.counted
+    nodes = search.nodes
     table = full_table(search, values, study.decision, cache)
     fine = replace(search.at(table.position), load=study.force, misalignment=study.loads.misalignment)
-    figures, exact = confirmed_figures(fine, values, cache), replace(fine, nodes=ONE_NODE)
+    figures = confirmed_figures(fine, values, cache)
+    exact = replace(fine, nodes=ONE_NODE)  # the design without scatter
     error = ripple_errors(table, fine)
     ripple = figures.peak_to_peak
     nominal = exact.evaluate(values)
@@ -111,17 +119,17 @@ def confirm(
         weight=nodes.weight,
     )
     counted_figures = figures.at_loads(counted)
-    rule = _scatter_error(problem, values)
+    scatter_error = _scatter_error(problem, values)
     map_error = problem.objective.of(harris.expected_error[counted])
-    objective = Estimate(problem.objective.of(harris.expected[counted]), map_error + rule, "m")
+    objective = Estimate(problem.objective.of(harris.expected[counted]), map_error + scatter_error, "m")
     violation = counted_figures.violation(problem.limits)
-    return ConfirmedDesign(dict(values), harris, counted_figures, objective, rule, violation, table)
+    return ConfirmedDesign(dict(values), harris, counted_figures, objective, scatter_error, violation, table)
 
 
 def full_table(
     search: Evaluator, values: Mapping[str, float], decision: Decision, cache: Path | None
 ) -> SteDatabase:
-    """Compute the table of a design over torques and the misalignments of all nodes and of none."""
+    """Compute the table of a design over all torques, at the misalignments of all nodes and of the design."""
     request = decision.checked.request
     skews = misalignment_axis(search.misalignment, search.nodes.misalignment)
     full = replace(
@@ -137,7 +145,7 @@ def full_table(
 
 
 def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
-    """Return errors of peak-to-peak (S, T), m: those of the table at the nodes and loads of an evaluator."""
+    """Return the errors of peak-to-peak (S, T), m, of the table at the nodes and loads of an evaluator."""
 
     @cached
     def error(load: float, skew: float) -> float:
@@ -148,7 +156,7 @@ def ripple_errors(table: SteDatabase, fine: Evaluator) -> FloatArray:
 
 
 def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float:
-    """Return by how much a finer rule for the scatter changes the objective, m."""
+    """Return by how much a finer quadrature over the scatter changes the objective, m."""
     search = problem.evaluator
     finer = search.nodes.finer
     if finer is None:

@@ -1,4 +1,9 @@
-"""Request and result of an optimization of the microgeometry."""
+"""Request and result of an optimization of the microgeometry.
+
+A *figure* is a quantity of the flanks, such as a crowning; a design variable is a figure that the search
+varies. *Scatter* is the distribution of misalignment and figures about a design. The design torques count
+for the objective; Harris maps show T torques, the L design torques and further ones.
+"""
 
 from __future__ import annotations
 
@@ -29,9 +34,9 @@ from model_studies import in_unit
 from model_studies.record import under_key
 
 MAP_PARTS = np.arange(1, 11) / 8.0
-"""Torques of the Harris map in parts of the largest that counts."""
+"""Further torques of the Harris map over the largest design torque: up to 1.25."""
 CLOSE = 0.03
-"""Least distance of a torque of the map from a design torque, over the largest; nearer ones are left out."""
+"""Least distance of a further torque from a design torque, over the largest; nearer ones are left out."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class OptimizationRequest:
     """A pair, its design variables, and the assessment of its designs."""
 
     pair: ParallelAxes
-    """Gear pair. Its modifications are the start; those that are not varied stay."""
+    """Gear pair. Its modifications are the start of the search; those that are no variables do not change."""
     torques: Levels
     """Design torques, N m on the driving gear, increasing; equal ones only at different misalignments."""
     variables: tuple[DesignVariable, ...]
@@ -65,24 +70,31 @@ class OptimizationRequest:
 
     @property
     def start_design(self) -> tuple[float, ...]:
-        """The start design: the variables as they are in the pair, m; they may lie outside their bounds."""
+        """Values of the variables in the pair, m, in their order; they may lie outside their bounds."""
         return tuple(figure(self.pair, variable.name) for variable in self.variables)
 
     @property
     def space(self) -> DesignSpace:
-        """Designs of the request. Effects are decided by a design in which every variable acts."""
+        """All designs of the request. Effects are decided for a design in which every variable acts."""
         acting = {variable.name: variable.acting for variable in self.variables}
-        scattered = self.scatter, self.misalignment
         minimum = {variable.name: variable.low for variable in self.variables}
-        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options, minimum)
+        return DesignSpace(
+            self.pair,
+            acting,
+            self.scatter,
+            self.misalignment,
+            self.search.positions,
+            self.options,
+            minimum,
+        )
 
     @property
     def outside(self) -> tuple[str, ...]:
-        """Variables that start beyond their bounds; a length without a relief is ignored."""
-        start_values = zip(self.variables, self.start_design, strict=True)
+        """Names of the variables that start beyond their bounds, without the lengths of missing reliefs."""
+        starts = zip(self.variables, self.start_design, strict=True)
         return tuple(
             v.name
-            for v, value in start_values
+            for v, value in starts
             if not v.low <= value <= v.high and not (v.quantity in LENGTHS and value == 0.0)
         )
 
@@ -97,9 +109,9 @@ class OptimizationRequest:
 
     @cached_property
     def checked(self) -> Checked:
-        """The request of all its torques: everything is checked, nothing computed.
+        """The checked request over all its torques; nothing is computed yet.
 
-        Raises `InputError` as `optimize`.
+        Raises the `InputError` of `optimize`.
         """
         check_variables(self.pair, self.variables)
         self.objective.check(DesignLoads.of(self.torques, self.misalignment).torque.size)
@@ -143,7 +155,7 @@ def gain_of(start: _Confirmed, optimum: _Confirmed) -> Estimate:
 
 
 def outcome_of(start: _Confirmed, optimum: _Confirmed) -> Outcome:
-    """Return the outcome of a search: ties within the errors are ties."""
+    """Return the outcome of a search; a gain within its error is no improvement."""
     gain = gain_of(start, optimum)
     if optimum.violation > SLACK:
         return Outcome.LIMITS_EXCEEDED

@@ -112,6 +112,26 @@ class Sampling:
         return min(TANGENTS, max(1, self.solved // 4))
 
 
+@dataclass(frozen=True)
+class WithinClass:
+    """Figures at L torques of the pairs of a class, where those of a study are measured."""
+
+    mean: FloatArray = field(metadata=in_unit("m", "torque"))
+    """Mean peak-to-peak STE, m. Shape (L,)."""
+    share: FloatArray
+    """Share of the pairs above the limit. Shape (L,), or (0,) without a limit."""
+    decides: str
+    """Name of the deviation that decides there, or empty."""
+
+    @classmethod
+    def of(cls, study: ToleranceStudy) -> WithinClass:
+        """Return the figures of a study within a class."""
+        above = study.above
+        if above is None:
+            return cls(study.mean, np.zeros(0), "")
+        return cls(study.mean, above.share, above.names[above.decides])
+
+
 @brief
 @dataclass(frozen=True)
 class ToleranceStudy(Plottable):
@@ -150,6 +170,8 @@ class ToleranceStudy(Plottable):
     """
     above: PairsAbove | None = None
     """Pairs above a limit."""
+    within_class: WithinClass | None = None
+    """Pairs of the class, where those of the study are of measured gears."""
 
     @property
     def mean(self) -> FloatArray:

@@ -1,4 +1,7 @@
-"""Plausibility checks of a pair and of its mesh, by nominal figures."""
+"""Plausibility checks of a pair and of its mesh, by nominal figures.
+
+A finding has a value that is implausible, and the plausible range `low` to `high` that a message shows.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,11 @@ from fe_contact.plausibility.nominal_intensities import (
 from fe_contact.types import FloatArray
 
 _RATED = 20.0
-"""Rated loads over the lightest that is plausible."""
+"""Low end of the usual loads over the lightest plausible load."""
+_HEAVY = 0.5
+"""High end of the usual loads over the heaviest plausible load."""
+_MISALIGNED = 0.002
+"""High end of usual misalignments over the face width."""
 
 
 def pair_findings(
@@ -33,19 +40,20 @@ def pair_findings(
     *,
     loads_as: str = "torques",
 ) -> tuple[Finding, ...]:
-    """Return what is implausible about a pair and its request.
+    """Return the implausible values of a pair and its request.
 
     Parameters
     ----------
     load : sequence of float
         Normal forces F_bn, N, increasing.
     misalignment, center_distance_change : sequence of float
-        m.
+        Values on the axes of the table, m.
     loads_as : str
         Field that the loads were given in: "torques" or "normal_forces".
     """
     sizes = tuple(_sizes(pair))
-    if any(finding.check == "module" for finding in sizes):  # all else is far from practice with it
+    # a wrong module, often by its unit, makes most other values implausible: it alone is reported
+    if any(finding.check == "module" for finding in sizes):
         return sizes
     return (
         *sizes,
@@ -135,7 +143,7 @@ def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Ite
             continue
         reason = "smaller than can be aligned or measured"
         name = f"{field}[{index}]"
-        usual = 0.002 * pair.face_width if check == "misalignment" else pair.pinion.normal_module
+        usual = _MISALIGNED * pair.face_width if check == "misalignment" else pair.pinion.normal_module
         for finding in assessed(check, name, value, "m", reason=reason):
             yield replace(finding, high=usual)
         if check == "misalignment":
@@ -147,7 +155,7 @@ def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Ite
 
 
 def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Finding]:
-    """Check the largest load by intensity, and by what it does to contact, root and teeth."""
+    """Check the largest load: its intensity, contact pressure, root stress and tooth deflection."""
     if not load.size:
         return
     force, module = float(load[-1]), pair.pinion.normal_module
@@ -158,7 +166,7 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
     text = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
     lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf
     field = f"{loads_as}[{load.size - 1}]"
-    low, high = _RATED * lightest * value / intensity, 0.5 * heaviest * value / intensity
+    low, high = _RATED * lightest * value / intensity, _HEAVY * heaviest * value / intensity
     for check, amount, reason in (
         ("light_load", intensity, f"the largest load of the table is negligible, {text}"),
         ("line_load", intensity, f"no gear carries {text}"),
@@ -171,7 +179,7 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
 
 
 def mesh_findings(pair: ParallelAxes) -> tuple[Finding, ...]:
-    """Return implausible values of the mesh of a pair that can be computed all the same."""
+    """Return the implausible values of the mesh of a pair that is geometrically possible."""
     return tuple(_findings(pair))
 
 

@@ -19,6 +19,7 @@ from lineofaction.cli.verbs import (
     of_listening,
     of_pages,
     of_services,
+    of_validation,
 )
 from lineofaction.cli.verbs.of_studies import StudyGroup
 
@@ -34,6 +35,7 @@ FAMILIES = (
     of_exports,
     of_listening,
     of_hard_cases,
+    of_validation,
     of_pages,
     of_imports,
     of_inspections,

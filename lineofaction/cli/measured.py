@@ -7,6 +7,7 @@ from pathlib import Path
 
 from bounds import engineering
 from bounds.types import Json
+from lineofaction.cli.measured_folder import run_folder
 from lineofaction.cli.output import check_writable, console, print_json, print_written, table
 from lineofaction.cli.verb_warnings import STRICT, warn
 from lineofaction.gearbox.convert.case import case_json
@@ -15,6 +16,7 @@ from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import Split
 from lineofaction.gearbox.inspection.machine_judgement import LIMIT_UM
 from lineofaction.gearbox.inspection.measured_gear import MeasuredGear, inspected
+from lineofaction.gearbox.inspection.population import values_beside
 from lineofaction.gearbox.inspection.reading import FIELD
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import BadInput
@@ -28,14 +30,15 @@ from lineofaction.gearbox.units import MM, UM
 def run_measured(
     file: InputFile,
     sheet: Path | None,
-    mounted: tuple[str, Flank, float | None],
+    mounted: tuple[str, Flank, float | None, bool],
     output: Path | None,
     *,
     as_json: bool,
 ) -> None:
     """Write the case with the measured deviations; without a sheet, write the sheet that the case would give.
 
-    `mounted`: name of the inspected gear, its loaded flanks and the cut-off in mm, the fields of `Inspected`.
+    Of a folder of sheets the population is written.
+    `mounted`: the fields of `Inspected`.
     """
     case, inspected_gear = read_model(Case, file), Inspected(*mounted)
     if output is not None:
@@ -43,8 +46,11 @@ def run_measured(
     if sheet is None:
         _write(output, sheet_text(inspected(inspected_gear.chart(case))))
         return
+    if sheet.is_dir():
+        run_folder(case, sheet, inspected_gear, output, as_json=as_json)
+        return
     try:
-        text, values = read_text(sheet, str(sheet)), _values_beside(sheet)
+        text, values = read_text(sheet, str(sheet)), values_beside(sheet)
     except BadInput as error:
         raise error.within(FIELD) from None
     changed, gear = measured_case(case, text, str(sheet), inspected_gear, values)
@@ -58,14 +64,6 @@ def run_measured(
         return
     _show(gear)
     print_written(written)
-
-
-def _values_beside(sheet: Path) -> str | None:
-    """Return the text of the value file of the same name beside a curve file, or None."""
-    if sheet.suffix.lower() != ".mka":
-        return None
-    path = next((path for path in map(sheet.with_suffix, (".mew", ".MEW")) if path.is_file()), None)
-    return None if path is None else read_text(path, str(path))
 
 
 def machine_warnings(differences: Iterable[str]) -> list[Json]:

@@ -27,10 +27,13 @@ from model_studies.progress import Progress, silent
 from model_studies.workers import InProcess, Workers
 
 Warn = Callable[[Iterable[dict[str, Any]]], object]
-# Called with every table that does not meet the tolerance yet, and with what is refined next.
+"""Called with warnings, each a record of plain JSON."""
 OnDraft = Callable[[SteDatabase, str], None]
+"""Called with every table that does not meet the tolerance yet, and with what is refined next."""
 TableOf = Callable[[int, MeshInput], SteDatabase]
+"""Returns the table of a mesh by its index and its input."""
 CachedTable = Callable[[Case], SteDatabase | None]
+"""Returns the table of a case if it was computed before, or None."""
 
 
 def tabled_scene(
@@ -43,7 +46,7 @@ def tabled_scene(
     cases: CheckedCases,
     cached_table: CachedTable = lambda _case: None,
 ) -> TabledScene:
-    """Return a scene with its tables, housings reduced; all is checked before anything is computed.
+    """Return a scene with its tables and reduced housings; all is checked before anything is computed.
 
     Parameters
     ----------
@@ -56,7 +59,7 @@ def tabled_scene(
     progress : callable
         Called as progress(stage, fraction).
     warn : callable
-        Takes what is implausible about cases and scene.
+        Takes warnings about what is implausible in cases and scene.
     cases : CheckedCases
         Checked cases of this scene: `table_of` continues from these checks.
     cached_table : callable
@@ -65,7 +68,7 @@ def tabled_scene(
     Raises
     ------
     BadInput
-        No such scene, or it does not move; a file of it cannot be used.
+        The scene does not exist or does not move, or one of its files cannot be used.
     JobFailed
         A table has failed points.
     """
@@ -100,7 +103,7 @@ def database_of(
 ) -> SteDatabase:
     """Compute the STE database of a case; condensed gears are kept in `home`, the folder of caches.
 
-    Raises `BadInput`: no such pair exists, or not under these loads.
+    Raises `BadInput`: the pair cannot exist, or cannot carry these loads.
     """
     run = Run(workers, home / "compliance", progress)
     return checked_table(checked, run, on_draft)

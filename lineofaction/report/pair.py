@@ -68,7 +68,7 @@ _PARTS: dict[str, Callable[..., object]] = {
 }
 _POINTS = 201
 _AXES = (Direction.PROFILE, Direction.FACE)
-_SIDES = {"pinion": palette.BLUE, "wheel": palette.VERMILLION}
+_SIDES = dict(zip(("pinion", "wheel"), palette.GEARS, strict=True))
 _HEIGHT = 3.4
 """Modules drawn above and below the pitch point."""
 _WIDTH = 3.4

@@ -67,7 +67,7 @@ def _of_scheduler(scheduler: Scheduler) -> Iterable[Metric]:
 
 
 def _of_space(directory: Path) -> Iterable[Metric]:
-    """Yield the space of the data directory: workspaces, caches, and results that have no other place."""
+    """Yield free space and size of the data directory: workspaces, caches, results without a remote store."""
     with suppress(OSError):  # while the directory is not there
         space = shutil.disk_usage(directory)
         yield GaugeMetricFamily("loa_data_free_bytes", "Free space of the data directory", space.free)
@@ -94,7 +94,7 @@ def process_registry(
     scheduler: Scheduler | None,
     settings: Settings,
 ) -> CollectorRegistry:
-    """Return the metrics of every process of the service; processes that answer requests add theirs.
+    """Return the metrics that every process of the service has; a process that answers requests adds more.
 
     Labels have values of this program only, never a caller's, so that their number is bounded.
     """

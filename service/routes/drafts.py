@@ -1,7 +1,8 @@
 """Questions about a draft, as it is typed: drawing, plan, curves, text, gears as made; faults are an answer.
 
-A draft is wrong most of the time. A browser logs every refused request as an error of the page, so here what
-elsewhere is refused as `BadInput` (422) of fields is answered (200). All else is refused as everywhere.
+A draft is a case or a scene that a user is still typing, so that it has faults most of the time. A browser
+logs every refused request as an error of the page. Therefore these routes answer faults of fields with the
+status 200, where the routes of finished inputs refuse them as `BadInput` with 422. Other errors are refused.
 """
 
 from __future__ import annotations
@@ -32,7 +33,8 @@ DRAFTS = {
     "/scenes/from-toml": ("scene-text", "Scene of a drafted text"),
     "/scenes/housing-surface": ("housing-surface", "Surface of drafted housings"),
 }
-"""Questions about a draft by the path of the question: the path below `/drafts`, and a summary."""
+"""Path of a question about a finished input, to the path below `/drafts` and the summary of the same question
+about a draft."""
 
 
 class FaultsBody(BaseModel):
@@ -62,10 +64,11 @@ class DraftRoute(ScopedRoute):
 
 
 def _faults_of(refusal: ServiceError) -> Response:
-    """Return the answer of faults; raises a refusal that is not about the draft, as of a busy service."""
+    """Return the faults of a draft as an answer; raises `refusal` if it is not about fields of the draft."""
     problem = refusal.as_json()
-    of_body = "body" in (fault["field"] for fault in problem["errors"])
-    if of_body or problem["type"] != BadInput.type:  # the type: a live worker sends problem details
+    # the field "body": the request itself is malformed, for example no JSON
+    is_malformed = "body" in (fault["field"] for fault in problem["errors"])
+    if is_malformed or problem["type"] != BadInput.type:  # the type: a live worker sends problem details
         raise refusal
     return JSONResponse({"detail": problem["detail"], "faults": problem["errors"]})
 
@@ -74,7 +77,7 @@ router = APIRouter(tags=["drafts"], route_class=DraftRoute)
 
 
 def _add(route: APIRoute) -> None:
-    """Ask the question of a route of a draft as well."""
+    """Add the route of `/drafts` that answers the question of `route` about a draft."""
     path, summary = DRAFTS[route.path]
     router.add_api_route(
         f"/drafts/{path}",
@@ -88,6 +91,6 @@ def _add(route: APIRoute) -> None:
     )
 
 
-for offered in (route for router in (*ROUTERS, queries.live_router) for route in router.routes):
-    if isinstance(offered, APIRoute) and offered.path in DRAFTS:
-        _add(offered)
+for question in (route for router in (*ROUTERS, queries.live_router) for route in router.routes):
+    if isinstance(question, APIRoute) and question.path in DRAFTS:
+        _add(question)

@@ -1,4 +1,8 @@
-"""A worker process seen from the service: start, listen, end."""
+"""A worker process seen from the service: start, listen, end.
+
+A worker is a child process with a process group of its own. It sends messages through a channel: that it has
+begun, progress, warnings, and its outcome.
+"""
 
 from __future__ import annotations
 
@@ -16,30 +20,32 @@ from service.worker.order import Outcome, Product, WorkOrder
 from service.worker.usage import BYTES_PER_MB, Usage
 
 WORK = "service.worker.child"
-"""The module whose `work` a child does."""
-_ANEW = partial(start_child, WORK)
+"""The module whose function `work` a child executes."""
+_NEW_PROCESS = partial(start_child, WORK)
 _LEAVING_S = 2.0
+"""Time in s that a child has for its exit after its last message; then its group is killed."""
 _SIGNALS_OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")
-"""Sent by the system, and by libraries that cannot go on."""
+"""Signals that may mean too little memory: SIGKILL by the system, SIGABRT by a library that cannot go on."""
 
 
 class Step(NamedTuple):
-    """Progress of a worker: stage, completed fraction of the stage, and of the whole if it is known.
-
-    It was reported `at` s since 1970, after so much CPU time with what it has waited for.
-    """
+    """Progress of a worker."""
 
     stage: str
     fraction: float
+    """Completed fraction of the stage, 0 to 1."""
     whole: float | None
+    """Completed fraction of the whole order, 0 to 1; None: unknown."""
     at: float
+    """Time of the report, s since 1970."""
     cpu_s: float
+    """CPU time of the child until then, s, with the processes that it has waited for."""
 
 
 class Worker:
     """One child process for one order; `begun` is True from its first message."""
 
-    def __init__(self, order: WorkOrder, log: Path, launch: Launch = _ANEW) -> None:
+    def __init__(self, order: WorkOrder, log: Path, launch: Launch = _NEW_PROCESS) -> None:
         self.started = time.monotonic()
         self.usage: Usage | None = None
         self.compliance_reads = CacheReads()
@@ -49,7 +55,7 @@ class Worker:
         self._peak_mb: float | None = None
         with log.open("wb") as stream:
             self._child = Child(launch, stream.fileno(), order.workspace)
-        self._child.send(Frame("order", order.line()))  # one that died before shows when its channel ends
+        self._child.send(Frame("order", order.line()))  # no error for a dead child: its closed channel tells
 
     @property
     def pid(self) -> int:
@@ -86,7 +92,7 @@ class Worker:
         return steps, self._child.closed
 
     def _take(self, kind: str, content: Any) -> None:
-        """Take a message that is no progress."""
+        """Handle a message that is not progress: begin, warning or outcome."""
         if kind == "begun":
             self.begun = True
         elif kind == "warning":
@@ -119,7 +125,7 @@ class Worker:
     def kill(self, patience_s: float | None = None) -> None:
         """Kill the group, reap the child, close the pipes. Idempotent.
 
-        One that is not dead after `patience_s` is left to the system, without its `usage`.
+        A child that is not dead after `patience_s` is left to the system, and `usage` stays None.
         """
         ended = self._child.end(patience_s)
         if ended is not None and self.usage is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import os
 import re
 from pathlib import Path
@@ -16,18 +15,6 @@ FOLDER = Path(os.environ.get(SETTING) or "/nonexistent")
 needs_fzg_reference = pytest.mark.skipif(
     not (FOLDER / "stplus_geometry.csv").is_file(), reason=f"{SETTING} names no folder of FZG figures"
 )
-
-Row = dict[str, str]
-
-
-def geometry_listing(pair: str, kind: str) -> list[Row]:
-    """Return the rows of a pair, its inputs or what is printed of it; none without the folder."""
-    path = FOLDER / "stplus_geometry.csv"
-    if not path.is_file():
-        return []
-    with path.open(encoding="utf-8", newline="") as lines:
-        return [row for row in csv.DictReader(lines) if (row["pair"], row["kind"]) == (pair, kind)]
-
 
 _PROFILE = re.compile(r"Zahn-Nr\.: (\d+) (links|rechts) / (\d+)  Werte  z=")
 

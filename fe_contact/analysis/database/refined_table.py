@@ -1,7 +1,9 @@
 """Passes of a run under a tolerance: plan, run, measure, refine the largest errors, until it is met.
 
-A trial is a cheap first pass that is expected to miss the tolerance. `Decision.behind` is the pass that is
-expected to follow it.
+A *pass* computes the table on one discretization, with its errors. A *trial* is a cheap first pass that is
+expected to miss the tolerance; `Decision.behind` is the pass that is expected to follow it. Errors at the
+*nodes* of a table are those of the model and its meshes; between nodes interpolation has errors too. `used`
+is an error over the tolerance.
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ from fe_contact.types import Json
 from model_studies.stage_clock import StageClock
 
 MAX_PASSES = 4
+"""Most passes of one request."""
 
 OnDraft = Callable[[SteDatabase, str], None]
 """Callback for the table of a pass that is refined, and the refined parts in words."""
@@ -47,7 +50,7 @@ class _Passes:
         return Pass(done.decision, done.table.metadata.receipt, done.table)
 
     def refined(self, refinement: Refinement, clock: StageClock) -> Pass:
-        """Run a refinement; one that fails or is interrupted says so."""
+        """Run a refinement; the pass has no table but a `failure` if it failed or was interrupted."""
         choice = refinement.decision
         try:
             done = compute_pass(choice.checked, self.case, self.run, choice, clock)
@@ -61,8 +64,8 @@ class _Passes:
 def refined_table(checked: Checked, case: Json, run: Run, on_draft: OnDraft | None) -> SteDatabase:
     """Compute the table of a request with a tolerance, in at most `MAX_PASSES` passes.
 
-    Raises `MeshError`, `SolveError`, `WorkersLost` of the first pass; a later one that fails keeps the table
-    before it.
+    Raises `MeshError`, `SolveError`, `WorkersLost` if the first pass fails. If a later pass fails, the table
+    of the pass before it is the result.
 
     Parameters
     ----------
@@ -97,8 +100,8 @@ def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
     while True:
         clock = StageClock(shared.run.workers.cost)
         with clock.stage("planning"):
-            refinement = _next_refinement(table, best)  # or the reason why there is none
-            if isinstance(refinement, str):
+            refinement = _next_refinement(table, best)
+            if isinstance(refinement, str):  # the reason why there is none
                 return of_all_passes(passes, table, refinement)
             reason = _refusal(refinement, passes, shared.run.cache)
         if reason:
@@ -125,7 +128,7 @@ def _next_refinement(table: SteDatabase, last: Pass) -> Refinement | str:
     at_nodes = table.metadata.receipt["tolerance"]["used_at_nodes"]
     if at_nodes is not None and at_nodes <= 1.0:  # the errors that finer meshes lower meet the tolerance
         return _interval_reason(table)
-    # errors at nodes that work lowers; the others, those of the model, stay whatever is refined
+    # finer meshes lower these errors at nodes; the errors of the model stay
     reducible, _ = reducible_shares(error_shares(table, tolerance), last.decision.checked.request)
     measured = next_pass(last.decision, reducible)
     behind = last.decision.behind
@@ -142,7 +145,7 @@ def _behind_trial(behind: Decision, trial: Pass) -> Refinement:
 
 
 def _interval_reason(table: SteDatabase) -> str:
-    """Return the text of intervals that keep a table from its tolerance: no mesh lowers their errors."""
+    """Return text on the intervals whose error of interpolation, which no mesh lowers, is too large."""
     intervals = table.metadata.receipt["tolerance"]["between_nodes"]
     if not intervals:
         return "the table cannot be interpolated between its nodes"
@@ -159,7 +162,7 @@ def _interval_text(entry: Json) -> str:
 
 
 def _refusal(refinement: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
-    """Say why a refinement does not begin, of passes or of time; empty if it may."""
+    """Return the limit of passes or of time that forbids a refinement, as text; empty if none does."""
     if len(passes) == MAX_PASSES:
         return f"the limit is {MAX_PASSES} passes"
     budget = refinement.decision.checked.request.options.time_budget

@@ -1,11 +1,14 @@
 """Errors of the meshes of relieved helical pairs: of the mean with their sign, of the ripple without one.
 
 Where reliefs end the contact inside the flanks, meshes and load patches change the compliance by the same
-part at every position: finer meshes soften it, narrower patches stiffen it. What they leave of the mean has a
-known sign, and a doubt of its own. What they leave of peak-to-peak has none: the difference of two meshes
-along the curve tells its size alone.
+part at every position: finer meshes soften it, narrower patches stiffen it. The error of the mean therefore
+has a known sign, and a *doubt*: the uncertainty of that signed error. The error of peak-to-peak has no known
+sign: the difference of two meshes along the curve tells its size alone.
 
-The constants are of drawn pairs of electric drives (docs/lab/index.md, "Quiet helical pairs").
+Changes between two meshes (or patches) are first extrapolated at second order: multiplied by the part of the
+change that would remain up to infinitely fine ones. The factors of this file correct that remainder; they
+were fitted to random pairs of electric drives (docs/lab/index.md, "Quiet helical pairs"). Shapes: loads f,
+misalignments m, center distances d at which the table was solved again; F, M, D all those of the table.
 """
 
 from __future__ import annotations
@@ -24,17 +27,17 @@ from fe_contact.types import FloatArray
 
 
 class MeshRemainder(NamedTuple):
-    """Remainder of the changes between meshes, over their remainder at second order."""
+    """Factors from the remainder of second order to the errors of a mesh."""
 
     mesh: float
     patches: float
-    """`mesh`, `patches`: Remainder of the mean with its sign: of the change by mesh and by patches."""
+    """`mesh`, `patches`: Signed errors of the mean by the mesh and by the patches, over their remainders."""
     doubt: float
-    """Error of the remainder of the mean, without a sign, over the change by the mesh."""
+    """Doubt of the signed error of the mean, over the remainder by the mesh."""
     ripple: float
-    """Error of peak-to-peak, over half the peak-to-peak of the difference of the curves of many loads."""
+    """Error of peak-to-peak, over half the peak-to-peak of the remaining difference of the curves."""
     harmonics: float
-    """Error of a harmonic, over the change of its phasor."""
+    """Error of a harmonic, over the remainder of its phasor."""
 
 
 REMAINDER = {
@@ -42,11 +45,11 @@ REMAINDER = {
     "medium": MeshRemainder(1.0, 1.55, 0.5, 1.0, 2.0),
     "standard": MeshRemainder(0.45, 1.55, 0.2, 1.2, 1.8),
 }
-"""The level fine has those of standard."""
+"""Factors of each level of fidelity; the level "fine" has those of "standard"."""
 
 
 def remainder_of(plan: Plan) -> MeshRemainder:
-    """Return what the meshes of a plan leave."""
+    """Return the factors of the level of a plan."""
     return REMAINDER.get(plan.level, REMAINDER["standard"])
 
 
@@ -58,7 +61,7 @@ def has_signed_errors(pair: ParallelAxes, discretization: Discretization) -> boo
 def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:
     """Return how much higher the mean lies on exact meshes, and the doubt of that, each (f, m, d) in m.
 
-    At the loads and alignments that were solved again; `nested` is of transmission error.
+    `nested` has the transmission error of the table at the points that were solved again.
     """
     by_mesh = _mean(nested, nested.patched - nested.coarse) * plan.discretization.remaining
     by_patches = _mean(nested, nested.table - nested.patched) * plan.remaining_patches
@@ -66,7 +69,7 @@ def mean_left(nested: Nested, plan: Plan) -> tuple[FloatArray, FloatArray]:
 
 
 def mesh_bias(nested: Nested, plan: Plan) -> FloatArray:
-    """Return how much higher the mean lies on exact meshes, (F,) in m: where it does most at each load."""
+    """Return how much higher the mean lies on exact meshes, (F,) in m, at the worst alignment of a load."""
     signed = nested.sample.spread(mean_left(nested, plan)[0])
     by_load = signed.reshape(signed.shape[0], -1)
     worst = np.abs(by_load).argmax(axis=1)
@@ -76,31 +79,31 @@ def mesh_bias(nested: Nested, plan: Plan) -> FloatArray:
 def mean_of_limit(
     left: MeshRemainder, by_mesh: FloatArray | float, by_patches: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how much higher the mean of the limit lies, and the doubt of that, m.
+    """Return how much higher the mean lies in the limit of exact meshes, and the doubt of that, m.
 
-    `by_mesh` and `by_patches` are what second order leaves of the changes of the mean, in m.
+    `by_mesh` and `by_patches` are the remainders of second order of the mean, m.
     """
     signed, doubt = left.mesh * by_mesh + left.patches * by_patches, left.doubt * np.abs(by_mesh)
     return np.asarray(signed), np.asarray(doubt)
 
 
 def ripple_of_limit(left: MeshRemainder, half: FloatArray, added: FloatArray) -> FloatArray:
-    """Return what meshes leave of peak-to-peak, (f, ...) in m.
+    """Return the error of peak-to-peak by the mesh, (f, ...) in m.
 
-    A difference of two meshes is small at one load by accident, at several loads it is not: its size in parts
-    of what the load adds to the mean, `added` (f, ...), is that of all loads. `half` (f, ...) is what second
-    order leaves of half the peak-to-peak of the difference. Both are in m.
+    The difference of two meshes may be small at one load by accident, but not at several. So its ratio to
+    `added` (f, ...), the deflection that the load adds to the mean, is averaged over all loads. `half`
+    (f, ...) is the remainder of half the peak-to-peak of the difference. Both are in m.
     """
-    loads = half.shape[0]
+    loads = half.shape[0]  # a mean square of few samples scatters: 1 / loads widens the error
     relative = np.sqrt(np.mean(np.square(half / added), axis=0))
     return np.asarray(left.ripple * np.sqrt(1.0 + 1.0 / loads) * relative * added)
 
 
 def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, plan: Plan) -> FloatArray:
-    """Return the errors by mesh and by patches (2, 23, F, M, D) in m.
+    """Return the errors by mesh and by patches (2, 23, F, M, D) in m, of the 23 quantities of a curve.
 
-    `changes` are what second order leaves of them. The error by mesh holds all that is left of the mean.
-    `added` (f, m, d) is what the load adds to the mean at the points that were solved again, m.
+    `changes` are their remainders of second order. The error of the mean by patches is in that by the mesh.
+    `added` (f, m, d) is the deflection that the load adds to the mean where the table was solved again, m.
     """
     left, remaining = remainder_of(plan), plan.discretization.remaining
     by_mesh, by_patches = changes.copy()
@@ -114,6 +117,7 @@ def with_signed_errors(changes: FloatArray, nested: Nested, added: FloatArray, p
 
 
 def _mean(nested: Nested, difference: FloatArray) -> FloatArray:
+    """Return the mean over the positions (f, m, d) of a difference of curves (T R, f, m, d)."""
     sample = nested.sample
     rows = np.nan_to_num(difference).reshape(sample.knots.size, -1)
     return mean_of_curves(sample.knots, rows, sample.period).reshape(difference.shape[1:])

@@ -1,4 +1,8 @@
-"""A table solved again at some of its points, on the rougher discretizations that measure its errors."""
+"""A table solved again at some of its points, on the rougher discretizations that measure its errors.
+
+Axes of a table, in upper case, and of its sample, in lower case: positions P of each of T base pitches (R of
+them in the sample), loads F (f), misalignments M (m), changes of the center distance D (d).
+"""
 
 from __future__ import annotations
 
@@ -20,7 +24,7 @@ Axes = tuple[FloatArray, FloatArray, FloatArray]
 
 @dataclass(frozen=True)
 class TableSample:
-    """Points of a table (P positions of each of T pitches, F, M, D) that are solved again."""
+    """The points of a table (T P, F, M, D) that are solved again."""
 
     position: FloatArray
     """Positions of the table in the first base pitch. Shape (P,)."""
@@ -29,24 +33,24 @@ class TableSample:
     axes: Axes
     """Loads, misalignments, changes of the center distance."""
     rows: IntArray
-    """Positions that are solved. Shape (R,)."""
+    """Indices of the positions that are solved again. Shape (R,)."""
     nodes: tuple[IntArray, IntArray, IntArray]
-    """Loads (f), misalignments (m) and changes of the center distance (d) that are."""
+    """Indices of the loads (f,), misalignments (m,) and center distances (d,) that are solved again."""
 
     @classmethod
     def of(cls, position: FloatArray, period: int, axes: Axes) -> TableSample:
-        """Take at least 32 positions, four loads and three alignments of each axis, as far as there are."""
+        """Return a sample of at least 32 positions and at most `LOADS` loads and `ALIGNMENTS` alignments."""
         load, skew, change = axes
-        misaligned = (
+        nodes = (
             sample_of(load.size, LOADS),
             sample_of(skew.size, ALIGNMENTS),
             sample_of(change.size, ALIGNMENTS),
         )
-        return cls(position, period, axes, sampled_positions(position.size), misaligned)
+        return cls(position, period, axes, sampled_positions(position.size), nodes)
 
     @property
     def places(self) -> list[int]:
-        """The places of the alignments that are solved, center distance running fastest."""
+        """Indices of the alignments that are solved, among all (M D) with the center distance fastest."""
         _, skews, changes = self.nodes
         return [int(m) * self.axes[2].size + int(d) for m in skews for d in changes]
 
@@ -61,42 +65,45 @@ class TableSample:
         return (np.arange(self.period)[:, None] * self.position.size + self.rows).ravel()
 
     def shaped(self, by_point: Sequence[FloatArray]) -> FloatArray:
-        """Stack arrays (..., f) of the places solved into (..., f, m, d)."""
+        """Stack arrays (..., f), one for each of the `places`, into (..., f, m, d)."""
         stacked = np.stack(by_point, axis=-1)
         return stacked.reshape(*stacked.shape[:-1], self.nodes[1].size, self.nodes[2].size)
 
     def spread(self, values: FloatArray) -> FloatArray:
-        """Carry values (..., f, m, d) on to all loads and alignments, (..., F, M, D)."""
+        """Interpolate values (..., f, m, d) linearly to all loads and alignments, (..., F, M, D)."""
         for axis, (knots, sample) in enumerate(zip(self.axes, self.nodes, strict=True), start=-3):
             values = spread(knots, sample, values, axis)
         return values
 
     def spread_points(self, values: FloatArray) -> FloatArray:
-        """Carry values (T R, f, m, d) on to all points of the table, (T P, F, M, D)."""
+        """Interpolate values (T R, f, m, d) linearly to all points of the table, (T P, F, M, D)."""
         knots = (np.arange(self.period)[:, None] + self.position).ravel()
         return spread_around(knots, self.period, self.every_row, self.spread(values))
 
     def taken(self, table: SteDatabase) -> FloatArray:
-        """Return the table's own STE and load arm at the points, (2, T R, f, m, d) in m."""
+        """Return STE and load arm of `table` at the points of the sample, (2, T R, f, m, d) in m."""
         curves = np.stack([table.static_transmission_error, table.load_arm])
         return np.asarray(curves[np.ix_(np.arange(2), self.every_row, *self.nodes)])
 
     def solved(
         self, points: OperatingPoints, known: OperatingPoints, starts: Sequence[Start] | None = None
     ) -> FloatArray:
-        """Solve the points on other places, (2, T R, f, m, d) in m; `known` are those of the table.
+        """Solve the sample on other operating points; return STE and load arm, (2, T R, f, m, d) in m.
 
-        `starts` has forces near the solution for each of the `places`; of one pitch.
+        `known` are the operating points of the table. `starts` has forces near the solution for each of the
+        `places`; only a table of one pitch has any.
         """
         pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
         chosen = [points.places[k] for k in self.places]
-        where = [self.position[self.rows]] * len(chosen)
+        positions = [self.position[self.rows]] * len(chosen)
         candidates = self._candidates(chosen[0], [known.places[k] for k in self.places])
-        curves = deflected_operating_points(chosen, where, load, pitches, points.workers, candidates, starts)
+        curves = deflected_operating_points(
+            chosen, positions, load, pitches, points.workers, candidates, starts
+        )
         return self.shaped([np.moveaxis(curve, -1, 0) for curve in curves])
 
     def start(self, problem: ContactProblem, solution: ContactSolution) -> Start | None:
-        """Return the forces of one place of the table at the points; None where the pitches differ."""
+        """Return the forces at one alignment of the table as a start; None where the pitches differ."""
         if self.period > 1:
             return None
         force = solution.force[np.ix_(self.rows, self.nodes[0])]
@@ -105,7 +112,7 @@ class TableSample:
     def _candidates(self, point: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return the contact candidates of the table's points, which do not depend on the bodies.
 
-        None in other slices and under other load patches, which have candidates of their own.
+        They are None where `point` has other slices or load patches than `known`: its candidates differ.
         """
         plans = point.contact.plan, known[0].contact.plan
         first, second = ((plan.discretization.slices, plan.patch) for plan in plans)
@@ -116,23 +123,27 @@ class TableSample:
 
 @dataclass(frozen=True)
 class Nested:
-    """STE and load arm at some points of a table, on the discretization of the run and on rougher ones."""
+    """STE and load arm at some points of a table, on the discretization of the run and on rougher ones.
+
+    Each array has the shape (2, T R, f, m, d): STE first, then the load arm.
+    """
 
     sample: TableSample
     """The sampled points."""
     table: FloatArray
-    """Values of the table itself, m. Shape (2, T R, f, m, d)."""
+    """Values of the table itself, m."""
     plane: FloatArray
-    """Values without the correction for a finite width, m; equal to `table` if there is no correction."""
+    """Values without the correction for the finite face width, m; `table` itself if there is none."""
     patched: FloatArray
     """Values under the wider load patches of the coarse meshes, without the correction, m."""
     coarse: FloatArray
     """Values under the wider load patches on the coarse meshes, without the correction, m."""
     sliced: FloatArray
-    """Values with half the number of slices, m; equal to `table` in the plane."""
+    """Values with half the number of slices, m; `table` itself in a plane model, which has no slices."""
 
     @property
     def parts(self) -> tuple[Nested, Nested]:
         """The values of STE and of load arm, each with arrays (T R, f, m, d)."""
-        every = np.stack([self.table, self.plane, self.patched, self.coarse, self.sliced], axis=1)
-        return Nested(self.sample, *every[0]), Nested(self.sample, *every[1])
+        # (2, 5, T R, f, m, d): the five arrays of each quantity in the order of the fields
+        fields = np.stack([self.table, self.plane, self.patched, self.coarse, self.sliced], axis=1)
+        return Nested(self.sample, *fields[0]), Nested(self.sample, *fields[1])

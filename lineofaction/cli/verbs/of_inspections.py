@@ -30,7 +30,8 @@ verbs = typer.Typer()
 def _measured(
     case: CaseFile,
     sheet: Annotated[
-        Path | None, typer.Argument(help="Traces of the gear (CSV); left out: write those of the case.")
+        Path | None,
+        typer.Argument(help="Traces of the gear, or a folder of gears; left out: write those of the case."),
     ] = None,
     *,
     gear: Annotated[Literal["pinion", "wheel"], typer.Option(help="The gear that was inspected.")],
@@ -42,8 +43,14 @@ def _measured(
         float | None,
         typer.Option(min=1e-3, max=1e3, help="Cut-off of the filter in mm; default: 1/30 of each trace."),
     ] = None,
-    output: Annotated[Path | None, to_file("Case (TOML) or, without a sheet, CSV file to write.")] = None,
+    others: Annotated[
+        Literal["designed", "mean"],
+        typer.Option(help="Teeth that were not measured: as designed, or the mean of those that were."),
+    ] = "designed",
+    output: Annotated[
+        Path | None, to_file("Case (TOML) to write; without a sheet CSV, of a folder JSON.")
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Take pitches, traces and topographies of an inspected gear into a case, every line accounted for."""
-    measured.run_measured(case, sheet, (gear, loaded, cutoff_mm), output, as_json=json)
+    measured.run_measured(case, sheet, (gear, loaded, cutoff_mm, others == "mean"), output, as_json=json)

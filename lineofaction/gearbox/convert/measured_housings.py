@@ -1,6 +1,9 @@
 """Measured frequency responses of a housing, by bearings and points, from the nodes of a universal file.
 
-The file is one on disk, or the content that a scene has of it; a confined process reads it.
+The file is one on disk, or its content in a scene; a confined process reads it. A *function* of the file is a
+frequency response between two nodes: velocity, displacement or acceleration at the response node per force on
+the reference node, over *lines*, its frequencies. Mobility is velocity per force. Here reference nodes are
+bearing seats and response nodes are points.
 """
 
 from __future__ import annotations
@@ -28,15 +31,16 @@ from lineofaction.gearbox.signals.recording import read_frequency_responses
 SAME_LINES = 2e-5
 """Relative difference of frequencies that are the same line: a universal file has six digits of its step."""
 _RATES = {"m/N": 1, "m/(N s)": 0, "m/(N s²)": -1}
-"""Derivatives in time from a response to a mobility."""
+"""Power of i omega that turns a function of a unit into a mobility: displacement, velocity, acceleration."""
 _LISTED = 12  # most nodes in a message
 _CACHE_SIZE = 8
-"""Housings whose mobilities stay in memory: the check of a scene and its study read the file once."""
+"""Number of housings whose mobilities stay in memory: check and study of a scene read the file once."""
 _PLAIN = re.compile(r"\w[\w .+-]{0,99}")
-"""Names that a copy of a file may have on any system."""
+"""File names that are valid on any system; other names are replaced in the temporary copy."""
 
 _PLACES = {"response": 0, "reference": 2}
-"""Index of the node of each kind among the `nodes` of a measured channel."""
+"""Index of the node of each kind in `Channel.nodes`: response node, its direction, reference node, its
+direction. A direction is 1 to 3 for x, y, z, negative against the axis."""
 
 
 def read_responses(scene: SceneInput) -> None:
@@ -59,7 +63,7 @@ def housing_mobility(housing: HousingInput) -> MeasuredMobility:
     Raises `BadInput` as `measured_mobility`, by the fields of the housing.
     """
     suffix, content = response_content(housing)
-    assert housing.frf_file is not None  # the schema comes first
+    assert housing.frf_file is not None  # the schema has required it
     name = housing.frf_file.name
     with TemporaryDirectory() as folder:
         file = Path(folder) / (name if _PLAIN.fullmatch(name) else f"responses{suffix}")
@@ -84,16 +88,17 @@ def measured_mobility(
 ) -> MeasuredMobility:
     """Return the mobilities from bearing seats to points that a universal file holds (dataset 58).
 
-    Functions between other nodes are passed over, and so is a line at 0 Hz. Raises `BadInput`: as
-    `read_frequency_responses`; a node has no function, a function is not along an axis, is there twice, is
-    missing between a measured seat and a measured point, has other lines than the first or no finite values.
+    Functions between other nodes are ignored, and so is a line at 0 Hz. Raises `BadInput` as
+    `read_frequency_responses` does, and for a node without function; for a function that is not along an
+    axis, occurs twice, or has other lines than the first or no finite values; for a missing function between
+    a measured seat and a measured point.
 
     Parameters
     ----------
     seats, points : mapping of int to str
         Bearings by reference node, points by response node.
     axes : (3, 3) array, optional
-        Columns: the axes of the file in the scene; by default the same.
+        Columns: the axes of the file in the scene; by default those of the scene.
     field : str
         Field that names the file, for errors.
     """
@@ -114,9 +119,9 @@ def _mobility_of(
     """Return the mobilities that the functions of a file hold; `where` are its field and its name."""
     field, name = where
     functions = _chosen(channels, where, seats, points)
-    response = tuple(dict.fromkeys(ends[0] for ends in functions))
-    excitation = tuple(dict.fromkeys(ends[1] for ends in functions))
-    first = next(iter(functions.values()))[0]
+    response = tuple(dict.fromkeys(point for point, _ in functions))
+    excitation = tuple(dict.fromkeys(seat for _, seat in functions))
+    first, _ = next(iter(functions.values()))
     lines = _lines(first, field)
     rows = np.empty((lines.size, len(response), len(excitation)), dtype=complex)
     for q, point in enumerate(response):
@@ -125,10 +130,10 @@ def _mobility_of(
                 bound = f"a function of {point} per {seat}, as of the other directions"
                 raise BadInput.of(field, name, bound, "Measure or export all pairs.")
             rows[:, q, e] = _mobility(*functions[point, seat], lines, field)
-    moving = lines > 0.0
+    positive = lines > 0.0
     try:
-        turned = {} if axes is None else {"axes": axes}
-        return MeasuredMobility(lines[moving], response, excitation, rows[moving], **turned)
+        rotation = {} if axes is None else {"axes": axes}
+        return MeasuredMobility(lines[positive], response, excitation, rows[positive], **rotation)
     except InputError as error:
         value = f"{name}: {error.field}"
         raise BadInput.of(field, value, str(error.bound), str(error.suggestion)) from None
@@ -156,17 +161,17 @@ def _chosen(
     field, name = where
     functions: dict[tuple[Direction, Direction], tuple[Channel, float]] = {}
     for channel in channels:
-        point, towards, seat, pushed = channel.nodes
+        point, point_axis, seat, seat_axis = channel.nodes
         if point not in points or seat not in seats:
             continue
-        if not (1 <= abs(towards) <= 3 and 1 <= abs(pushed) <= 3):
+        if not (1 <= abs(point_axis) <= 3 and 1 <= abs(seat_axis) <= 3):
             bound = "a function along x, y or z (directions 1 to 3, or -1 to -3)"
             raise BadInput.of(field, f"{name}: {channel.name}", bound, "Leave rotations out.")
-        ends = Direction(points[point], abs(towards) - 1), Direction(seats[seat], abs(pushed) - 1)
+        ends = Direction(points[point], abs(point_axis) - 1), Direction(seats[seat], abs(seat_axis) - 1)
         if ends in functions:
             bound = f"one function of {ends[0]} per {ends[1]}"
             raise BadInput.of(field, f"{name}: {channel.name}", bound, "Export one of them.")
-        functions[ends] = channel, math.copysign(1.0, towards * pushed)
+        functions[ends] = channel, math.copysign(1.0, point_axis * seat_axis)
     if not functions:
         raise BadInput.of(
             field, name, "a file with a function from a seat to a point; all end at other nodes"
@@ -185,7 +190,7 @@ def _lines(channel: Channel, field: str) -> FloatArray:
 
 
 def _mobility(channel: Channel, sense: float, lines: FloatArray, field: str) -> ComplexArray:
-    """Return the velocity per force of a function at the lines; 0 at 0 Hz."""
+    """Return the mobility at the lines, m/(N s), with the sign `sense`; 0 at 0 Hz."""
     same = channel.abscissa.shape == lines.shape and np.allclose(
         channel.abscissa, lines, rtol=SAME_LINES, atol=SAME_LINES * float(lines[1] - lines[0])
     )
@@ -194,5 +199,5 @@ def _mobility(channel: Channel, sense: float, lines: FloatArray, field: str) -> 
         raise BadInput.of(field, channel.name, bound, "Export all with one frequency axis.")
     if not np.iscomplexobj(channel.values):
         raise BadInput.of(field, channel.name, "a function of complex values", "Export real and imaginary.")
-    rate = 2j * np.pi * np.where(lines > 0.0, lines, 1.0)
+    rate = 2j * np.pi * np.where(lines > 0.0, lines, 1.0)  # i omega; any value at 0 Hz
     return np.asarray(sense * rate ** _RATES[channel.unit] * channel.values * (lines > 0.0))

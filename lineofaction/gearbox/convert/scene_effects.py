@@ -1,4 +1,9 @@
-"""The effect ledger of a scene in lines for people."""
+"""The effect ledger of a scene as text.
+
+The ledger lists, for every effect and every part of the scene, whether the effect is on and why. The *size*
+of an effect is text: how much a result changes without it. A *negligible* effect is off everywhere and would
+change next to nothing. *Freedoms* are the degrees of freedom that an effect adds to the model.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +16,10 @@ from model_studies.ablation import TRIFLE
 
 
 def effect_size(ledger: Json, effect: str) -> str:
-    """Return the influence of an effect in all parts of a scene, in words: the one size that is shown.
+    """Return the influence of an effect in all parts of a scene, as text.
 
-    As the ledger of a run or a study estimates it; where it does not, how far flanks move at rest. Empty:
-    nothing.
+    It is the estimate of a run or a study where the ledger has one, else the largest displacement of a flank
+    at rest. The text is empty where the effect changes nothing.
     """
     estimate = ledger.get("influences", {}).get(effect)
     if estimate is not None:
@@ -24,7 +29,11 @@ def effect_size(ledger: Json, effect: str) -> str:
 
 
 class SceneEffect(NamedTuple):
-    """A decision about an effect and the parts that share it; the first has the size in all parts."""
+    """A decision about an effect and the parts that share it.
+
+    `size` and `freedoms` are those in all parts of the scene; only the first decision about an effect has
+    them. `possible` is False where no part allows the effect.
+    """
 
     name: str
     on: bool
@@ -46,15 +55,15 @@ def scene_effects(ledger: Json) -> tuple[list[SceneEffect], list[SceneEffect]]:
         freedoms = f"{estimate['freedoms']:+d}" if estimate else ""
         listed = trifles if _is_trifle(entries, size, estimate) else main
         if estimate and estimate.get("level"):
-            size = size.partition(", ")[0]
-        listed += _decisions((name.replace("_", " "), size or "nothing", freedoms), entries)
+            size = size.partition(", ")[0]  # the text begins with the level, which is enough
+        listed += _decisions(name.replace("_", " "), size or "nothing", freedoms, entries)
     return main, trifles
 
 
 def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
     """Return columns and a row for each effect of a scene, on or off, and a line on negligible effects.
 
-    Where a level is estimated, it alone is the size. Parts of one reason have a line of the row.
+    Where a level is estimated, it alone is the size. The last cell has a line for each reason and its parts.
     """
     effects, trifles = scene_effects(ledger)
     columns = ["effect", "on", "without it", "freedoms", "where and why"]
@@ -68,7 +77,7 @@ def scene_table(ledger: Json) -> tuple[list[str], list[list[str]], str]:
 
 
 def beyond_lines(ledger: Json) -> Iterator[str]:
-    """Yield why runs may change by more than the sizes of effects say, and of which effects."""
+    """Yield a line for each reason why a run may change by more than the stated sizes of some effects."""
     effects = dict[str, list[str]]()
     for name, estimate in ledger.get("influences", {}).items():
         if beyond := estimate.get("beyond"):
@@ -93,18 +102,14 @@ def _is_trifle(entries: list[Json], size: str, estimate: Json | None) -> bool:
     return not size
 
 
-def _decisions(effect: tuple[str, str, str], entries: list[Json]) -> Iterator[SceneEffect]:
-    """Yield each decision with its reason and price, and the parts that share it.
-
-    `effect` are its name, size and freedoms.
-    """
+def _decisions(name: str, size: str, freedoms: str, entries: list[Json]) -> Iterator[SceneEffect]:
+    """Yield each decision about an effect with its reason and price, and the parts that share it."""
     shared: dict[tuple[bool, str], list[Json]] = {}
     for entry in entries:
         price = f"; price: {entry['price']}" if entry["on"] and entry.get("price") else ""
         shared.setdefault((entry["on"], f"{entry['reason']}{price}"), []).append(entry)
     possible = any(entry.get("possible", True) for entry in entries)
-    name, size, freedoms = effect
     for (on, reason), same in shared.items():
         parts = ", ".join(entry["part"] for entry in same)
         yield SceneEffect(name, on, size, freedoms, parts, reason, possible)
-        size = freedoms = ""
+        size = freedoms = ""  # the first decision alone has them

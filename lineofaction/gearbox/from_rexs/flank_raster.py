@@ -1,4 +1,9 @@
-"""The free-form flank of a case: modifications that have no field, at the nodes of a grid."""
+"""The free-form flank of a case: modifications that have no field, at the nodes of a grid.
+
+A modification is a law of the removed material over the roll length and the face coordinate of the REXS file,
+which counts from its datum face. Its *kinks* are the roll lengths and face coordinates at which its slope
+jumps. A case has face positions from the middle of the face.
+"""
 
 from __future__ import annotations
 
@@ -16,13 +21,15 @@ from lineofaction.gearbox.from_rexs.gear_unit import rounded
 from lineofaction.gearbox.units import MM, UM
 
 COUNTS = (17, 33, 65, 129)
-"""Lines each way: the grid is refined until it differs from the sum of modifications by less than allowed."""
+"""Lines of a grid in either direction: the first one whose error is below `ALLOWED_DIFFERENCE` is taken."""
 
 ALLOWED_DIFFERENCE = 0.05e-6  # error of a grid, m: a tenth of the resolution of a gear measuring machine
 
-_SAMPLE = 65
+_FLAT = 1e-3  # variation over the allowed difference below which the sum does not vary in a direction
 
-_BETWEEN = 4  # places between two nodes at which the difference is taken
+_SAMPLE = 65  # points each way at which the sum is sampled for its variation
+
+_BETWEEN = 4  # parts of an interval between two nodes, at whose ends the difference is taken
 
 
 @dataclass(frozen=True)
@@ -35,7 +42,7 @@ class Raster:
 
 
 def raster_of(flank: PlainFlank, modifications: Sequence[Modification], count: int) -> Raster:
-    """Return the raster of a grid of `count` lines in the directions in which the sum varies."""
+    """Return the raster with `count` lines in each direction in which the sum of the modifications varies."""
     rolls, faces = _axes(flank, modifications, count)
     removed = _removed(flank, modifications, rolls, faces)
     with boundary_errors("flank_grid"):
@@ -51,13 +58,14 @@ def raster_of(flank: PlainFlank, modifications: Sequence[Modification], count: i
 def _axes(
     flank: PlainFlank, modifications: Sequence[Modification], count: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return roll lengths and face positions of the grid, two where the sum does not vary."""
+    """Return roll lengths and face positions of the grid, m; only two where the sum does not vary."""
     low, high = sorted((flank.root, flank.tip))
     half = 0.5 * flank.width
     sample = _removed(
         flank, modifications, np.linspace(low, high, _SAMPLE), np.linspace(-half, half, _SAMPLE)
     )
-    counts = [count if np.ptp(sample, axis=axis).max() > 1e-3 * ALLOWED_DIFFERENCE else 2 for axis in (0, 1)]
+    varies = [np.ptp(sample, axis=axis).max() > _FLAT * ALLOWED_DIFFERENCE for axis in (0, 1)]
+    counts = [count if varied else 2 for varied in varies]
     rolls = [kink for entry in modifications for kink in entry.rolls]
     faces = [flank.loaded.datum * (half - kink) for entry in modifications for kink in entry.faces]
     return (
@@ -85,7 +93,7 @@ def _difference(flank: PlainFlank, modifications: Sequence[Modification], grid: 
 
 
 def _finer(axis: FloatArray) -> FloatArray:
-    """Return an axis with further places between its nodes."""
+    """Return an axis with `_BETWEEN` times as many intervals."""
     fractions = np.arange(_BETWEEN * (len(axis) - 1) + 1) / _BETWEEN
     return np.interp(fractions, np.arange(len(axis)), axis)
 

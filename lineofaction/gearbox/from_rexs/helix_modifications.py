@@ -1,4 +1,9 @@
-"""Helix crowning and slope, end reliefs and twist (ISO 21771-1, clauses 7.3 and 7.4)."""
+"""Helix crowning and slope, end reliefs and twist (ISO 21771-1, clauses 7.3 and 7.4).
+
+The face coordinate `face` runs from 0 at the datum face to the face width at the non-datum face, m; `roll` is
+the roll length, m. A modification has its law over both, the fields of a case that express it, and the
+`faces` at which its slope jumps. `flank.loaded.datum` is the sign, 1 or -1, of the datum face along the case.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +20,10 @@ from lineofaction.gearbox.units import UM
 
 
 def helix_crowning(flank: PlainFlank, part: Part) -> Modification:
-    """Return a helix crowning, a parabola on either side of its highest point."""
+    """Return a helix crowning: a parabola on either side of its highest point.
+
+    A symmetric crowning over the full face is one field of a case, any other is one at either face.
+    """
     items = ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face")
     amounts = both_amounts(part, items, "helix_crowning_um", "given", "as at the other face")
     item, meaning = "coordinate_where_helix_crowning_is_specified", "where the amount is stated"
@@ -33,6 +41,7 @@ def helix_crowning(flank: PlainFlank, part: Part) -> Modification:
         sides = zip((True, False), (0.0, flank.width), ends, amounts, strict=True)
         for datum, face, reference, amount in sides:
             name = flank.face_field("helix_crowning", datum=datum)
+            # the parabola through `amount` at `reference`, at the face itself
             fields[f"{name}_um"] = rounded(amount * ((face - highest) / (reference - highest)) ** 2 / UM)
             fields[f"{name}_length_mm"] = rounded(1e3 * abs(face - highest))
     return Modification(
@@ -69,7 +78,7 @@ def _slope_length(flank: PlainFlank, part: Part) -> float:
 
 
 def end_relief(flank: PlainFlank, part: Part) -> Modification:
-    """Return an end relief at one face, datum or non-datum by its type, with the fields of one at both."""
+    """Return the end relief at one face; the type of `part` ends in "datum_face" or "non_datum_face"."""
     side = part.type.removeprefix("end_relief_")
     depth = part.required(f"end_relief_depth_{side}", "end relief")
     length = part.required(f"end_relief_length_{side}", "length of the end relief")
@@ -87,7 +96,10 @@ def end_relief(flank: PlainFlank, part: Part) -> Modification:
 
 
 def profile_twist(flank: PlainFlank, part: Part) -> Modification:
-    """Return a twist: the profile slope at the non-datum face less that at the datum face."""
+    """Return a twist: the profile slope at the non-datum face less that at the datum face.
+
+    It removes a quarter of its amount at two opposite corners of the flank, and adds as much at the others.
+    """
     amount = part.required("profile_twist", "flank_twist_um, a quarter of it")
     ends = ("diameter_where_profile_twist_amount_is_specified", "profile_twist_evaluation_end")
     start, end = flank.roll_range(part, "profile_twist_evaluation_start", ends)

@@ -1,4 +1,8 @@
-"""Torques, drives and load cases of a scene at its operating points."""
+"""Torques, drives and load cases of a scene at its operating points.
+
+A *train* is a set of rotors that stages and couplings join. Torques are about z of the scene; a torque of the
+sign of the speed puts power into the scene. A stage is *cut off* if the scene does not have its mesh.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +32,7 @@ class AppliedTorque:
     rotor: int
     """Rotor that the torque acts on."""
     z: float
-    """Place of the torque along z, m."""
+    """Position at which the torque acts, along z, m."""
     torque: float
     """Torque about z, N m."""
 
@@ -39,8 +43,9 @@ class SceneMotion:
     Attributes
     ----------
     torques : tuple of AppliedTorque
+        All torques from outside of the scene.
     drivers : list of AppliedTorque
-        Torque of the most power into each train; a train that takes in no power has none.
+        The torque of each train that puts the most power into it; a train at rest has none.
     """
 
     def __init__(self, flow: PowerFlow, shafts: SceneShafts, cut: Sequence[GearStage]) -> None:
@@ -99,17 +104,17 @@ class SceneMotion:
         joined = [{layout.rotor(shaft.id) for shaft in stage.shafts} for stage in stages]
         joined += [layout.joined(stage) for stage in stages if layout.carrier(stage) is not None]
         joined += [{layout.rotor(e.inner.id), layout.rotor(e.outer.id)} for e in layout.rotors.couplings]
-        for ends in joined:
-            touched = [train for train in trains if train & ends]
+        for ends in joined:  # merge all trains with a rotor among the ends; ends may be outside the scene
+            merged = [train for train in trains if train & ends]
             trains = [train for train in trains if not train & ends]
-            trains.append(set().union(*touched) if touched else set())
+            trains.append(set().union(*merged) if merged else set())
         return [train for train in trains if train]
 
     def tables(self) -> dict[str, list[dict[str, Any]]]:
         """Return the tables of drives and loads.
 
-        The torque that drives becomes a drive at its speed: what it carries follows from the loads. Shafts
-        that the ground holds are driven at rest.
+        The driving torque of a train becomes a drive at its speed, whose torque follows from the loads. A
+        shaft that is fixed to the ground becomes a drive at rest.
         """
         names = Names()
         drives, loads = [], []
@@ -127,6 +132,7 @@ class SceneMotion:
             speed = self._flow.speed(torque.rotor)
             if torque in self.drivers or speed == 0.0 or abs(torque.torque) <= _REACTION_TORQUE * largest:
                 continue
+            # a load of a scene is positive where it takes power out
             value = rounded(-torque.torque * math.copysign(1.0, speed))
             loads.append(
                 self._shafts.by_rotor[torque.rotor].seat(names.of(torque.part), torque.z)
@@ -159,17 +165,15 @@ class LoadCase:
     direction: Literal["drive", "coast"]
     """"drive" if the loaded flanks are the loaded flanks of the scene, else "coast"."""
     forces: tuple[Mapping[str, Any], ...] = ()
-    """Tables of the scene's forces that differ under it."""
+    """Tables of the scene's forces that have other values in this load case."""
 
     @classmethod
     def of(cls, flow: PowerFlow, leader: AppliedTorque, forces: tuple[Mapping[str, Any], ...]) -> LoadCase:
         """Return the load case of an operating point.
 
-        Torques on what drives the scene are of opposite signs in it and at the operating point where the
-        other flanks carry, in whichever sense the shafts turn.
-
-        `leader` is what drives the scene, `forces` are the tables of those that are others there than in the
-        scene.
+        `leader` is the torque of the scene's first drive. The direction is "coast" where this torque has the
+        opposite sign at the operating point, whichever way the shafts turn. `forces` are the tables of the
+        forces that have other values there.
         """
         torque = flow.loads.get(leader.part.id, leader.torque)
         return cls(

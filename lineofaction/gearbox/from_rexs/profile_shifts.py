@@ -12,6 +12,9 @@ from lineofaction.gearbox.from_rexs.meshing import Meshing
 from lineofaction.gearbox.from_rexs.toothing import SHIFT, ToothingData
 from lineofaction.gearbox.units import MM, as_typed
 
+_ROUNDING = 1e-9
+"""A derived coefficient smaller than this is the rounding of the file's numbers, and 0."""
+
 
 @dataclass(frozen=True)
 class ToothedPair:
@@ -51,7 +54,7 @@ class ToothedPair:
 
     @property
     def shift_sum(self) -> float:
-        """x_1 + x_2 without backlash."""
+        """Sum x_1 + x_2 of the profile shift coefficients of a pair that meshes without backlash."""
         pinion, wheel = self.pinion, self.wheel
         involutes = involute_function(self.working_pressure_angle)
         involutes -= involute_function(pinion.transverse_pressure_angle)
@@ -60,9 +63,10 @@ class ToothedPair:
 
 
 def derived_shifts(pairs: Sequence[ToothedPair]) -> dict[int, float]:
-    """Return the profile shift coefficients by gear, missing ones derived mate by mate.
+    """Return the profile shift coefficients by the id of the gear.
 
-    A gear whose mates have none either stays without. Every pair's working pressure angle must exist.
+    A coefficient that the file leaves out is derived from that of a mate, which may itself be derived. A gear
+    without a mate that has one is left out. Every pair's working pressure angle must exist.
     """
     gears = [gear for pair in pairs for gear in pair.gears]
     shifts = {
@@ -83,7 +87,7 @@ def _derive(pair: ToothedPair, shifts: dict[int, float]) -> None:
     for gear, mate in (pair.gears, pair.gears[::-1]):
         if gear.part.id not in shifts and mate.part.id in shifts:
             shift = pair.shift_sum - shifts[mate.part.id]
-            shifts[gear.part.id] = 0.0 if abs(shift) < 1e-9 else shift
+            shifts[gear.part.id] = 0.0 if abs(shift) < _ROUNDING else shift
             total = "x_1 + x_2 = (z_1 + z_2) (inv alpha_wt - inv alpha_t) / (2 tan alpha_n)"
             gear.part.say(
                 SHIFT, "derived", f"x = {shifts[gear.part.id]:.6g} from {total} with {mate.part.name}"

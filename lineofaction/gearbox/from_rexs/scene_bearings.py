@@ -1,4 +1,9 @@
-"""Supports of the scene's shafts: bearings, and couplings between shafts."""
+"""Supports of the scene's shafts: bearings, and couplings between shafts.
+
+A *table* is a record of a scene file. The *account* of a conversion states the fate of each component of the
+REXS file: taken, derived from other values, or refused. A *rotor* is a set of shafts of the file that turn
+together: a shaft of the scene. A bearing has its axes u, v, w in the file, and x, y, z in the scene.
+"""
 
 from __future__ import annotations
 
@@ -22,14 +27,18 @@ from lineofaction.gearbox.from_rexs.placement import Placement
 from lineofaction.gearbox.from_rexs.scene_shafts import SceneShafts
 
 RIGID_COUPLING, RIGID_TORSION = 1e9, 1e7
-"""Stiffness, N/m and N m/rad, of a coupling that does not yield."""
+"""Stiffness, N/m and N m/rad, of a coupling that counts as rigid."""
+_STIFFNESS_ROWS = np.array([0, 1, 2, 4, 5])
+"""Rows of a bearing's matrix among the displacements along u, v, w and the rotations about u, v, w: all but
+the rotation about u, its axis."""
 _CLEARANCES = ("radial_clearance", "axial_clearance", "operating_axial_bearing_clearance", "preload_distance")
+"""Attributes of a bearing that a linear bushing does not have."""
 
 
 class SceneBearings:
-    """Tables of bearings and couplings as a scene file has them; the account says what is left out and why.
+    """Tables of bearings and couplings as a scene file has them; the account states omissions and reasons.
 
-    `seats`: the bushing or rolling bearing of each bearing on the ground, by its component.
+    `seats` has the name of the bushing or rolling bearing by the id of the file's bearing on the ground.
     """
 
     def __init__(self, layout: Layout, shafts: SceneShafts) -> None:
@@ -74,7 +83,7 @@ class SceneBearings:
             entry.part.say("", "derived" if is_copy else "refused", text)
 
     def _enter_on_ground(self, entry: Connection) -> None:
-        """Enter a bearing by its geometry, or as a bushing for the reason that the account has."""
+        """Enter a bearing on the ground by its geometry, or as a bushing, with the reason in the account."""
         rolling = self._rolling_bearing(entry)
         seat = self._seat(entry, entry.rotor_side)
         if isinstance(rolling, str):
@@ -87,7 +96,7 @@ class SceneBearings:
         self.seats[entry.part.id] = seat["name"]
 
     def _rotor(self, side: Part) -> int | None:
-        """Return the rotor of a side if the scene has it."""
+        """Return the rotor of one side of a bearing or coupling; None if the scene does not have it."""
         rotor = self._layout.rotors.of.get(side.id)
         return rotor if rotor in self._shafts.by_rotor else None
 
@@ -105,6 +114,7 @@ class SceneBearings:
         geometry = BearingGeometry.of(part)
         if isinstance(geometry, str):
             return geometry
+        # 1 if the bearing's axis u points along z of the scene, else -1
         sense = 1 if float(self._layout.rotation(part, entry.rotor_side)[2, 0]) > 0.0 else -1
         located = located_row(part, geometry, sense)
         return located if isinstance(located, str) else located | further_fields(part)
@@ -123,14 +133,15 @@ class SceneBearings:
         return linear | ({"stiffness_matrix": tilt.tolist()} if stiffness.tilt > 0.0 else {})
 
     def _turned(self, part: Part, rotor_side: Part, matrix: FloatArray) -> FloatArray:
-        """Return the stiffness (5, 5) in x, y, z, tilt_x, tilt_y of a matrix along u, v, w of a bearing."""
+        """Return a bearing's stiffness (5, 5) along u, v, w as one in x, y, z, tilt_x, tilt_y."""
         full = np.zeros((6, 6))
-        rows = np.array([0, 1, 2, 4, 5])
-        full[np.ix_(rows, rows)] = matrix
-        both = np.kron(np.eye(2), self._layout.rotation(part, rotor_side))
-        return np.asarray((both @ full @ both.T)[:5, :5])
+        full[np.ix_(_STIFFNESS_ROWS, _STIFFNESS_ROWS)] = matrix
+        # displacements and rotations turn alike: two equal blocks
+        rotation = np.kron(np.eye(2), self._layout.rotation(part, rotor_side))
+        return np.asarray((rotation @ full @ rotation.T)[:5, :5])
 
     def _z(self, part: Part, rotor_side: Part, side: str) -> float:
+        """Return the position of a part along z, m; `side` of it ("inner" or "outer") is on the shaft."""
         if rotor_side.id not in self._layout.shafts:
             placement = Placement.of(part)
             return 0.0 if placement is None else float(self._layout.axes.point(placement.origin)[2])
@@ -177,7 +188,7 @@ def _coupled(torsion: float, matrix: FloatArray) -> Table:
 
 
 def _limited(part: Part, item: str, rigid: float) -> float:
-    """Return a stiffness of a coupling, at most the rigid one; that where the file gives none."""
+    """Return a stiffness of a coupling, at most `rigid`, which also stands where the file gives none."""
     value = part.number(item, "stiffness of the coupling", rigid, f"rigid: {rigid:g} (N, m, rad)")
     if value > rigid:
         part.say(item, "derived", f"{value:.3g} (N, m, rad) means rigid: {rigid:g} here")

@@ -39,6 +39,8 @@ class Inspected:
     gear: str
     loaded: Flank
     cutoff_mm: float | None
+    mean_of_others: bool = False
+    """Whether teeth that were not measured have the mean flank of the others, or the designed one."""
 
     def chart(self, case: Case) -> Chart:
         """Return the chart from the sheet's teeth to their sequence in mesh."""
@@ -55,7 +57,8 @@ def measured_case(
     """
     chart = of.chart(case)
     cutoff = None if of.cutoff_mm is None else of.cutoff_mm * MM
-    gear = measured_gear(read_sheet(text, chart.gear, name, values), chart, name, cutoff)
+    sheet = read_sheet(text, chart.gear, name, values)
+    gear = measured_gear(sheet, chart, name, cutoff, mean_of_others=of.mean_of_others)
     return _with_fields(case, {of.gear: gear.fields}), gear
 
 

@@ -27,7 +27,7 @@ from lineofaction.gearbox.inspection.sheet import Flank
 
 LIMIT_UM = 0.1
 """Largest difference between a printed value and the recomputed one."""
-_HELIX_SIGN: dict[Flank, int] = {"left": 1, "right": -1}
+HELIX_SIGN: dict[Flank, int] = {"left": 1, "right": -1}
 """Sign of f_Hbeta of a lead whose material rises upwards: a right-hand helix is positive (line 165, DIN)."""
 _FIGURES = {"profile": ("fHa", "ffa", "Fa"), "helix": ("fHb", "ffb", "Fb")}
 _SYMBOLS = {"fHa": "f_Halpha", "ffa": "f_falpha", "Fa": "F_alpha", "fHb": "f_Hbeta", "ffb": "f_fbeta"}
@@ -51,8 +51,8 @@ def judged(file: MachineFile, gear: Toothing, printed: Iterable[Printed] = ()) -
 
     Raises `ValueError`: nothing is printed of its profiles, and the tips show that their sign is wrong.
     """
-    results = dict(_results(file, gear))
-    pairs = [(value, results[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in results]
+    computed = dict(results(file, gear))
+    pairs = [(value, computed[value[1:4]]) for value in (*file.printed, *printed) if value[1:4] in computed]
     differences = [
         _difference(value, result) for value, result in pairs if abs(value.value - result) > LIMIT_UM + 1e-9
     ]
@@ -82,11 +82,12 @@ def evaluated(trace: Trace, conventions: Conventions, gear: Toothing) -> tuple[f
     rest = values - mean - slope * (coordinate[inside] - first)
     length, sign = last - first, MATERIAL[trace.flank]
     if trace.kind == "helix":
-        length, sign = coordinate[-1] - coordinate[0], sign * _HELIX_SIGN[trace.flank]
+        length, sign = coordinate[-1] - coordinate[0], sign * HELIX_SIGN[trace.flank]
     return float(sign * slope * length), float(np.ptp(rest)), float(np.ptp(values))
 
 
-def _results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
+def results(file: MachineFile, gear: Toothing) -> Iterator[tuple[Key, float]]:
+    """Yield each result that is recomputed, by its figure, flank and tooth, in um."""
     for trace in file.traces:
         if trace.kind is not None:
             figures = zip(_FIGURES[trace.kind], evaluated(trace, file.conventions, gear), strict=True)

@@ -18,6 +18,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.units import MM, UM
 
 OTHER_FLANK = f"{OMITTED}not the loaded flank"
+_AXES = ("roll_length_mm", "face_position_mm")
 _LISTED = 61
 """Number of points of a trace that is written."""
 
@@ -78,9 +79,12 @@ class MeasuredGear:
         return [f"{why} (points: {count})" for why, count in counts]
 
 
-def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None) -> MeasuredGear:
+def measured_gear(
+    sheet: Sheet, chart: Chart, name: str, cutoff: float | None = None, *, mean_of_others: bool = False
+) -> MeasuredGear:
     """Return the deviations of the loaded flanks of a gear by a sheet; `cutoff` in m as of `split`.
 
+    Teeth that were not measured are as designed or, with `mean_of_others`, the mean of those that were.
     Raises `BadInput`: pitches of some teeth alone or stated twice, a trace that cannot be evaluated.
     """
     account = Counter(sheet.account)
@@ -97,13 +101,15 @@ def measured_gear(sheet: Sheet, chart: Chart, name: str, cutoff: float | None = 
         pitches = _pitches(traces, chart)
         splits = dict(_splits(traces, sheet.intervals, chart.loaded, cutoff))
         surfaces = {tooth: _surface(traces[tooth, "topography"]) for tooth in over_flank}
+        teeth = sorted({tooth for tooth, _ in splits} | over_flank)
+        flanks = [_flank(tooth, splits, surfaces, chart) for tooth in teeth]
+        fields = (
+            _about_mean(flanks) if mean_of_others and flanks else {"tooth_flanks": flanks} if flanks else {}
+        )
     except ValueError as fault:
         raise BadInput.of(FIELD, name, str(fault), REMEDY) from None
-    flanks = [
-        _flank(tooth, splits, surfaces, chart)
-        for tooth in sorted({tooth for tooth, _ in splits} | over_flank)
-    ]
-    fields = {"tooth_flanks": sorted(flanks, key=lambda flank: int(flank["tooth"]))} if flanks else {}
+    if flanks:
+        fields["tooth_flanks"].sort(key=lambda flank: int(flank["tooth"]))
     judgement = sheet.recomputed, sheet.differences, bool(sheet.intervals)
     return MeasuredGear(fields | pitches, dict(account), splits, *judgement)
 
@@ -190,6 +196,29 @@ def _flank(
         if trace is not None:
             (entry[f"{name}_slope_um"],) = _um(np.array([trace.slope / trace.length * length]))
     return entry | {"flank_grid": _grid(coordinates[0], coordinates[1], np.add.outer(rests[0], rests[1]))}
+
+
+def _about_mean(flanks: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the mean of the flanks as that of all teeth, and the flanks of single teeth about it.
+
+    A slope of all teeth removes where that of a tooth is in excess.
+    """
+    slopes = [name for name in flanks[0] if name.endswith("_slope_um")]
+    kinds = {(*flank, str([flank["flank_grid"][axis] for axis in _AXES])) for flank in flanks}
+    if len(kinds) > 1:
+        raise ValueError("traces of the same kinds at the same places on every tooth, for their mean")
+    removed = np.array([flank["flank_grid"]["removed_um"] for flank in flanks])
+    mean = {name: float(np.mean([flank[name] for flank in flanks])) for name in slopes}
+    teeth = [
+        {"tooth": flank["tooth"], **{name: round(flank[name] - mean[name], 5) + 0.0 for name in slopes}}
+        | {"flank_grid": flank["flank_grid"] | {"removed_um": np.round(part, 5).tolist()}}
+        for flank, part in zip(flanks, removed - removed.mean(axis=0), strict=True)
+    ]
+    common = flanks[0]["flank_grid"] | {"removed_um": np.round(removed.mean(axis=0), 5).tolist()}
+    return {name: round(-mean[name], 5) + 0.0 for name in slopes} | {
+        "flank_grid": common,
+        "tooth_flanks": teeth,
+    }
 
 
 def _grid(rolls: FloatArray, faces: FloatArray, excess: FloatArray) -> dict[str, Any]:

@@ -19,12 +19,12 @@ from lineofaction.gearbox.rexs.model import (
 )
 
 MAX_ENTRIES = 300_000
-"""Elements of XML; values, lists and tables of JSON. More numbers fit in base64.
-300 000 elements take 170 MB."""
+"""Most entries of a file: elements of XML, or values, lists and tables of JSON. 300 000 elements take 170 MB
+of memory. A longer list of numbers can be written in base64, where it is one entry."""
 
 
 class Element(ABC):
-    """An element as read. Taking a field removes it; fields that remain are none of REXS and are kept.
+    """An element as read. To take a field removes it; a field that remains is unknown to REXS and is kept.
 
     Every method raises `BadInput` with the place in the file where a field or a part is missing or is of
     another type.
@@ -53,7 +53,7 @@ class Element(ABC):
 
     @abstractmethod
     def parts(self, name: str) -> Sequence[Element]:
-        """Return the elements inside, of a kind and of no other."""
+        """Return the inner elements of the kind `name`; none if there are none."""
 
     @abstractmethod
     def attribute(self) -> Attribute:
@@ -130,7 +130,7 @@ class Written:
 
 def written(model: Model) -> Written:
     """Return a model as an element to write."""
-    known = {
+    fields = {
         "version": model.version,
         "applicationId": model.application,
         "applicationVersion": model.application_version,
@@ -142,34 +142,37 @@ def written(model: Model) -> Written:
         "components": [_component(part) for part in model.components],
         "load_spectra": [_spectrum(spectrum) for spectrum in model.spectra],
     }
-    return Written("model", _present_fields(known, model.extra), groups)
+    return Written("model", _present_fields(fields, model.extra), groups)
 
 
 def _present_fields(fields: Mapping[str, str | int | None], extra: Extra) -> dict[str, str | int]:
     return {name: value for name, value in fields.items() if value is not None} | dict(extra)
 
 
-def _named(
+def _attribute_fields(
     part: Relation | Reference | Component | LoadCase | LoadSpectrum, *names: str
 ) -> dict[str, str | int]:
     return _present_fields({name: getattr(part, name) for name in names}, part.extra)
 
 
 def _relation(relation: Relation) -> Written:
-    refs = [Written("ref", _named(ref, "id", "role", "hint")) for ref in relation.refs]
-    return Written("relation", _named(relation, "id", "type", "order"), {"refs": refs})
+    refs = [Written("ref", _attribute_fields(ref, "id", "role", "hint")) for ref in relation.refs]
+    return Written("relation", _attribute_fields(relation, "id", "type", "order"), {"refs": refs})
 
 
 def _component(component: Component) -> Written:
-    return Written("component", _named(component, "id", "type", "name"), {"attributes": component.attributes})
+    fields = _attribute_fields(component, "id", "type", "name")
+    return Written("component", fields, {"attributes": component.attributes})
 
 
 def _spectrum(spectrum: LoadSpectrum) -> Written:
     cases = [
-        Written("load_case", _named(case, "id"), {"components": list(map(_component, case.components))})
+        Written(
+            "load_case", _attribute_fields(case, "id"), {"components": list(map(_component, case.components))}
+        )
         for case in spectrum.cases
     ]
     groups: dict[str, list[Written]] = {"load_cases": cases}
     if spectrum.accumulation is not None:
         groups["accumulation"] = list(map(_component, spectrum.accumulation))
-    return Written("load_spectrum", _named(spectrum, "id"), groups)
+    return Written("load_spectrum", _attribute_fields(spectrum, "id"), groups)

@@ -1,24 +1,21 @@
-"""Predicted cost of a study before it begins, and the size of a scene whose tables are not computed yet."""
+"""Predicted cost of a study before it begins, in CPU seconds and memory."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from bounds import engineering
 
-if TYPE_CHECKING:
-    pass
-
 _SMALL = 0.02
-"""Share of the whole below which a part is not named."""
+"""Share of the total cost below which a part is not named."""
 LONG = 3600.0
-"""CPU seconds from which on a cost is written in hours too, and with advice."""
+"""CPU seconds above which a cost is also written in hours, and a study adds a remedy to it."""
 
 _PANELS = 6.0
-"""CPU seconds of the panels of a gear case, measured 5 to 60 for cases and 0.3 for a block; the cache keeps
-the panels."""
+"""Predicted CPU seconds of the panels (boundary elements) of one housing without panels in the cache. 5 to 60
+were measured for gear cases, and 0.3 for a block."""
 
 
 class Work(NamedTuple):
@@ -46,14 +43,14 @@ class Work(NamedTuple):
 
 @dataclass(frozen=True)
 class StudyCost:
-    """Predicted cost of a study: its parts in the order of the work, the largest memory if it is known.
-
-    `remedy` says why it is as much, and what to try instead; empty of a cost that can be afforded.
-    """
+    """Predicted cost of a study."""
 
     parts: tuple[Work, ...]
+    """The work, in its order."""
     bytes: float = 0.0
+    """Largest memory at one time; 0: unknown."""
     remedy: str = ""
+    """Reason of a high cost and a cheaper alternative, as sentences; empty for a usual cost."""
 
     @property
     def seconds(self) -> float:
@@ -73,7 +70,7 @@ class StudyCost:
 
     @property
     def _by_name(self) -> Iterator[Work]:
-        """The parts, with parts of one name joined to one with their mean."""
+        """The parts; those of one name are one part, with the mean cost of a piece."""
         for name in dict.fromkeys(part.name for part in self.parts):
             same = [part for part in self.parts if part.name == name]
             count = sum(part.pieces for part in same)
@@ -86,5 +83,5 @@ class StudyCost:
 
 
 def panels_work(housings: int) -> Work:
-    """Return the usual work of the panels of housings, whose meshes are not made before."""
+    """Return the usual work of making the panels of so many housings."""
     return Work("panels", _PANELS, housings)

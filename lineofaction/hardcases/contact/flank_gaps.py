@@ -1,4 +1,7 @@
-"""Gaps larger than any deflection: deep relief, teeth out of their places, noise on the flanks."""
+"""Gaps larger than any deflection: deep relief, teeth out of their places, noise on the flanks.
+
+A scene returns figures, each with its least and largest allowed value. The nominal pair has two equal gears.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +34,21 @@ _NOISE = 2e-6
 
 _SEED = 20260101
 
+_RELIEF = 300e-6
+"""Tip relief in m that no plausible load closes."""
+
+_CENTER_DISTANCE = 80e-3
+"""Center distance of the nominal pair in m."""
+
+_TEETH = 20
+"""Teeth of a nominal gear."""
+
+_TOOTH = 5
+"""The tooth with the pitch deviation."""
+
+_POSITIONS = 48
+"""Positions of the pitch error in one base pitch."""
+
 
 @SCENES.add(
     "gap_beyond_deflection",
@@ -40,11 +58,12 @@ _SEED = 20260101
 )
 def _gap_beyond_deflection() -> Sequence[Measured]:
     """Relieve both tips by 0.3 mm, so that most pairs cannot touch at any load."""
-    relief = FlankModification(tip_relief=300e-6, tip_relief_length=3e-3)
+    relief = FlankModification(tip_relief=_RELIEF, tip_relief_length=3e-3)
     case = posed(nominal_pair(modification=relief), NOMINAL_TORQUE * np.array([0.01, 1.0, 4.0]))
     problem, solution = case.solve(even_positions(200))
     c = problem.candidates
     elastic = float((solution.deflection - solution.no_load[:, None]).max())
+    # an infinite gap is no candidate at all; twice the deflection is out of reach for certain
     far = np.isfinite(c.gap) & (c.gap - solution.no_load[:, None] > 2.0 * elastic)
     without = solve_contact(_with_gap(problem, np.where(far, np.inf, c.gap)), case.plan.load)
     wider = solve_contact(_with_gap(problem, np.where(far, c.gap + 1.0, c.gap)), case.plan.load)
@@ -66,22 +85,25 @@ def _gap_beyond_deflection() -> Sequence[Measured]:
 )
 def _pitch_error_beyond_deflection() -> Sequence[Measured]:
     """Put one tooth 50 um ahead of its place, then all of them."""
-    position = even_positions(48)
+    position = even_positions(_POSITIONS)
     plain = posed(nominal_pair())
-    _, alone = plain.solve(position)
-    teeth = np.zeros(20)
-    teeth[5] = _STEP
-    case = posed(_with_pitch(tuple(teeth)), pitches=20, bodies=plain.contact)
-    problem, solution = case.solve(position, case.plan.load, np.repeat(np.arange(20), 48))
+    _, equal = plain.solve(position)  # all teeth alike
+    teeth = np.zeros(_TEETH)
+    teeth[_TOOTH] = _STEP
+    case = posed(_with_pitch(tuple(teeth)), pitches=_TEETH, bodies=plain.contact)
+    pitch = np.repeat(np.arange(_TEETH), _POSITIONS)
+    problem, solution = case.solve(position, case.plan.load, pitch)
     shift = _STEP * np.cos(plain.pair.pinion.transverse_pressure_angle)
-    every = posed(_with_pitch((_STEP,) * 20), bodies=plain.contact)
-    shifted = every.ste(position) - alone.deflection + shift
-    meeting = np.repeat(np.arange(20), 48)[:, None] - problem.candidates.pair
-    carried = np.tile(alone.force[:, 0] > 0.0, (20, 1))
+    every = posed(_with_pitch((_STEP,) * _TEETH), bodies=plain.contact)
+    shifted = every.ste(position) - equal.deflection + shift
+    # the tooth of each candidate (positions, candidates): pairs count back from the pitch
+    tooth = pitch[:, None] - problem.candidates.pair
+    carried = np.tile(equal.force[:, 0] > 0.0, (_TEETH, 1))
     single = carried.sum(axis=1) == 1
-    ahead = single & np.any(carried & (meeting == 5), axis=1)
-    separate = single & ~np.any(np.isfinite(problem.candidates.gap) & (np.abs(meeting % 20 - 5) <= 1), axis=1)
-    change = solution.deflection[:, 0] - np.tile(alone.deflection[:, 0], 20)
+    ahead = single & np.any(carried & (tooth == _TOOTH), axis=1)
+    beside = np.abs(tooth % _TEETH - _TOOTH) <= 1
+    separate = single & ~np.any(np.isfinite(problem.candidates.gap) & beside, axis=1)
+    change = solution.deflection[:, 0] - np.tile(equal.deflection[:, 0], _TEETH)
     share = solution.force[:, 0].max(axis=1) / solution.force[:, 0].sum(axis=1)
     return (
         *soundness(problem, solution),
@@ -106,13 +128,17 @@ def _noisy_flanks() -> Sequence[Measured]:
     plain = posed(nominal_pair())
     position = even_positions(200)
     smooth = plain.ste(position)
+    # 25 heights; five deviations above 0, because material can only be removed
     first, second = (_with_grid(np.maximum(rng.normal(5.0 * _NOISE, _NOISE, 25), 0.0)) for _ in range(2))
     noisy = posed(
-        GearPair(first, second, 80e-3), NOMINAL_TORQUE * np.geomspace(1e-3, 4.0, 7), bodies=plain.contact
+        GearPair(first, second, _CENTER_DISTANCE),
+        NOMINAL_TORQUE * np.geomspace(1e-3, 4.0, 7),
+        bodies=plain.contact,
     )
     problem, solution = noisy.solve(position)
-    low, high = (sum(side(_heights(gear)) for gear in (first, second)) for side in (np.min, np.max))
-    nominal = posed(GearPair(first, second, 80e-3), bodies=plain.contact).solve(position, plain.plan.load)[1]
+    low, high = (sum(extreme(_heights(gear)) for gear in (first, second)) for extreme in (np.min, np.max))
+    at_nominal_load = posed(GearPair(first, second, _CENTER_DISTANCE), bodies=plain.contact)
+    _, nominal = at_nominal_load.solve(position, plain.plan.load)
     added = nominal.deflection - smooth
     return (
         *soundness(problem, solution),
@@ -132,7 +158,7 @@ def _with_gap(problem: ContactProblem, gap: FloatArray) -> ContactProblem:
 
 def _with_pitch(cumulative: tuple[float, ...]) -> GearPair:
     pinion = nominal_gear(pitch_deviation=PitchDeviation(cumulative))
-    return GearPair(pinion, nominal_gear(), 80e-3)
+    return GearPair(pinion, nominal_gear(), _CENTER_DISTANCE)
 
 
 def _with_grid(heights: FloatArray) -> Gear:
@@ -145,6 +171,6 @@ def _with_grid(heights: FloatArray) -> Gear:
 
 
 def _heights(gear: Gear) -> FloatArray:
-    """Material removed all along the profile."""
+    """Return the material removed at dense points along the profile, m."""
     roll = np.linspace(gear.form_roll_length, gear.tip_roll_length, 20_001)
     return gear.modification.material_removed(gear, roll)

@@ -17,7 +17,7 @@ from lineofaction.gearbox.problems import BadInput
 from lineofaction.report.drawing import palette
 from lineofaction.report.drawing.figure import FloatArray, Table, number
 
-COLORS = (palette.BLUE, palette.VERMILLION)
+COLORS = palette.DESIGNS
 """Colors of the first result and of the second."""
 
 POSITIONS = ("position", "angle_deg")

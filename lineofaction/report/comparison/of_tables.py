@@ -85,7 +85,7 @@ def compare_tables(
 
 
 def _common(tables: Sequence[SteDatabase]) -> list[float]:
-    """Return the torques of the first table that all tables cover, moved into the range by rounding."""
+    """Return the torques of the first table that all tables cover, clipped to the ends of that range."""
     low, high = _limits(tables)
     lowest, highest = low * (1 - _TORQUE_ROUNDING), high * (1 + _TORQUE_ROUNDING)
     torques = [float(torque) for torque in tables[0].torque if lowest <= torque <= highest]

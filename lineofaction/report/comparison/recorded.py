@@ -1,4 +1,8 @@
-"""Comparison of a recording and a run: maps over mesh orders, levels of orders, differences in dB."""
+"""Comparison of a recording and a run: maps over mesh orders, levels of orders, differences in dB.
+
+The *computed* side is the run, the *measured* side the recording. A waterfall has the spectrum of each of B
+blocks along the run-up, over multiples of the mesh frequency.
+"""
 
 from __future__ import annotations
 
@@ -41,6 +45,7 @@ from lineofaction.report.run.view import (
 )
 
 FIELD, TACHO = "measured", "tacho"
+"""Fields of errors: the recording, and the channel of its speed."""
 _QUANTITIES = {
     "bearing_acceleration": ACCELERATION,
     "bearing_force": FORCE,
@@ -49,7 +54,9 @@ _QUANTITIES = {
 }
 """Quantities of sensors by the series of a run that they measure."""
 _DASHES: tuple[Dash, ...] = ("solid", "dash")
+"""Lines of the computed and of the measured side."""
 _ERRORS = {"bearing_force": "bearing_force_orders", "dynamic_transmission_error": "transmission_error_orders"}
+"""Key of the errors by order in the receipt of a run, by the series of the run."""
 _LEAD = (
     "levels over the speeds that both pass, less the noise beside each order; errors are those of the noise, "
     "two standard deviations, and of the steps of the run where it states them; those of sensors and tables "
@@ -59,18 +66,18 @@ _LEAD = (
 
 @dataclass(frozen=True)
 class Measurement:
-    """Facts about a recording that its file leaves open."""
+    """Properties of a recording that its file does not state."""
 
     channel: str = ""
+    """Name of the compared channel; empty: the only channel of the quantity."""
     unit: str = ""
-    """`channel`, `unit`: The compared channel, empty: the only channel of the quantity; the unit of the
-    channel, empty: the unit in the file.
-    """
+    """Unit of the channel; empty: the unit in the file."""
     full_scale: float = 1.0
     """Value, in the unit, of 1 in the file, as the full scale of a WAV file."""
     tacho: str = ""
+    """Name of the channel of the speed, or of the pulses of a tacho; empty: the only one."""
     tacho_unit: str = ""
-    """`tacho`, `tacho_unit`: Channel of the speed or of the pulses of a tacho, and its unit."""
+    """Unit of that channel; empty: the unit in the file."""
     pulses_per_turn: float = 0.0
     """Pulses of a tacho per turn; 0: the channel is a speed."""
     rpm: float = 0.0
@@ -81,20 +88,21 @@ class Measurement:
 
 @dataclass(frozen=True)
 class _Side:
-    """A waterfall of a run or of a recording, in the unit of the signal; `speed` (B,) in rad/s."""
+    """A waterfall of a run or of a recording, in the unit of the signal."""
 
     name: str
     blocks: Waterfall
     speed: np.ndarray
+    """Speed of the driving gear in each block, rad/s. Shape (B,)."""
 
 
 def compare_recording(
     named: tuple[str, RunResult], recording: Recording, view: RunView, measurement: Measurement
 ) -> Page:
-    """Compare a recording with a run, by the same analysis of both.
+    """Compare a recording with a run, both through the same analysis.
 
-    Raises `BadInput`: no channel measures what is shown, units or speeds are missing, the run is shown along
-    no direction, or both pass no common speed.
+    `named` is the run with its name. Raises `BadInput`: no channel measures the quantity of `view`, units or
+    speeds are missing, `view` has no direction for a bearing, or run and recording share no speed.
     """
     name, run = named
     signal = selected_signal(run, view)
@@ -125,7 +133,7 @@ def _channel(recording: Recording, signal: Signal, measurement: Measurement) -> 
 
 
 def _direction(signal: Signal, declared: str) -> str:
-    """Return along which direction a bearing is compared: a sensor measures along one."""
+    """Return the direction in which a bearing is compared, that of the sensor; empty for other parts."""
     if signal.quantity.part != "bearing":
         return ""
     if not (signal.direction or declared):
@@ -141,8 +149,9 @@ def _driver_teeth(run: RunResult, mesh: int) -> int:
 
 def _of_run(run: RunResult, signal: Signal) -> PositionedSignal:
     values = getattr(along_direction(run, signal), signal.quantity.series)[signal.row]
-    position = np.abs(np.unwrap(run.position[signal.mesh], period=1.0))
+    position = np.abs(np.unwrap(run.position[signal.mesh], period=1.0))  # travel, base pitches
     values = signal.quantity.factor * (values[0] if values.ndim > 1 else values)
+    # `accumulate`: the position of a signal must not fall
     return PositionedSignal(run.time, np.maximum.accumulate(position), values, signal.quantity.unit)
 
 
@@ -153,13 +162,13 @@ def _of_channel(
     time, values = channel.measured("channel", quantity, measurement.unit)
     uniform_rate("channel", channel.name, time)
     position = teeth * measurement.ratio * _turns(channel, recording, measurement, time)
-    inside = np.isfinite(position)
+    inside = np.isfinite(position)  # NaN before the first pulse of a tacho and after the last
     values = signal.quantity.factor * measurement.full_scale * values
     return PositionedSignal(time[inside], position[inside], values[inside], signal.quantity.unit)
 
 
 def _turns(channel: Channel, recording: Recording, measurement: Measurement, time: np.ndarray) -> np.ndarray:
-    """Return the turns of the recorded shaft over time; by one speed, by pulses, or by a channel of speed."""
+    """Return the turns of the recorded shaft over time, from a constant speed, pulses or a speed channel."""
     if measurement.rpm:
         if measurement.tacho:
             raise BadInput.of("--rpm", measurement.rpm, "left out beside --tacho", "Keep one of them.")
@@ -178,7 +187,7 @@ def _turns(channel: Channel, recording: Recording, measurement: Measurement, tim
 def _sides(
     computed: tuple[str, PositionedSignal], measured: tuple[str, PositionedSignal], signal: Signal, teeth: int
 ) -> tuple[_Side, _Side]:
-    """Return the waterfalls of both, in blocks of as many base pitches."""
+    """Return the waterfalls of both sides, given as name and signal, with blocks of equal base pitches."""
     highest = max((*signal.orders, 1))
     if not signal.orders:
         highest = max(min(MAPPED, computed[1].highest_order, measured[1].highest_order), 1)
@@ -208,7 +217,9 @@ def _receipt_errors(run: RunResult, signal: Signal, orders: tuple[int, ...]) -> 
         if isinstance(source, dict) and name in source
     ]
     return {
-        order: signal.quantity.factor * math.hypot(*(of[order - 1] for of in errors if len(of) >= order), 0.0)
+        # sources add as the root of the sum of squares; 0.0 for none at all
+        order: signal.quantity.factor
+        * math.hypot(*(source[order - 1] for source in errors if len(source) >= order), 0.0)
         for order in orders
     }
 
@@ -235,7 +246,7 @@ def _levels(sides: tuple[_Side, _Side], signal: Signal, differences: tuple[Level
     orders = sorted(one.order for one in sorted(differences, key=lambda one: -one.levels[0])[:NAMED])
     scale = SCALES[signal.scale]
     top = scale * max(float(side.blocks.amplitude[:, 1:].max()) for side in sides)
-    floor = top * 10.0 ** (-DEPTH / 20.0)
+    floor = top * 10.0 ** (-DEPTH / 20.0)  # least drawn amplitude, `DEPTH` dB below the largest
     lines: list[Line] = []
     for side, dash in zip(sides, _DASHES, strict=True):
         axis, along = speed_axis(side.blocks.time, side.speed)

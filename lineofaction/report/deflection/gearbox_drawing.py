@@ -173,7 +173,7 @@ def _gears(outline: Outline, heights: FloatArray) -> list[Line]:
     for k, (position, width, diameter) in zip(outline.gear_shaft, outline.gear, strict=True):
         z = (outline.origin[k, 2] + position + 0.5 * width * np.array([-1, -1, 1, 1, -1])) / MM
         y = (heights[k] + 0.5 * diameter * np.array([-1, 1, 1, -1, -1])) / MM
-        lines.append(Line("gears", z, y, palette.BLUE, width=1.6))
+        lines.append(Line("gears", z, y, palette.GEARS[0], width=1.6))
     return lines
 
 
@@ -207,7 +207,9 @@ def _end_view(outline: Outline, case: CaseDeflection, scale: float) -> Panel:
             for axis in (0, 1)
         ]
         circle = center[:, None] + 0.5 * diameter * np.array([np.cos(CIRCLE), np.sin(CIRCLE)])
-        lines.append(Line("operating pitch circles", circle[0] / MM, circle[1] / MM, palette.BLUE, width=1.4))
+        lines.append(
+            Line("operating pitch circles", circle[0] / MM, circle[1] / MM, palette.GEARS[0], width=1.4)
+        )
         ends = np.array([center, center + scale * np.array(path)]) / MM
         lines.append(
             Line("path of centers", ends[:, 0], ends[:, 1], palette.VERMILLION, width=2.4, markers=True)

@@ -39,7 +39,7 @@ def _levels_figure(result: HeardOptimization) -> Figure:
 
 def _panel(result: HeardOptimization, load: int) -> Panel:
     line, bars = np.arange(len(result.lines), dtype=float), []
-    designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
+    designs = ("before", result.start, palette.DESIGNS[0]), ("after", result.optimum, palette.DESIGNS[1])
     minimum = min(float(np.min(design.level[load] - design.level_error[load])) for _, design, _ in designs)
     floor = 5.0 * np.floor(minimum / 5.0 - 0.5)  # whole 5 dB, at least 2.5 dB below the lowest bar
     for side, (name, design, color) in zip((-0.5, 0.5), designs, strict=True):

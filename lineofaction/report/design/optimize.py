@@ -88,7 +88,7 @@ def _scattered(result: Optimization) -> str:
 
 def _ripple(result: Optimization) -> Panel:
     lines: list[Line] = []
-    designs = ("before", result.start, palette.VERMILLION), ("after", result.optimum, palette.BLUE)
+    designs = ("before", result.start, palette.DESIGNS[0]), ("after", result.optimum, palette.DESIGNS[1])
     for name, design, color in designs:
         harris = design.harris_map
         if result.nodes.weight.size > 1:

@@ -9,7 +9,7 @@ import numpy as np
 
 from bounds.error_digits import error_text, to_error
 from fe_contact.microgeometry.order_limit import PairsAbove
-from fe_contact.microgeometry.tolerance_study import Quantile, ToleranceStudy
+from fe_contact.microgeometry.tolerance_study import Quantile, ToleranceStudy, WithinClass
 from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.units import UM
@@ -127,6 +127,8 @@ def _amplitude(length: float) -> str:
 def _verdict(study: ToleranceStudy) -> tuple[str, ...]:
     """Return sentences on pairs above the limit, decisive deviations, cures, and the model's error."""
     lines = () if study.above is None else tuple(_above_limit(study, study.above))
+    if study.within_class is not None:
+        lines += (_class_error(study, study.within_class),)
     if study.solved < len(study.peak_to_peak) or study.above is not None:
         misses = ", ".join(
             f"{number(rms / UM, 2)} µm at {torque} N m (at most {number(maximum / UM, 2)})"
@@ -168,6 +170,24 @@ def _above_limit(study: ToleranceStudy, above: PairsAbove) -> list[str]:
         return [*lines, f"No cure: {none}."]
     cured = _percent(above.cured[above.cure])
     return [*lines, f"Cheapest cure: {names[above.cure]} a class finer leaves {cured} above."]
+
+
+def _class_error(study: ToleranceStudy, of_class: WithinClass) -> str:
+    """Return what the class says in place of the measured gears."""
+    torque, mean, measured = (values[-1] for values in (study.torque, of_class.mean, study.mean))
+    text = (
+        f"Within the class in place of the measured gears the mean is {number(mean / UM, 3)} µm at "
+        f"{number(torque, 3)} N m, where it is {number(measured / UM, 3)} µm"
+    )
+    if study.above is None:
+        return f"{text}."
+    k, decides = study.above.load, boundary_name(study.above.names[study.above.decides])
+    other = boundary_name(of_class.decides)
+    return (
+        f"{text}; {_percent(of_class.share[k])} of the pairs would be above the limit, where "
+        f"{_percent(study.above.share[k])} are; {other} would decide, "
+        f"{'as it does' if other == decides else f'where {decides} does'}."
+    )
 
 
 def _limit_tables(study: ToleranceStudy) -> tuple[Table, ...]:

@@ -17,6 +17,10 @@ BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
 )
 CATEGORIES = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
 HARMONICS = (*CATEGORIES, "#59636E", "#8F3F00")
+DESIGNS = BLUE, VERMILLION
+"""Design A, the one before; design B, the one after."""
+GEARS = "#3D4752", "#8D98A5"
+"""Pinion and wheel: two steels, so that blue and orange are designs."""
 INK, MUTED, GRID = "#1B1F24", "#59636E", "#DDE1E6"
 
 # cividis at 0, 0.1 ... 1.0

@@ -1,4 +1,4 @@
-"""Tables of plain facts: settings and records, effects, costs of housings."""
+"""Tables of settings and records, of effects, and of the cost of housings."""
 
 from __future__ import annotations
 
@@ -19,8 +19,12 @@ EffectRow = tuple[str, str, bool, str, str]
 """An effect: its name, its part, whether it is simulated, its influence in words, and the reason."""
 Json = dict[str, Any]
 GIGABYTE = 1e9
+"""Bytes of a GB."""
 HEAD = ("work", "CPU s", "CPU s predicted", "GB", "GB predicted")
-UNKNOWN, MIN = "-", 1e-3
+UNKNOWN = "-"
+"""Cell of a cost that nobody measured or predicted."""
+MIN = 1e-3
+"""Least cost that is written as a number, CPU seconds or GB."""
 
 
 def settings_table(caption: str, content: Mapping[str, Any]) -> Table:
@@ -29,7 +33,7 @@ def settings_table(caption: str, content: Mapping[str, Any]) -> Table:
 
 
 def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
-    """Tabulate a list of records that share their fields; the fields of the first record make the columns."""
+    """Tabulate a list of records; a field of any record is a column, in the order of first appearance."""
     fields = tuple(dict.fromkeys(name for record in content for name in record))
     rows = tuple(tuple(_cell(record.get(name)) for name in fields) for record in content)
     return Table(caption, tuple(_column_title(name) for name in fields), rows)
@@ -96,7 +100,8 @@ def effects_section(text: str, rows: Iterable[EffectRow], folded: tuple[Table, .
 def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
     """Return sections with all effect sections as one: rows in one table, in the order of the sections.
 
-    A decision that several state has one row: its last size that is more than a displacement at rest.
+    A decision that several sections state has one row, with the size of the last section that estimates it
+    by a run or a study, not as a displacement at rest.
     """
     effects = [section for section in sections if section.part is Part.EFFECTS]
     others = tuple(section for section in sections if section.part is not Part.EFFECTS)
@@ -117,7 +122,7 @@ def one_effects_section(sections: Sequence[Section]) -> tuple[Section, ...]:
 def ledger_section(ledger: Mapping[str, Any]) -> Section:
     """Tabulate the simulated and the neglected effects by the effect ledger of a scene."""
     rows, trifles = (
-        [(one.name, one.parts, one.on, one.size, one.reason) for one in effects]
+        [(effect.name, effect.parts, effect.on, effect.size, effect.reason) for effect in effects]
         for effects in scene_effects(ledger)
     )
     small = effect_table(trifles_title({row[0] for row in trifles}), trifles)
@@ -129,7 +134,7 @@ def ledger_section(ledger: Mapping[str, Any]) -> Section:
 
 
 def cost_tables(metadata: Mapping[str, Any]) -> tuple[Table, ...]:
-    """Return the table of predicted and measured cost of the housings; none without any."""
+    """Return the table of predicted and measured cost of the housings; nothing where no cost is known."""
     rows = tuple(
         (
             name,
@@ -151,7 +156,7 @@ def _work(metadata: Mapping[str, Any]) -> Iterator[tuple[str, Json]]:
 
 
 def amount(value: float | None) -> str:
-    """Write CPU seconds or GB; less than a thousandth is nothing that anybody weighs."""
+    """Write CPU seconds or GB; a cost below `MIN` is written as less than that."""
     if value is None:
         return UNKNOWN
     return number(value, 2) if value >= MIN else f"< {MIN:g}"

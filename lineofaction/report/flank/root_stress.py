@@ -17,9 +17,12 @@ from lineofaction.report.drawing.page import Headline, Page, Part, Section
 from lineofaction.report.drawing.tables import settings_table
 from lineofaction.report.presentation import Presentation
 
-_WAY = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
+_POSITION = Axis("position of the tooth's own pair, base pitches (0 = pitch point)")
 _STRESS = Axis("root stress, MPa")
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
+"""Stresses of a passage: the extremes anywhere in either root, and the stress at the places of both peaks."""
+_LABEL = 0.2
+"""Place of the label of the nominal stress along its line, 0 to 1 from the left."""
 
 
 def _root_stress_figure(stresses: Json) -> Figure:
@@ -39,18 +42,19 @@ def _root_stress_figure(stresses: Json) -> Figure:
 
 
 def _passage(gear: str, history: Json) -> Panel:
-    way = {name: np.array(values) for name, values in history["passage"].items()}
-    peak = history["tension"]
+    """Draw the stresses in both roots of a tooth while it passes through the mesh."""
+    series = {name: np.array(values) for name, values in history["passage"].items()}
+    position, peak = series["position"], history["tension"]
     lines = (
-        Line("tension", way["position"], way["tension_mpa"], palette.VERMILLION),
-        Line("at its peak", way["position"], way["at_tension_peak_mpa"], palette.ORANGE, "dash"),
-        Line("compression", way["position"], way["compression_mpa"], palette.BLUE),
-        Line("at its peak", way["position"], way["at_compression_peak_mpa"], palette.SKY, "dash"),
+        Line("tension", position, series["tension_mpa"], palette.VERMILLION),
+        Line("at its peak", position, series["at_tension_peak_mpa"], palette.ORANGE, "dash"),
+        Line("compression", position, series["compression_mpa"], palette.BLUE),
+        Line("at its peak", position, series["at_compression_peak_mpa"], palette.SKY, "dash"),
     )
     references = [Reference(_said(peak), peak["position"])]
     if (nominal := history["iso_6336_3_mpa"]) is not None:
-        references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=0.2))
-    return Panel(_WAY, _STRESS, lines, tuple(references), title=gear)
+        references.append(Reference(f"ISO 6336-3: {number(nominal)} MPa", nominal, "horizontal", at=_LABEL))
+    return Panel(_POSITION, _STRESS, lines, tuple(references), title=gear)
 
 
 def _said(peak: Json) -> str:
@@ -81,6 +85,7 @@ def _passage_table(stresses: Json) -> Table:
         passage = stresses[gear]["passage"]
         columns = (passage[name] for name in _SERIES)
         for position, *values in zip(passage["position"], *columns, strict=True):
+            # all digits of a position: it is the key of a row
             rows.append((gear, repr(position), *(f"{value:.6g}" for value in values)))
     return Table("Passage of one tooth", ("gear", "position", *_SERIES), tuple(rows))
 

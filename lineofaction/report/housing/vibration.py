@@ -1,4 +1,8 @@
-"""A housing's vibration as people see it."""
+"""Page of a housing's vibration: velocities by order, contributions, transfer functions, shapes.
+
+*Points* are those of the housing at which velocities are requested. Axes: S speeds, H orders. An analysis
+shows one speed and one order in detail, `at_speed` and `at_order`.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +48,7 @@ _LARGEST_HEAD = (
     "level, dB re 1 nm/s", "within valid modes",
 )  # fmt: skip
 MAX_ORDERS, MAX_POINTS, MAX_SEATS = 6, 3, 4
+"""Most orders in a panel, panels of points, and seats in a panel of transfer functions."""
 
 
 def _where(analysis: VibrationAnalysis) -> str:
@@ -92,6 +97,7 @@ def _series(result: HousingVibrationResult) -> Table:
         np.tile(vibration.order, vibration.speed.size),
         vibration.frequency.ravel(),
         vibration.valid.ravel().astype(float),
+        # rms of complex peak amplitudes; a column for each point and axis
         *(np.abs(vibration.velocity) / np.sqrt(2.0) / MM_PER_S).reshape(-1, vibration.frequency.size),
     ]
     if analysis.deflection is not None:
@@ -130,8 +136,8 @@ def _velocity_panel(analysis: VibrationAnalysis, name: str, rms: FloatArray) -> 
         order = f"order {order_label(vibration.order[h], analysis.metadata)}"
         lines.append(Line(order, speed, np.where(valid, rms[:, h], np.nan), color, width=1.4))
         if not np.all(valid):
-            onward = ~valid | np.append(~valid[1:], False)
-            beyond = np.where(onward, rms[:, h], np.nan)
+            dashed = ~valid | np.append(~valid[1:], False)  # from the last valid speed on: no gap
+            beyond = np.where(dashed, rms[:, h], np.nan)
             lines.append(Line(f"{order}, beyond", speed, beyond, color, "dash", 1.0))
     return Panel(x, Axis("rms velocity, mm/s"), tuple(lines), title=name)
 
@@ -174,6 +180,7 @@ def _transfer_figure(result: HousingVibrationResult) -> Figure:
 
 
 def _fastest(analysis: VibrationAnalysis) -> tuple[int, int]:
+    """Return the point and the axis of the largest velocity at the shown speed and order."""
     size = np.abs(analysis.vibration.velocity[:, :, analysis.at_speed, analysis.at_order])
     point, axis = np.unravel_index(int(np.argmax(size)), size.shape)
     return int(point), int(axis)
@@ -184,7 +191,7 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
     of_surface = analysis.deflection is not None
     point = 0 if of_surface else _fastest(analysis)[0]
     what = "of the outer hull" if of_surface else f"of {analysis.vibration.point[point]}"
-    both = [
+    contributions = [
         (shares, shares.surface if of_surface else shares.point[point])
         for shares in (analysis.bearings, analysis.modes)
     ]
@@ -194,9 +201,9 @@ def _contribution_figure(result: HousingVibrationResult) -> Figure:
         caption=f"At {_where(analysis)}. Bars of a panel add up to 100 %; below zero: against the sum.",
         alternative=" ".join(
             f"Most comes from {shares.name[int(np.argmax(part))]}, {number(100.0 * float(part.max()), 3)} %."
-            for shares, part in both
+            for shares, part in contributions
         ),
-        content=tuple(share_panel(*part) for part in both),
+        content=tuple(share_panel(shares, part) for shares, part in contributions),
         table=_contribution_table(result),
     )
 
@@ -231,8 +238,8 @@ def _page(result: HousingVibrationResult) -> Page:
     shapes = () if shape is None else (shape,)
     drawn = (first, *shapes, *others, *excitation_figures(result.analysis.metadata))
     page = dynamics_page("Vibration of the housing", drawn, _headlines(result), result.analysis.metadata)
-    rests = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.metadata))
-    accuracy = Section("Accuracy of the velocities", tables=(rests,), part=Part.ACCURACY)
+    forces = Table("Forces that move the housing", ("what", "how"), force_rows(result.analysis.metadata))
+    accuracy = Section("Accuracy of the velocities", tables=(forces,), part=Part.ACCURACY)
     return replace(page, sections=(*page.sections, accuracy))
 
 

@@ -44,12 +44,17 @@ from lineofaction.report.run.sound import RunSignal, sound_of
 from lineofaction.report.run.view import RunView, Signal, along_direction, run_axis, selected_signal
 
 PITCHES = 16
-SHARE, ROWS = 1e-3, 12  # least share of the largest mesh order in the table, and most rows
+"""Base pitches in one block of the figure of the dynamic factor."""
+SHARE = 1e-3
+"""Least amplitude of a sideband in the table, over the largest amplitude of a mesh order."""
+ROWS = 12
+"""Most rows of the table of sidebands."""
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
 }
-"""Name of each source of error, and unit of the error of transmission errors by it."""
+"""Sources of error in the receipt: the title of each, and the unit in which its effect on the transmission
+error is shown. The receipt itself has metres."""
 
 
 def _planet_sharing(run: RunResult) -> Figure | None:
@@ -112,6 +117,7 @@ def _sideband_tables(run: RunResult, signal: Signal) -> tuple[Table, ...]:
         lines = sidebands(run, values, mesh=signal.mesh)
     except InputError:  # fewer than four revolutions
         return ()
+    # number 0 is the mesh order itself; sideband n lies n orders of its source above it
     minimum = SHARE * max(line.amplitude for line in lines if line.number == 0)
     bands = sorted((s for s in lines if s.number and s.amplitude > minimum), key=lambda s: -s.amplitude)
     if not bands:
@@ -155,9 +161,9 @@ def dynamic_results(run: RunResult, view: RunView) -> tuple[Section, ...]:
     Raises `BadInput`: the run does not hold what the view names.
     """
     signal = selected_signal(run, view)
-    projected = along_direction(run, signal)
+    projected_run = along_direction(run, signal)
     over_time = signal_over_time(run, signal)
-    spectrum = (signal_spectrum(projected, signal),) if has_spectrum(run) else ()
+    spectrum = (signal_spectrum(projected_run, signal),) if has_spectrum(run) else ()
     section = Section(signal.heading, "" if spectrum else TOO_SHORT, figures=(over_time, *spectrum))
     if not run.mesh:
         return (section,)
@@ -199,12 +205,12 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
 def _orders(run: RunResult, signal: Signal) -> tuple[Section, ...]:
     if not has_orders(run, signal.mesh):
         return ()
-    projected = along_direction(run, signal)
-    orders, frequencies = order_blocks(projected, signal), frequency_blocks(projected, signal)
-    of_orders = order_map(run, signal, orders)
+    projected_run = along_direction(run, signal)
+    orders, frequencies = order_blocks(projected_run, signal), frequency_blocks(projected_run, signal)
+    drawn_map = order_map(run, signal, orders)
     figures = (
         levels_over_speed(run, signal, orders),
-        replace(of_orders, sound=sound_of((RunSignal(signal.name, run, signal),), of_orders.content[0].x)),
+        replace(drawn_map, sound=sound_of((RunSignal(signal.name, run, signal),), drawn_map.content[0].x)),
         campbell(run, signal, frequencies),
         mode_shares(run, signal, frequencies),
         octave_bands(run, signal, frequencies),
@@ -247,7 +253,7 @@ def _accuracy(run: RunResult) -> Table:
 
 
 def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
-    """Write the error of one source: of transmission errors, and of the worst order of a bearing force."""
+    """Return rows on one source: its error in the transmission error, and in bearing forces at worst."""
     rows = []
     if "rms" in error:
         rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
@@ -258,7 +264,10 @@ def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str
 
 
 def _tolerance(steps: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return rows on the step error and its tolerance, and on the error of traces and levels in chaos."""
+    """Return a row on the tolerance of the steps, and rows on errors of chaotic motion.
+
+    In chaotic motion neighboring trajectories part, so that traces differ; levels then have errors in dB.
+    """
     rows = []
     if "met" in steps:
         met = "met" if steps["met"] else "not met"
@@ -303,7 +312,7 @@ def _filter(sampling: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _peaks(run: RunResult) -> Table:
-    """Tabulate largest magnitude and rms of the forces, between the samples and before the filter."""
+    """Tabulate peak and rms of the forces at all integration steps, before the anti-alias filter."""
     rows = []
     for title, parts in run.receipt.get("peaks", {}).items():
         for name, part in parts.items():

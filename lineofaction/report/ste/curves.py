@@ -27,20 +27,20 @@ from lineofaction.report.drawing.figure import (
     um,
 )
 
-POINTS_PER_PITCH = 240
+POINTS_PER_PITCH = 240  # drawn points of one base pitch, besides the stored ones
 POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
 MAX_PITCHES = 40  # most base pitches of a long period in a plot
 MAX_LINES = 5  # most loads in one panel
-_FEWEST_POINTS = 32
+_FEWEST_POINTS = 32  # drawn points of a base pitch where many pitches share `POINTS_PER_PITCH`
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 _CURVES: WeakKeyDictionary[SteDatabase, dict[int, Curve]] = WeakKeyDictionary()
 """Curves of a database by load index: figures of one page share them."""
-_EQUAL = 1e-6
-MAX_CURVES = 8
+_EQUAL = 1e-6  # means that differ by less than this part of themselves are equal
+MAX_CURVES = 8  # most curves in a Harris map
 _MIN_SPACING = 1.1  # least distance of two curves over the distance at which they would touch
 _MIN = 0.15  # least distance of curves that would not touch anyway, over the largest ripple
 _ROOM = 0.04  # margin above and below the curves over the height
-_TONES = 3
+_TONES = 3  # harmonics of the mesh frequency in the table
 _MIN_ROOM, _MAX_ROOM = 0.08, 0.45
 """Least and largest room above and below the ripple, over the ripple. The error band fills the room up to the
 largest, so that the ripple takes at least half of the height."""
@@ -75,7 +75,10 @@ def position_axis(database: SteDatabase) -> Axis:
 
 
 def drawn_rows(database: SteDatabase) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Return the positions shown, (n,), and the row of the table that holds each; the last closes them."""
+    """Return the positions shown, (n,), and the row of the table at each.
+
+    The last position is the end of the last pitch; of a whole period it has the first row again.
+    """
     pitches, rows = drawn_pitches(database), np.arange(database.position.size)
     if database.period == 1:
         position = np.concatenate([database.position, database.position + 1.0, [2.0]])
@@ -105,7 +108,7 @@ def drawn_ste(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
 
 
 def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[FloatArray, FloatArray]:
-    """Return some pitches, densely, as the table's users see them."""
+    """Return dense positions over some pitches, (n,), and STE interpolated at them, (n, F) in m."""
     stored = database.position[database.position < pitches]
     once = np.union1d(np.arange(pitches * per_pitch) / per_pitch, stored)
     return once, database.ste(once[:, None], database.force, *aligned(database))
@@ -177,7 +180,7 @@ def middle_load(database: SteDatabase) -> int:
 
 
 def headline_load(database: SteDatabase, force: float | None = None) -> int:
-    """Return the index of the stored load nearest to `force` (N); None: of the middle one."""
+    """Return the index of the stored load nearest to `force` (N), or of the middle load for None."""
     return middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
 
 
@@ -197,7 +200,7 @@ def pair_range(database: SteDatabase, load: int) -> tuple[int, int]:
 
 
 def _steps_with_pairs(database: SteDatabase, load: int) -> bool:
-    """Whether the deflection steps down where more pairs carry: of spur pairs, if flanks do not hide it."""
+    """Whether the deflection of a spur pair is smaller where more tooth pairs carry, as drawn."""
     counts = _counts(database, load)
     low, high = counts.min(), counts.max()
     if low == high or database.geometry.base_helix_angle != 0.0:
@@ -215,7 +218,7 @@ def _counts(database: SteDatabase, load: int) -> IntArray:
 
 @dataclass(frozen=True)
 class HarrisScale:
-    """Offset from load to load, and the axis, µm; of maps that are compared one for all."""
+    """Offset from load to load, and the axis, µm. Harris maps that are compared share one scale."""
 
     step: float
     axis: Axis
@@ -226,12 +229,12 @@ class HarrisScale:
 
         `maps` (n, F) are curves less their means in µm, the loads rising.
         """
-        ripple = max(float((np.nanmax(one, axis=0) - np.nanmin(one, axis=0)).max()) for one in maps)
-        above = max(float(np.nanmax(one[:, :-1] - one[:, 1:], initial=0.0)) for one in maps)
-        step = max(_MIN_SPACING * above, _MIN * ripple) or 1.0
-        drawn = np.concatenate([(one + step * np.arange(one.shape[1])).ravel() for one in maps])
+        ripple = max(float((np.nanmax(curves, axis=0) - np.nanmin(curves, axis=0)).max()) for curves in maps)
+        above = max(float(np.nanmax(curves[:, :-1] - curves[:, 1:], initial=0.0)) for curves in maps)
+        step = max(_MIN_SPACING * above, _MIN * ripple) or 1.0  # 1 µm if all curves are flat
+        drawn = np.concatenate([(curves + step * np.arange(curves.shape[1])).ravel() for curves in maps])
         low, high = float(np.nanmin(drawn)), float(np.nanmax(drawn))
-        room = _ROOM * (high - low) or 1.0
+        room = _ROOM * (high - low) or 1.0  # µm, for a single flat curve
         label = f"STE, each load {number(step, 2)} µm higher, µm"
         return cls(step, Axis(label, limits=(low - room, high + room)))
 
@@ -268,6 +271,7 @@ def ste_curves(database: SteDatabase) -> Figure:
 def _ripple(database: SteDatabase, curves: list[Curve]) -> Panel:
     position, ripple = _less_mean(database, curves)
     lines = tuple(
+        # the band is half the error, in µm: on either side of the curve
         replace(line, label=_label(line, curves[load]), band=0.5e6 * curves[load].peak_to_peak.error)
         for line, load in zip(load_lines(database, position, ripple), few_loads(database), strict=True)
     )

@@ -26,7 +26,6 @@ from lineofaction.report.ste.curves import aligned, load_labels
 UNBOUNDED = "no error is stated for it"
 """Why the largest pressure has no error: where it is largest differs between meshes and between slices."""
 _WAY = "way of the pair through mesh, base pitches (0 = at the pitch point in mid-face)"
-_COLORS = palette.BLUE, palette.VERMILLION
 _WIDTH = 0.8  # width of a bar over the distance of teeth
 _ABOVE = 1.15  # top of the axis over the largest bar, with room for the number of its tooth
 _RANKED = 5  # teeth of a gear in the table
@@ -116,7 +115,9 @@ def _bars(loads: ToothLoads) -> Panel:
         references=(Reference("", mean, "horizontal"),),
         title=f"{name.capitalize()}; dashed: mean {number(mean, 4)} N",
         notes=_notes(loads.most_loaded, maximum, force.size),
-        bars=(Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, _COLORS[loads.gear]),),
+        bars=(
+            Bars("force", np.arange(1.0, force.size + 1.0), force, 0.0, _WIDTH, palette.GEARS[loads.gear]),
+        ),
     )
 
 
@@ -198,7 +199,7 @@ def _way(loads: ToothLoads) -> Panel:
     pressure = 1e-6 * loads.pressure_over_phase[:, inside]
     phase, worst = loads.phase[inside], loads.most_pressed[0]
     lines = (
-        Line(f"tooth {worst}", phase, pressure[worst - 1], _COLORS[loads.gear]),
+        Line(f"tooth {worst}", phase, pressure[worst - 1], palette.GEARS[loads.gear]),
         Line("mean of all teeth", phase, np.nanmean(pressure, axis=0), palette.MUTED, "dash"),
     )
     y = Axis("largest Hertz pressure, MPa", limits=(0.0, 1.05 * float(np.nanmax(pressure))))

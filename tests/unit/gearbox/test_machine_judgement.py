@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import loa
+from command_line import loa, printed
 from damaged_text import fates_of_a_hundred
 from fzg_reference import FOLDER, needs_fzg_reference
-from machine_texts import GEAR, Wave, wave_texts
+from machine_texts import GEAR, Wave, heading, wave_texts
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear
@@ -102,6 +102,29 @@ def test_the_verb_judges_by_the_file_beside_and_stops_if_asked(tmp_path: Path) -
     said = "warning (machine_value): f_Halpha of tooth 3 left: 12.4 µm printed, 12.0 µm recomputed"
     assert done.stdout.startswith(said)
     assert "7 of 8 recomputed" in done.stdout
+
+
+@pytest.mark.law
+def test_waves_of_a_pitch_table_are_ghost_orders_of_the_gear(tmp_path: Path) -> None:
+    """Three waves of pitches in a turn, over 6.7 teeth each: the load shares less than a tenth of them."""
+    case, curves, made, table = (tmp_path / name for name in ("case.toml", "a.mka", "made.toml", "ste.nc"))
+    case.write_text(spur_case(torques=[300.0], model="plane_strain"), encoding="utf-8")
+    places = 4.0 * np.cos(2.0 * np.pi * 3.0 * np.arange(1, 21) / 20.0)
+    rows = zip(places - np.roll(places, 1), places - places[-1], strict=True)
+    lines = [
+        *heading(True),
+        "rechte Zahnflanke",
+        *(f"{k} {f:.4f} {p:.4f} .1" for k, (f, p) in enumerate(rows, 1)),
+    ]
+    curves.write_text("\n".join(lines), encoding="utf-8")
+    printed("measured", case, curves, "--gear", "pinion", "--loaded", "right", "-o", made)
+    printed("analyze", made, "-o", table)
+    curve = printed("ste", table)
+    amplitude = dict(zip(curve["order_name"], curve["amplitude_um"], strict=True))
+    full = 4.0 * np.cos(np.radians(20.0))
+    assert 0.9 * full < amplitude["pinion 3"] < full
+    others = [amplitude[f"pinion {turns}"] for turns in (1, 2, 4, 5)]
+    assert max(others) < 0.02 * full
 
 
 def taken_with(curves: bool) -> Callable[[str], object]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,13 +15,15 @@ from damaged_text import fates_of_a_hundred
 from spur_case import spur_case
 
 from fe_contact.geometry import Gear, PitchDeviation, RingGear, ToothFlank, Toothing
+from fe_contact.types import FloatArray
 from lineofaction.gearbox.convert.case import gear_pair
+from lineofaction.gearbox.inspection.as_made import Inspected, measured_case
 from lineofaction.gearbox.inspection.evaluation import gaussian, split
 from lineofaction.gearbox.inspection.measured_gear import Chart, MeasuredGear, inspected, measured_gear
 from lineofaction.gearbox.inspection.reading import read_sheet
 from lineofaction.gearbox.inspection.sheet import Flank, sheet_text
 from lineofaction.gearbox.problems import EXIT_WARNINGS, BadInput
-from lineofaction.gearbox.schemas import Case, read_model
+from lineofaction.gearbox.schemas import Case, read_model, validated
 
 TEETH = 20
 FLANKS = (ToothFlank(3, 4e-6, -2e-6, 2, -3e-6), ToothFlank(20, -1e-6, helix_form=3e-6))
@@ -137,6 +140,46 @@ def test_a_topography_is_taken_whole_and_its_tooth_has_no_other_trace() -> None:
         "left out: the tooth has a topography": 1,
         "left out: not the loaded flank": 1,
     }
+
+
+@pytest.mark.law
+def test_other_teeth_are_the_mean_of_the_measured_ones() -> None:
+    """Figures of the gear and flanks of its teeth together: measured teeth keep their surface."""
+    content = validated(Case, tomllib.loads(spur_case(torques=[100.0])))
+    sheet = sheet_text(inspected(Chart(PINION, "right", True)))
+    cases = [
+        measured_case(content, sheet, "sheet.csv", Inspected("pinion", "right", None, mean))[0]
+        for mean in (False, True)
+    ]
+    alone, about_mean = (gear_pair(case).pinion for case in cases)
+    place = np.meshgrid(
+        np.linspace(*sorted((alone.form_roll_length, alone.tip_roll_length)), 31),
+        np.linspace(-12.5e-3, 12.5e-3, 31),
+        indexing="ij",
+    )
+
+    def surface(gear: Toothing, tooth: int) -> FloatArray:
+        flanks = [flank.excess(gear, *place) for flank in gear.tooth_flanks if flank.tooth == tooth]
+        return np.asarray(sum(flanks, -gear.modification.removed(gear, *place)))
+
+    measured = [surface(alone, flank.tooth) for flank in FLANKS]
+    for flank, excess in zip(FLANKS, measured, strict=True):
+        assert surface(about_mean, flank.tooth) == pytest.approx(excess, abs=2e-8)
+    assert surface(about_mean, 7) == pytest.approx(0.5 * (measured[0] + measured[1]), abs=2e-8)
+    assert np.abs(measured[0] - measured[1]).max() > 1e-6
+    assert surface(alone, 7) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_mean_needs_traces_of_the_same_kinds() -> None:
+    rows = [f"{tooth},right,{kind}" for tooth, kind in ((1, "profile"), (2, "profile"), (2, "helix"))]
+    places = {
+        "profile": [f"{4 + 0.1 * k:.3f}," for k in range(100)],
+        "helix": [f",{k / 10}" for k in range(-99, 100)],
+    }
+    text = [f"{row},{place},{k % 3}" for row in rows for k, place in enumerate(places[row.split(",")[2]])]
+    sheet = read_sheet("\n".join((HEAD, *text)), PINION, "sheet.csv")
+    with pytest.raises(BadInput, match="of the same kinds at the same places"):
+        measured_gear(sheet, Chart(PINION, "right", True), "sheet.csv", mean_of_others=True)
 
 
 PROFILE = [f"1,right,profile,{4 + 0.1 * k:.3f},,{k % 3}" for k in range(100)]

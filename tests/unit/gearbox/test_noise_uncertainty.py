@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from housing_solid import housed_scene, write_block
 
-from dynamics.acoustics import EquivalentRadiatedPower
+from dynamics.acoustics import EquivalentRadiatedPower, sound_power_level
 from dynamics.noise import (
     GUESSES,
     DesignFigure,
@@ -149,6 +149,20 @@ def test_bands_go_to_json(subject: TabledScene, model: SoundModel) -> None:
         assert level["low_db_a"] <= level["level_db_a"] <= level["high_db_a"]
         assert set(level["above_db"]) >= {"housing_damping", "jointly", "mode_number"}
         assert "mount_stiffness" not in level["above_db"]
+
+
+def test_an_order_that_varying_stiffness_alone_excites_has_the_widest_band(model: SoundModel) -> None:
+    """The ranges were run with the mean stiffness, of which a table can lack an order."""
+    band = sound_band(model, SPEED, 2, {}, cases=1)
+    order, power = forced_power(model, SPEED, 3)
+    about = band.about(order, power)
+    assert about.order.tolist() == order.tolist() == [1.0, 2.0, 3.0]
+    assert [level.width for level in about.largest] == pytest.approx(
+        [*(level.width for level in band.largest), max(level.width for level in band.largest)]
+    )
+    levels = sound_power_level(power.weighted_power.max(axis=1))
+    assert [level.nominal for level in about.largest] == pytest.approx(levels.tolist())
+    assert about.total[0].nominal == pytest.approx(sound_power_level(power.total_weighted_power)[0])
 
 
 def test_a_stated_and_a_measured_damping_narrow_its_range(subject: TabledScene) -> None:

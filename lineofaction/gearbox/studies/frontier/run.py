@@ -1,4 +1,8 @@
-"""Accuracy study of a case or a scene."""
+"""Accuracy study of a case or a scene: the same subject at several fidelities, by cost and error.
+
+A *fidelity* is a level of modeling. Inputs call the requested fidelities "rungs". *Full contact* is the
+reference by finite elements in contact, which only cases have.
+"""
 
 from __future__ import annotations
 
@@ -27,6 +31,7 @@ from lineofaction.gearbox.studies.run_cost import runs_cost
 from lineofaction.gearbox.units import in_um
 
 MIN = 2
+"""Least number of fidelities of a study: an error needs two to compare."""
 
 
 class _FrontierStudy(
@@ -38,9 +43,9 @@ class _FrontierStudy(
     file = record_file(("accuracy study of a case", Frontier), ("accuracy study of a scene", SceneFrontier))
 
     def check(self, subject: CheckedCase | SceneInput, inputs: Inputs) -> None:
-        """Refuse a case that cannot be, a fidelity that there is not, and full contact of a scene."""
+        """Refuse an impossible case, an unknown fidelity, and full contact of a scene."""
         if isinstance(subject, CheckedCase):
-            _ = subject.request(_table, inputs)
+            _ = subject.request(_table, inputs)  # raises for an impossible case
         else:
             for name in ("full_contact", "up_to"):
                 if (value := getattr(inputs, name)) != Inputs.model_fields[name].default:
@@ -54,7 +59,7 @@ class _FrontierStudy(
     def predicted(
         self, subject: CheckedCase | SceneInput, inputs: Inputs, cache: Path | None
     ) -> StudyCost | None:
-        """Return the cost of the valid fidelities; of a scene's runs by the steps of their tolerances."""
+        """Return the cost of the requested fidelities; a scene's follows from the steps of each tolerance."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         if isinstance(subject, SceneInput):
             return runs_cost(subject, lambda scene: runs_of_frontier(scene, names), "minimal")
@@ -65,7 +70,7 @@ class _FrontierStudy(
     def compute(
         self, subject: CheckedCase | TabledScene, inputs: Inputs, means: Means
     ) -> Frontier | SceneFrontier:
-        """Study a case, over all pitches that differ and with the whole receipt, or a scene."""
+        """Study a scene, or a case over all base pitches that differ and with a full receipt."""
         names = _requested(inputs, of_scene=not isinstance(subject, CheckedCase))
         report, full_contact = means.report, inputs.full_contact
         with boundary_errors():

@@ -98,8 +98,8 @@ def uncertainty(subject: TabledScene, sound: SceneSound, inputs: Inputs, means: 
     with boundary_errors():
         if inputs.band:
             spans = spans_of(inputs.model_copy(update={"housing_damping": damping.factors}))
-            power, error = sound.power.orders, sound.error
-            band = band_about(model, speed, inputs.orders, spans, power, error, means.report)
+            order, power, error = sound.power.order, sound.power.orders, sound.error
+            band = band_about(model, speed, inputs.orders, spans, order, power, error, means.report)
         if inputs.sensitivities:
             sensitivities, omitted = _sensitivities_of(subject, model, speed, inputs.orders, means)
     seconds = cpu_seconds() - began if inputs.band or inputs.sensitivities else None

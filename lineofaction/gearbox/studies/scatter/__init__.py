@@ -85,6 +85,14 @@ class Inputs(ToleranceInputs):
         "64 at most, held against the others",
         examples=[300],
     )
+    population: Row[Drawn] = Field(
+        default=(),
+        max_length=64,
+        description="Measured gears in place of the tolerances of the class: GEAR.FIGURE=MEAN/DEVIATION, in "
+        "the unit of the figure, and GEAR.FIGURE*GEAR.FIGURE=CORRELATION (loa measured of a folder); helices "
+        "deviate in no plane model",
+        examples=[["wheel.profile_slope_um=-11.5/3.9", "wheel.helix_slope_um=2.1/0.2"]],
+    )
     limit: str | None = Field(
         default=None,
         min_length=1,
@@ -146,6 +154,14 @@ class ScatterFigures(Figures):
         cured: list[float]
         """Share at that torque with the tolerance of one deviation a class finer, by that deviation."""
 
+    class ClassFigures(Part):
+        """Pairs within the class by torque, where those of the study are of measured gears."""
+
+        mean_um: list[float]
+        share: list[float]
+        decides: str
+        """`share`, `decides`: Share of the pairs above the limit, and the deviation that decides there."""
+
     torque_n_m: list[float]
     samples: Annotated[int, Source(lambda study: len(study.peak_to_peak))]
     nominal_um: list[float]
@@ -171,6 +187,8 @@ class ScatterFigures(Figures):
     """
     above: AboveFigures | None
     """Pairs above the limit; None if the inputs have no limit."""
+    within_class: ClassFigures | None
+    """Pairs within the class; None if no gear is measured."""
     deviation_um: list[list[float]]
     peak_to_peak_um: list[list[float]]
     first_order_um: list[list[float]]

@@ -13,19 +13,27 @@ from fe_contact.analysis.run_plan import predicted_designs
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.drawn_teeth import ToothTolerances, iso1328_tooth_tolerances
+from fe_contact.microgeometry.measured_tolerances import measured_tolerances
 from fe_contact.microgeometry.order_limit import OrderLimit
-from fe_contact.microgeometry.tolerance_study import Sampling, ToleranceRequest, ToleranceStudy, sampled
+from fe_contact.microgeometry.tolerance_study import (
+    Sampling,
+    ToleranceRequest,
+    ToleranceStudy,
+    WithinClass,
+    sampled,
+)
 from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
-from fe_contact.microgeometry.variables import GEARS
+from fe_contact.microgeometry.variables import ACROSS_FACE, GEARS, figure
 from lineofaction.gearbox.convert.boundary_errors import boundary_errors
 from lineofaction.gearbox.convert.boundary_names import boundary_name
 from lineofaction.gearbox.convert.case import PLANE
 from lineofaction.gearbox.convert.checked_case import CheckedCase
 from lineofaction.gearbox.problems import BadInput
 from lineofaction.gearbox.schemas.declared import figures
+from lineofaction.gearbox.schemas.model import Row
 from lineofaction.gearbox.studies.computation import CaseStudy, Means, record_file
 from lineofaction.gearbox.studies.cost import StudyCost, Work
-from lineofaction.gearbox.studies.scatter import Inputs, ScatterFigures, ToleranceInputs
+from lineofaction.gearbox.studies.scatter import Drawn, Inputs, ScatterFigures, ToleranceInputs
 from lineofaction.gearbox.units import UM, factor, in_um
 
 _TANGENT = 0.4
@@ -52,6 +60,7 @@ _TOLERATED = {
 _ORDER = re.compile(r"(?:mesh )?(\d{1,6})?\s*(?:([+-])?\s*\b(pinion|wheel)\b\s*(\d{1,6})?)?")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 _UNITS = {"um": UM, "µm": UM, "μm": UM, "nm": 1e-3 * UM}
+_MEASURED = "For example wheel.profile_slope_um=-11.5/3.9."
 _LIMITS = "For example 1=0.5um, 2=-12dB, 1-pinion=80nm, pinion 3=0.2um."
 
 
@@ -75,7 +84,8 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
             request = case.request(scatter_request, inputs)
             predicted = predicted_designs(request.checked, cache)
         sampling = request.sampling
-        solved = sampling.solved + _TANGENT * sampling.tangents
+        # measured pairs are compared to pairs of the class
+        solved = (sampling.solved + _TANGENT * sampling.tangents) * (2 if inputs.population else 1)
         work, loads = predicted.work, len(request.torques)
         points = sampling.positions * loads * sampling.tangents * len(request.tolerances.widths)
         parts = [
@@ -94,7 +104,12 @@ class _ScatterStudy(CaseStudy[Inputs, ScatterFigures, ToleranceStudy]):
         """Sample the pairs of a case; in a plane model helix slopes do not deviate."""
         with boundary_errors():
             run = means.analysis
-            return sampled(case.request(scatter_request, inputs), run)
+            study = sampled(case.request(scatter_request, inputs), run)
+            if not inputs.population:
+                return study
+            of_class = inputs.model_copy(update={"population": ()})
+            within_class = WithinClass.of(sampled(case.request(scatter_request, of_class), run))
+            return replace(study, within_class=within_class)
 
     def _derived(self, study: ToleranceStudy) -> Json:
         widths = study.request["tolerances"]
@@ -115,7 +130,47 @@ def scatter_request(checked: CheckedCase, inputs: Inputs) -> ToleranceRequest:
     sampling = replace(request.sampling, exact=inputs.exact)
     limit = None if inputs.limit is None else order_limit(inputs.limit)
     teeth = None if limit is None or not limit.gear else _teeth(checked, inputs, limit.gear)
-    return replace(request, sampling=sampling, limit=limit, teeth=teeth)
+    request = replace(request, sampling=sampling, limit=limit, teeth=teeth)
+    return _measured(request, checked, inputs.population) if inputs.population else request
+
+
+def _measured(request: ToleranceRequest, checked: CheckedCase, rows: Row[Drawn]) -> ToleranceRequest:
+    """Return the request with figures of measured gears; in the plane helices do not deviate."""
+    mean: dict[str, float] = {}
+    deviation: dict[str, float] = {}
+    correlation: dict[tuple[str, str], float] = {}
+    for text in rows:
+        names, values = _population_row(text)
+        if checked.case.accuracy.model in PLANE and any(
+            name.partition(".")[2] in ACROSS_FACE for name in names
+        ):
+            continue
+        if len(names) == 2:
+            correlation[names[0], names[1]] = values[0]
+        else:
+            (name,) = names
+            mean[name], deviation[name] = values[0] - figure(request.pair, name), values[1]
+    return replace(request, tolerances=measured_tolerances(request.tolerances, mean, deviation, correlation))
+
+
+def _population_row(text: str) -> tuple[list[str], list[float]]:
+    """Return figure, mean and deviation in m that a row says, or two figures and their correlation."""
+    left, _, right = text.partition("=")
+    names, values = [name.strip() for name in left.split("*")], [value.strip() for value in right.split("/")]
+    if unknown := [name for name in names if name not in _TOLERATED]:
+        raise _unknown_figure("population", text, unknown[0], _MEASURED)
+    numbers = all(_NUMBER.fullmatch(value) for value in values)
+    if (
+        not numbers
+        or (len(names), len(values)) not in ((1, 2), (2, 1))
+        or (len(values) == 2 and values[1][0] == "-")
+    ):
+        bound = (
+            "GEAR.FIGURE=MEAN/DEVIATION, a deviation of 0 or above, or GEAR.FIGURE*GEAR.FIGURE=CORRELATION"
+        )
+        raise BadInput.of("population", text, bound, _MEASURED)
+    unit = factor(names[0]) if len(names) == 1 else 1.0
+    return [_TOLERATED[name] for name in names], [float(value) * unit for value in values]
 
 
 def _teeth(checked: CheckedCase, inputs: Inputs, gear: str) -> ToothTolerances:
@@ -157,13 +212,17 @@ def _drawing_tolerance(text: str) -> tuple[str, float]:
     """Return name and tolerance in m of a flank's figure from ``GEAR.FIGURE=VALUE`` of a drawing."""
     name, _, value = (part.strip() for part in text.partition("="))
     if name not in _TOLERATED:
-        close = difflib.get_close_matches(name[:64], _TOLERATED, n=3, cutoff=0.5)
-        remedy = f"Did you mean {' or '.join(close)}?" if close else "For example pinion.profile_slope_um=4."
-        raise BadInput.of("drawing", text, "pinion or wheel, a dot, and a figure of the flanks", remedy)
+        raise _unknown_figure("drawing", text, name, "For example pinion.profile_slope_um=4.")
     if not _NUMBER.fullmatch(value) or float(value) <= 0.0:
         bound = f"{name}= and a tolerance above 0 in the unit of the name"
         raise BadInput.of("drawing", text, bound, f"For example {name}=4.")
     return _TOLERATED[name], float(value) * factor(name)
+
+
+def _unknown_figure(field: str, text: str, name: str, example: str) -> BadInput:
+    close = difflib.get_close_matches(name[:64], _TOLERATED, n=3, cutoff=0.5)
+    remedy = f"Did you mean {' or '.join(close)}?" if close else example
+    return BadInput.of(field, text, "pinion or wheel, a dot, and a figure of the flanks", remedy)
 
 
 def order_limit(text: str) -> OrderLimit:

@@ -162,6 +162,12 @@ def test_with_the_levels_of_the_estimate_too(hertz: float) -> None:
     assert abs(found - whole) < 0.012 * abs(whole) < 0.2 * abs(whole - plain)
 
 
+def test_a_run_of_one_sample_is_refused() -> None:
+    body = housing()
+    with pytest.raises(InputError, match="time = 1: must be at least two times"):
+        pressure_signal(body, np.zeros(1), np.zeros((1, body.motions)), AWAY)
+
+
 def test_forces_superpose() -> None:
     body, time = housing(), np.arange(9000) / RATE
     first, second = np.random.default_rng(6).normal(size=(2, time.size, body.motions))

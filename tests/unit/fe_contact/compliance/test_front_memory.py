@@ -58,6 +58,24 @@ def test_all_factors_lie_in_one_piece_of_the_named_size() -> None:
     assert all(part.factor.base is owner and part.coupling.base is owner for part in condensation.factors)
 
 
+def test_factors_take_the_memory_of_those_that_are_gone_and_of_no_others() -> None:
+    tree, freedoms, stiffness = sheet()
+    alone = condense(tree, freedoms, stiffness)[1].expand(np.eye(len(KEPT)))
+    with front_memory.shared_factors():
+        first = condense(tree, freedoms, stiffness)[1]
+        address = first.factors[-1].factor.__array_interface__["data"]
+        second = condense(tree, freedoms, stiffness)[1]  # while the first ones are in use
+        assert second.factors[-1].factor.__array_interface__["data"] != address
+        address = second.factors[-1].factor.__array_interface__["data"]
+        first_field, second_field = (made.expand(np.eye(len(KEPT))) for made in (first, second))
+        del first, second
+        third = condense(tree, freedoms, stiffness)[1]
+        assert third.factors[-1].factor.__array_interface__["data"] == address
+        third_field = third.expand(np.eye(len(KEPT)))
+    assert all(np.array_equal(field, alone) for field in (first_field, second_field, third_field))
+    assert condense(tree, freedoms, stiffness)[1].factors[-1].factor.__array_interface__["data"] != address
+
+
 def test_what_memory_held_before_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     tree, freedoms, stiffness = sheet()
     matrix, condensation = condense(tree, freedoms, stiffness)

@@ -1,0 +1,1 @@
+"""Computations of validation cases that no single function or verb answers."""
