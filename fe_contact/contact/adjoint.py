@@ -1,4 +1,10 @@
-"""Derivatives of transmission error and load arm from the solved contact, by its adjoint."""
+"""Derivatives of transmission error and load arm from the solved contact, by its adjoint.
+
+The load is n'F, the share n of every candidate in the equilibrium (`torque_share`) times its normal force F.
+The derivatives are by gaps g that take away normal approach: m d - g is the approach at deflection d, with m
+the `motion_arm`. S is the symmetric stiffness of the contact at a solution: dF = S (m dd - dg). Shapes: P
+positions, L loads, m candidates, R or A rows of gaps.
+"""
 
 from __future__ import annotations
 
@@ -29,10 +35,10 @@ from host.loops import inner, njit
 
 @dataclass(frozen=True)
 class _Adjoint:
-    """Influence of m candidates on STE and load arm at P positions and L loads, and their strips."""
+    """Influences of m candidates on STE and load arm at P positions and L loads, and the strips."""
 
     weight: FloatArray
-    """dSTE per normal approach taken away at each candidate; zero where it carries no load, NaN where the
+    """dSTE per normal approach taken away at each candidate, 1; zero where it does not carry, NaN where the
     contact is not solved. Their sum over the candidates, times `Candidates.motion_arm`, is 1. Shape (P, L,
     m).
     """
@@ -41,11 +47,11 @@ class _Adjoint:
     times `Candidates.motion_arm`, is 0. Shape (P, L, m).
     """
     added_arm: FloatArray
-    """Arm of a small further load, m. Shape (P, L)."""
+    """Arm of the increment by which the load grows, m. Shape (P, L)."""
     middle: FloatArray
     half: FloatArray
-    """`middle`, `half`: Distance of each strip's middle from the touching point, towards tip 1, and half its
-    length, m. Shape (P, L, m) each.
+    """`middle`, `half`: Distance of the middle of each contact strip from the touching point, > 0 towards tip
+    1, and half the strip's length, m. Shape (P, L, m) each.
     """
 
 
@@ -56,62 +62,64 @@ def load_arm(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolut
 
 
 def _shares(pair: ParallelAxes, c: Candidates) -> FloatArray:
-    """Return the shares of the load per unit force, and these shares times the arms in m, (2, P, m)."""
+    """Return the shares of the load per unit force, and the shares times the arms in m, (2, P, m)."""
     return c.torque_share * np.stack([np.ones(c.gap.shape), pair.tilt_arm(c.touch.roll_1, c.face_position)])
 
 
 def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution) -> _Adjoint:
-    """Return the weights of all candidates, and the strips, of a solved problem.
+    """Find the weights of all candidates, and the strips, of a solved problem.
 
-    Let S be the decrease of the forces as contacts are moved apart at one deflection, a symmetric matrix, n
-    the shares of the load, m the normal approach per deflection and z the arms. Then dF = S (m dSTE - dg)
-    where gaps grow by dg, and n'dF = 0. The weights of STE are S n/(n'S m), those of the arm
-    (b S n - S (n z))/load, where b is the arm of a small further load.
+    At constant load n'dF = 0, so from dF = S (m dSTE - dg) the weights of the STE are S n/(n'S m). With the
+    arms z, those of the load arm are (b S n - S (n z))/load, where b = n z'S m/(n'S m) is `added_arm`.
     """
     c = problem.candidates
-    decrease, (middle, half) = (np.zeros((2, *solution.force.shape)) for _ in range(2))
-    weigh(point_problems(problem), solution.force, _shares(pair, c), decrease, middle, half)
-    decrease[:, solution.status != Status.CONVERGED] = np.nan
-    stiffness, moment = np.einsum("rplm,pm->rpl", decrease, c.motion_arm)
-    weight, added_arm = decrease[0] / stiffness[..., None], moment / stiffness
-    arm_weight = (added_arm[..., None] * decrease[0] - decrease[1]) / solution.load[:, None]
+    # S n and S (n z); then the strips
+    pushed, (middle, half) = (np.zeros((2, *solution.force.shape)) for _ in range(2))
+    weigh(point_problems(problem), solution.force, _shares(pair, c), pushed, middle, half)
+    pushed[:, solution.status != Status.CONVERGED] = np.nan
+    stiffness, of_arm = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
+    weight, added_arm = pushed[0] / stiffness[..., None], of_arm / stiffness
+    arm_weight = (added_arm[..., None] * pushed[0] - pushed[1]) / solution.load[:, None]
     return _Adjoint(weight, arm_weight, added_arm, middle, half)
 
 
 @njit(cache=True, error_model="numpy")
 def weigh(
-    problems: PointProblems,
+    every: PointProblems,
     force: FloatArray,
     shares: FloatArray,
-    decrease: FloatArray,
+    pushed: FloatArray,
     middle: FloatArray,
     half: FloatArray,
 ) -> None:
-    """Fill `decrease` (R, P, L, m) with S times rows of `shares` (R, P, m), and the strips; see `adjoint`."""
-    count = problems.bodies.shape[0]
+    """Fill in `pushed` (R, P, L, m), S times the rows of shares (R, P, m), and the strips (P, L, m).
+
+    Positions with one row of `every.bodies` follow each other, so that its arrays are prepared once.
+    """
+    count = every.bodies.shape[0]
     for row in range(count):
-        bodies = row_bodies(problems, row)
+        bodies = row_bodies(every, row)
         for p in range(row, force.shape[0], count):
-            problem, touching = problem_on(problems, bodies, p)
+            problem, touching = problem_on(every, bodies, p)
             rows = np.ascontiguousarray(shares[:, p][:, touching])
             for k in range(force.shape[1]):
-                products = _force_decrease(problem, force[p, k][touching], rows)
+                parts = _pushed(problem, force[p, k][touching], rows)
                 for q in range(touching.size):
-                    candidate, carried = touching[q], force[p, k, touching[q]]
-                    decrease[:, p, k, candidate] = products[:, q]
+                    at, carried = touching[q], force[p, k, touching[q]]
+                    pushed[:, p, k, at] = parts[:, q]
                     if carried > 0.0:
-                        middle[p, k, candidate], half[p, k, candidate] = carrying_strip(
-                            problem.law, q, carried
-                        )
+                        middle[p, k, at], half[p, k, at] = carrying_strip(problem.law, q, carried)
 
 
 @inner(error_model="numpy")
-def _force_decrease(problem: PointProblem, force: FloatArray, rows: FloatArray) -> FloatArray:
-    """Return the decrease of the forces as contacts are moved apart by rows (R, m), at one deflection.
+def _pushed(problem: PointProblem, force: FloatArray, rows: FloatArray) -> FloatArray:
+    """Return S times rows (R, m): the fall of the forces as rows move contacts apart, at one deflection.
 
-    It is S = D (1 - N K (1 + N'DN K)^-1 N'D) times the rows, at the forces of a solution.
+    S = D (1 - N K (1 + N'DN K)^-1 N'D): D the diagonal of the local law's stiffnesses at the solution, N the
+    curves by which forces act on the bodies, K the compliance of the bodies between the curves.
     """
     state = pressed_state(problem, force)
+    # exact stiffnesses at the solution's forces in place of those of Newton's last step
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, q, force[q])[1]
@@ -135,39 +143,41 @@ def _force_decrease(problem: PointProblem, force: FloatArray, rows: FloatArray) 
 
 
 def force_changes(problem: ContactProblem, solution: ContactSolution, opened: FloatArray) -> FloatArray:
-    """Return the changes of the forces as contacts are moved apart, at the same load.
+    """Return how the forces change as contacts are moved apart, at the same load.
 
     Parameters
     ----------
+    problem, solution
     opened : ndarray, shape (A, P, L, m)
-        Normal approach taken away from each candidate by A changes, m. Only candidates that carry count.
+        Normal approach taken away from each candidate by A changes, m; only candidates that carry count.
 
     Returns
     -------
     ndarray, shape (A, P, L, m)
-        Changes of the forces, N.
+        N.
     """
     changes = np.zeros(opened.shape)
-    _fill_changes(point_problems(problem), solution.force, opened, changes)
+    _respond(point_problems(problem), solution.force, opened, changes)
     return changes
 
 
 @njit(cache=True, error_model="numpy")
-def _fill_changes(
-    problems: PointProblems, force: FloatArray, opened: FloatArray, changes: FloatArray
-) -> None:
-    """Fill in the changes of the forces at all positions and loads: dF = S (m dSTE - dg), n'dF = 0."""
-    count = problems.bodies.shape[0]
+def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, changes: FloatArray) -> None:
+    """Fill in the changes of the forces of all positions and loads: dF = S (m dd - dg), n'dF = 0.
+
+    `lag` is dd over `opened`, the change of the deflection at constant load.
+    """
+    count = every.bodies.shape[0]
     for row in range(count):
-        bodies = row_bodies(problems, row)
+        bodies = row_bodies(every, row)
         for p in range(row, force.shape[0], count):
-            problem, touching = problem_on(problems, bodies, p)
+            problem, touching = problem_on(every, bodies, p)
             rows = np.empty((len(opened) + 1, touching.size))
             rows[0] = problem.motion_arm
             for k in range(force.shape[1]):
                 rows[1:] = opened[:, p, k][:, touching]
-                products = _force_decrease(problem, force[p, k][touching], rows)
-                stiffness = dot(problem.torque_arm, products[0], touching.size)
+                parts = _pushed(problem, force[p, k][touching], rows)
+                stiff = dot(problem.torque_arm, parts[0], touching.size)
                 for a in range(len(opened)):
-                    lag = dot(problem.torque_arm, products[a + 1], touching.size) / stiffness
-                    changes[a, p, k][touching] = lag * products[0] - products[a + 1]
+                    lag = dot(problem.torque_arm, parts[a + 1], touching.size) / stiff
+                    changes[a, p, k][touching] = lag * parts[0] - parts[a + 1]

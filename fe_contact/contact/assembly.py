@@ -1,4 +1,12 @@
-"""Compliance between the contact candidates of gears in the transverse plane."""
+"""Compliance between the contact candidates of gears in the transverse plane.
+
+A candidate is the place where a tooth pair may touch. A patch is the area over which the finite elements of a
+gear are loaded there, by nodal weights b. The compliance between candidates i and j of a gear is b_i' S b_j,
+with S that of the condensed flank. The tilt of (i, j) is its derivative by the position of patch i along the
+profile, towards tip 1: the angle by which a unit force on j tilts the flanks at i. The lever of a candidate
+at a tip edge is the arm of its force, which acts along the mate's normal, over the arm along the tip gear's
+own normal; elsewhere it is 1. Shapes: P positions, n candidates, k nodes of a flank.
+"""
 
 from __future__ import annotations
 
@@ -13,14 +21,14 @@ from fe_contact.types import BoolArray, FloatArray, IntArray
 from host.loops import njit
 
 NEAR = 1e-3
-"""Distance over half a patch, by which patches are displaced for the derivative of their forces."""
+"""Displacement of patches by which the tilt is differenced, in half-widths of the widest patch."""
 
 _STRETCH = 0.25
-"""Relative change of the length of a patch at an edge, for the derivative of its forces."""
+"""Relative change of the length of a patch at an edge, by which the tilt is differenced there."""
 
 
 def share_of_pinion(pinion: FloatArray, both: FloatArray) -> FloatArray:
-    """Return the share of gear 1 in compliances (P, n) of both gears, 0.5 where these are zero."""
+    """Return the share of gear 1 in compliances (P, n), 0.5 where there is none."""
     return np.asarray(np.divide(pinion, both, out=np.full(both.shape, 0.5), where=both > 0.0))
 
 
@@ -38,24 +46,25 @@ def contact_problem(
     compliances : (FlankCompliance, FlankCompliance)
         Driving and driven gear, per unit face width.
     couple_teeth : bool
-        False neglects the motion of one tooth by the load on another.
+        False drops what the load on one tooth moves on another.
 
     Notes
     -----
-    A force on a tip corner acts along the mating flank's normal, which is inclined to the normal of the tip
-    gear's own flank. The tip gear moves less along that line than along its own normal, and by reciprocity a
-    force along it moves the gear less: both change with the lever arm of the line, as in a rotation. Without
-    this the stiffness at corners would be up to 4 % too low, and the error of STE would grow with load.
+    A corner force acts along the mating flank's normal, inclined to the tip gear's own. The tip gear moves
+    less along that line than along its own normal, and by reciprocity is moved less: both scale with the
+    lever, if the tooth only rotates about the gear's axis. Without this the corner stiffness reads up to 4 %
+    too low, and the error of STE grows with load.
 
-    That holds for a gear that turns about its axis. Under the load on its edge a tooth also bends about its
-    root, and the wedge at the tip yields across: by the finite elements the motion along the flank is kappa
-    times that of a rotation, and 1 + kappa (lever - 1) takes the place of the lever.
+    Under the load on its edge a tooth also bends about its root, and the wedge at the tip yields across. The
+    displacement along the flank is then kappa times that of a rotation about the axis, with kappa from the
+    finite elements, and the factor is 1 + kappa (lever - 1) instead of the lever.
 
-    At edges the tilt is that of patches that grow from the edge, less the logarithm in the local law.
+    At edges the tilt is the derivative by the length of patches that grow from the edge, without the
+    logarithm that the local law has already.
 
     Pair +1 is ahead in the sense of rotation. The load turns a gear counter-clockwise in its tooth frame; the
-    driving gear turns against its load and the driven one with it, so that pair j is on tooth -j of gear 1
-    and on tooth +j of gear 2.
+    driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
+    on tooth +j of gear 2.
     """
     slices = candidates.slices
     compliance, tilt = np.zeros((2, *slices.present.shape, slices.pair.size))
@@ -66,21 +75,10 @@ def contact_problem(
     for g, (flank, (lever, tip), direction) in enumerate(zip(compliances, sides, (-1, 1), strict=True)):
         blocks = _tooth_blocks(flank, direction * slices.pair)
         rows = np.ascontiguousarray  # one order in memory: compiled once
-        displaced, distance = _displaced(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
+        laid, way = _laid(patches[g], patches[1 - g], slices.edge_side, tip, flank.s[-1])
         along = rows(flank.along) / slices.tip_inclinations[g]
         levers = rows(lever)
-        _add_gear(
-            flank.s,
-            blocks,
-            along,
-            displaced,
-            distance,
-            levers,
-            slices.present,
-            couple_teeth,
-            compliance,
-            tilt,
-        )
+        _add_gear(flank.s, blocks, along, laid, way, levers, slices.present, couple_teeth, compliance, tilt)
         diagonals.append(np.einsum("pii->pi", compliance).copy())
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
@@ -104,7 +102,7 @@ def half_planes(
 
 
 def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
-    """Return the compliance between the flanks of the teeth (n, n, k, k)."""
+    """Compliance between the flanks of the teeth, shape (n, n, k, k)."""
     k = flank.s.size
     rows = teeth - flank.teeth[0]
     if rows.min() < 0 or rows.max() >= flank.teeth.size:
@@ -113,20 +111,20 @@ def _tooth_blocks(flank: FlankCompliance, teeth: IntArray) -> FloatArray:
     return np.ascontiguousarray(blocks[rows][:, :, rows].transpose(0, 2, 1, 3))
 
 
-def _displaced(
+def _laid(
     patch: Patches, mate: Patches, side: FloatArray, tip: float, end: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return patches of one gear, the same displaced down and up for a derivative, and the distance of these.
+    """Return patches of one gear, displaced either way for the tilt, and the distances between those.
 
-    The patches (3, 3, P, n) are, in this order, the given ones, the lower and the upper ones, each by center,
-    half-width and edge share. The distance from lower to upper ones (P, n) in m is positive towards tip 1.
-    Patches at an edge become shorter and longer instead, the others count as plain ones of the greatest
-    width.
+    The patches are an array (3, 3, P, n): first the patch itself, then the lower and the higher one; of each
+    the center, half-width and edge share. The distances (P, n) from lower to higher are in m, positive
+    towards tip 1. Patches at an edge are lengthened from it; the others are displaced with the widest
+    half-width and no edge share.
 
     Parameters
     ----------
     patch, mate : Patches
-        Patches of this gear and of the other one.
+        Of this gear and of the other one.
     side : ndarray, shape (P, n)
         See `LoadedSlices.edge_side`.
     tip : float
@@ -136,21 +134,25 @@ def _displaced(
     """
     short, long = patch.stretched(-_STRETCH, mate), patch.stretched(_STRETCH, mate)
     widest = patch.half_width.max()
-    step, highest = NEAR * widest, end - widest
-    above = np.minimum(patch.center + step, highest)
+    near, highest = NEAR * widest, end - widest
+    above = np.minimum(patch.center + near, highest)
     plain = np.full(above.shape, widest), np.zeros(above.shape)
     at_edge = side != 0.0
     low, high = (
         np.where(at_edge, (stretched.center, stretched.half_width, stretched.edge_share), (center, *plain))
-        for stretched, center in ((short, above - 2.0 * step), (long, above))
+        for stretched, center in ((short, above - 2.0 * near), (long, above))
     )
     spread = 2.0 * _STRETCH * np.where(patch.at_tip, patch.edge_distance, mate.edge_distance)
-    distance = np.where(at_edge, side * spread, tip * 2.0 * step)
-    return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), distance
+    way = np.where(at_edge, side * spread, tip * 2.0 * near)
+    return np.stack([(patch.center, patch.half_width, patch.edge_share), low, high]), way
 
 
 def _logarithm_at_edges(slices: LoadedSlices, planes: tuple[float, float]) -> FloatArray:
-    """Return half of how the logarithm in the local law falls as strips at edges grow (P, n), 1/N."""
+    """Return half the change of the local law's logarithm as strips at edges grow (P, n), 1/N.
+
+    The law has -half_plane ln(length). Its derivative over the same stretch as in `_laid` is `growth` over
+    the distance of the patch's center from the edge.
+    """
     first, second = slices.half_planes(*planes)
     distance_1, distance_2 = slices.patch_1.edge_distance, slices.patch_2.edge_distance
     by_distance = np.where(slices.edge_side < 0.0, first / distance_1, second / distance_2)
@@ -163,19 +165,19 @@ def _add_gear(
     nodes: FloatArray,
     blocks: FloatArray,
     along: FloatArray,
-    displaced: FloatArray,
-    distance: FloatArray,
+    laid: FloatArray,
+    way: FloatArray,
     lever: FloatArray,
     present: BoolArray,
     couple_teeth: bool,
     out: FloatArray,
     tilt: FloatArray,
 ) -> None:
-    """Add b_i' S b_j of one gear for all positions to `out`, and its derivative to `tilt`.
+    """Add b_i' S b_j of one gear for all positions to `out`, and its derivative by patch i to `tilt`.
 
-    The derivative is that by the motion of patch i towards tip 1. `displaced` and `distance` are those of
-    `_displaced`; `along` (k, k) has the motions along the flank over those of a rotation that moves the flank
-    across by 1.
+    `laid` and `way` are those of `_laid`. `along` (k, k) are the displacements along the flank by unit
+    forces, over those of a rotation about the axis that moves the flank across by 1. `blocks` (n, n, k, k)
+    are S. Nodes first[i] to last[i] - 1 are loaded by patch i; last[i] = 0: no such candidate.
     """
     positions, n = present.shape
     load = np.zeros((3, n, nodes.size))
@@ -187,7 +189,7 @@ def _add_gear(
                 load[:, i] = 0.0
                 first[i], last[i] = nodes.size, 0
                 for k in range(3):
-                    center, half, share = displaced[k, 0, p, i], displaced[k, 1, p, i], displaced[k, 2, p, i]
+                    center, half, share = laid[k, 0, p, i], laid[k, 1, p, i], laid[k, 2, p, i]
                     low, high = load_vector(nodes, center, half, share, load[k, i])
                     first[i], last[i] = min(first[i], low), max(last[i], high)
         for i in range(n):
@@ -196,12 +198,12 @@ def _add_gear(
                     continue
                 value, change = 0.0, 0.0
                 for a in range(first[i], last[i]):
-                    motion, plain = 0.0, 0.0
+                    motion, both = 0.0, 0.0  # by the patch on j, and by the lower and the higher one together
                     for b in range(first[j], last[j]):
                         motion += blocks[i, j, a, b] * load[0, j, b]
-                        plain += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
+                        both += blocks[i, j, a, b] * (load[1, j, b] + load[2, j, b])
                     value += load[0, i, a] * motion
-                    change += (load[2, i, a] - load[1, i, a]) * plain
+                    change += (load[2, i, a] - load[1, i, a]) * both
                 arms = lever[p, i] * lever[p, j]
                 value, change = arms * value, arms * change
                 if i == j and lever[p, i] != 1.0:
@@ -209,7 +211,8 @@ def _add_gear(
                     value = _turned(blocks[i, i], along, load[0, i], *ends)
                     change = _turned(blocks[i, i], along, load[2, i], *ends)
                     change -= _turned(blocks[i, i], along, load[1, i], *ends)
-                tilt[p, i, j] += change / (2.0 * distance[p, i])
+                # half: `both` is twice a patch; on the diagonal both patches move, half of that is the tilt
+                tilt[p, i, j] += change / (2.0 * way[p, i])
                 if j <= i:
                     out[p, i, j] += value
                 if j < i:
@@ -220,10 +223,10 @@ def _add_gear(
 def _turned(
     block: FloatArray, along: FloatArray, load: FloatArray, first: int, last: int, lever: float
 ) -> float:
-    """Return the motion of an edge under its own load along the mate's normal; nodes first to last - 1."""
+    """Return the yield of an edge along the normal of its mate under its load on nodes first to last - 1."""
     across = _work(block, load, first, last)
-    turn = _work(along, load, first, last) / across
-    return across * (1.0 + turn * (lever - 1.0)) ** 2
+    kappa = _work(along, load, first, last) / across
+    return across * (1.0 + kappa * (lever - 1.0)) ** 2
 
 
 @njit(cache=True)

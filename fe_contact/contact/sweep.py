@@ -22,7 +22,9 @@ class ContactSolution:
     load: FloatArray
     """Right-hand side of the equilibrium, T_1/(r_b1 cos beta_b) in N. Shape (L,)."""
     deflection: FloatArray
-    """Transmission error in m, positive where the driven gear lags; NaN where not converged. Shape (P, L)."""
+    """Transmission error in m, positive = the driven gear lags; NaN where `status` is not usable. Shape (P,
+    L).
+    """
     tangent: FloatArray
     """d(deflection)/d(load) in m/N. Shape (P, L)."""
     force: FloatArray
@@ -35,18 +37,18 @@ class ContactSolution:
     L, 4).
     """
     beyond: BoolArray
-    """Whether any strip is wider than the reference length of the local law allows. Shape (P, L)."""
+    """A contact strip outgrew the load patch of the finite-element model. Shape (P, L)."""
     no_load: FloatArray
     """Deflection at which the first candidate touches, m. Shape (P,)."""
 
     @property
     def converged(self) -> bool:
-        """Whether the contact is solved at all positions and loads."""
+        """Whether every point is a solution."""
         return bool(np.all(self.status == Status.CONVERGED))
 
 
 def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | None = None) -> ContactSolution:
-    """Solve the contact at each position and load.
+    """Solve every position at every load.
 
     Parameters
     ----------
@@ -55,13 +57,12 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     loads : ndarray, shape (L,)
         T_1/(r_b1 cos beta_b) in N, increasing and > 0.
     start : Start, optional
-        Forces near the solution at each position and load. By default those of a load are extrapolated from
-        the two loads below it.
+        Forces near the solution at every position and load; default: each load starts from the two below it.
 
     Returns
     -------
     ContactSolution
-        Where the solution did not converge it has NaN and a `status`; no error is raised.
+        Points that did not converge hold NaN and their status; nothing is raised.
     """
     return solve_sets(problem, (loads,), start)[0]
 
@@ -69,9 +70,10 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
 def solve_sets(
     problem: ContactProblem, sets: Sequence[FloatArray], start: Start | None = None
 ) -> tuple[ContactSolution, ...]:
-    """Solve each position at sets of loads, each set by itself; see `solve_contact`."""
-    problems, c = point_problems(problem), problem.candidates
+    """Solve every position at sets of loads, each by itself; see `solve_contact`."""
+    every, c = point_problems(problem), problem.candidates
     p, m, solved = c.position.size, c.pair.size, []
+    # forces (P, L, n) to start from; an empty array: none
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
     for loads in sets:
         deflection, tangent = np.full((2, p, loads.size), np.nan)
@@ -79,14 +81,14 @@ def solve_sets(
         status, iterations = np.zeros((2, p, loads.size), dtype=np.int64)
         residuals, beyond = np.zeros((p, loads.size, 4)), np.zeros((p, loads.size), dtype=np.bool_)
         results = deflection, tangent, force, status, iterations, residuals, beyond
-        _sweep(problems, np.array(loads, dtype=float), first, *results)
+        _sweep(every, np.array(loads, dtype=float), first, *results)
         solved.append(ContactSolution(loads, *results, np.min(c.gap, axis=1)))
     return tuple(solved)
 
 
 @njit(cache=True, error_model="numpy")
 def _sweep(
-    problems: PointProblems,
+    every: PointProblems,
     loads: FloatArray,
     first: FloatArray,
     deflection: FloatArray,
@@ -97,25 +99,28 @@ def _sweep(
     residuals: FloatArray,
     beyond: BoolArray,
 ) -> None:
-    """Fill the result arrays, from the forces `first`, or for each load from those of the two below it.
+    """Fill the result arrays, started from the `first` forces, or each load from the two below it.
 
-    Forces of a much smaller load act on too few points: where no solution is found from them, the iteration
-    begins again from a guess of `solve_point`. Positions with the same row of bodies are solved in sequence.
+    Forces of a much smaller load press on too few points: where no solution is found from them, the search
+    begins again from zero forces, for which `solve_point` guesses a start. Positions p, p + rows, p + 2 rows
+    and so on have the same compliance of the bodies; they are solved one after another, so that it is
+    prepared once.
     """
-    rows = problems.bodies.shape[0]
+    rows = every.bodies.shape[0]
     for row in range(rows):
-        bodies = row_bodies(problems, row)
-        for p in range(row, problems.gap.shape[0], rows):
-            point, touching = problem_on(problems, bodies, p)
+        bodies = row_bodies(every, row)
+        for p in range(row, every.gap.shape[0], rows):
+            point, touching = problem_on(every, bodies, p)
             start, last = np.zeros(touching.size), np.zeros(touching.size)
             for k in range(loads.size):
                 if first.shape[0] > 0:
                     start = first[p, k][touching]
-                elif k > 0:
+                elif k > 0:  # extrapolate linearly from the two loads below, the lowest of which is 0
                     below = loads[k - 2] if k > 1 else 0.0
                     part = (loads[k] - loads[k - 1]) / (loads[k - 1] - below)
                     start, last = start + part * (start - last), start
                 guessed = not start.any()
+                # `solve_point` overwrites `start` with the forces of the solution, and fills the residuals
                 d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
                 if code != CONVERGED and not guessed:
                     start = np.zeros(touching.size)

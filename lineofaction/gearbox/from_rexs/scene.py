@@ -37,13 +37,16 @@ class SceneTable:
     leader: AppliedTorque | None
     """Torque that drives the scene and is named first."""
     forces: tuple[SceneForce, ...]
-    """The external loads that its forces are."""
+    """External loads of the file, in the order of the scene's forces."""
     parts: SceneParts
-    """The components that its parts are."""
+    """Components of the file from which the scene's parts are made."""
 
     @staticmethod
     def of(layout: Layout, flows: Sequence[PowerFlow], cases: Sequence[StageCase]) -> SceneTable:
-        """Return the scene at the operating point of the first flow; stages without a case are cut off."""
+        """Return the scene at the operating point of the first flow.
+
+        Stages without a case, without a computed layout or without power have no mesh; torques replace them.
+        """
         flow = flows[0]
         by_stage, names = _by_stage(cases), Names()
         known = [stage for stage in layout.stages if stage.stage.id in by_stage]
@@ -84,7 +87,7 @@ class SceneTable:
 
 
 def _by_stage(cases: Sequence[StageCase]) -> dict[int, StageCase]:
-    """Return the case of each stage, of equal ones too."""
+    """Return the case of each stage by the stage's id; equal stages share one case."""
     return {stage: case for case in cases for stage in (case.stage, *case.equal)}
 
 
@@ -127,7 +130,7 @@ def _gravity(layout: Layout) -> list[float]:
             break
         placement = Placement.of(part) or FIXED
         turned = layout.axes.rotation(placement) @ vector / length * (size or STANDARD_GRAVITY)
-        return [float(value) + 0.0 for value in np.round(turned, 12)]
+        return [float(value) + 0.0 for value in np.round(turned, 12)]  # no rounding of a rotation, no -0
     return [0.0, 0.0, 0.0]
 
 
