@@ -1,4 +1,4 @@
-"""How changes of the flanks under the loaded strips of a contact change transmission error and load arm."""
+"""Changes of transmission error and load arm by changes of the flanks under loaded strips."""
 
 from __future__ import annotations
 

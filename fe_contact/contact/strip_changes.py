@@ -1,4 +1,4 @@
-"""How small changes of the flanks change the normal approach of contacts.
+"""Changes of the normal approach of contacts by small changes of the flanks.
 
 A strip is the width over which a loaded contact touches, about its touching point. A depth is material
 removed from a flank. A lag is the turn of gear 2, along the line of action, that closes the rigid flanks. A
