@@ -80,7 +80,7 @@ class Recording:
         """
         integer("sample_rate", sample_rate, 1, MAX_SAMPLE_RATE)
         samples = _at_rate(self.samples, self.sample_rate, sample_rate)
-        return Recording(samples, sample_rate, self.quantity, self.unit)
+        return Recording(samples=samples, sample_rate=sample_rate, quantity=self.quantity, unit=self.unit)
 
 
 def _at_rate(values: FloatArray, sample_rate: float, to_rate: int) -> FloatArray:
@@ -127,7 +127,7 @@ def order_recording(
     for tone, peaks in zip(frequency, amplitude, strict=True):
         phase = _turned(time, tone, at) + np.interp(at, time, np.unwrap(np.angle(peaks)))
         samples += np.interp(at, time, np.abs(peaks)) * np.cos(phase)
-    return Recording(samples, sample_rate, quantity, unit)
+    return Recording(samples=samples, sample_rate=sample_rate, quantity=quantity, unit=unit)
 
 
 def _turned(time: FloatArray, frequency: FloatArray, at: FloatArray) -> FloatArray:
@@ -190,7 +190,7 @@ def series_recording(
     rise = 0.5 - 0.5 * np.cos(np.pi * np.arange(fade) / fade)
     samples[:fade] *= rise
     samples[samples.size - fade :] *= rise[::-1]
-    return Recording(samples, to_rate, quantity, unit)
+    return Recording(samples=samples, sample_rate=to_rate, quantity=quantity, unit=unit)
 
 
 def force_recording(

@@ -51,10 +51,10 @@ def _row_runs(rows: _SparseRows) -> RowRuns:
     length = np.diff(np.append(starts, entry.size))
     first = np.searchsorted(row[begins], np.arange(rows.first.size))
     return RowRuns(
-        first.astype(np.int64),
-        starts.astype(np.int64),
-        rows.column[starts].astype(np.int64),
-        length.astype(np.int64),
+        first=first.astype(np.int64),
+        entry=starts.astype(np.int64),
+        column=rows.column[starts].astype(np.int64),
+        length=length.astype(np.int64),
     )
 
 

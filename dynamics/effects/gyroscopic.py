@@ -41,17 +41,24 @@ class Gyroscopic(RotorEffect):
         """
         body, mechanism = rotor.rotor, rotor.mechanism
         if body.tilt_stiffness == 0.0 and body.frame is None:
-            return Verdict(False, False, "no bushing with tilt stiffness: held rigidly", 0.0)
+            return Verdict(
+                on=False, possible=False, reason="no bushing with tilt stiffness: held rigidly", influence=0.0
+            )
         free = bool(mechanism.freely_turned[rotor.index if body.frame is None else body.frame])
         if body.frame is not None and free:
             reason = "neglected: torques alone turn the carrier's frame, so its speed is unknown"
-            return Verdict(False, False, reason, 0.0)
+            return Verdict(on=False, possible=False, reason=reason, influence=0.0)
         if free:
-            return Verdict(True, True, "torques alone turn the shaft: its speed is not known in advance", 0.0)
+            return Verdict(
+                on=True,
+                possible=True,
+                reason="torques alone turn the shaft: its speed is not known in advance",
+                influence=0.0,
+            )
         share = max(_tilt_share(rotor), _frame_share(rotor))
         deflection = rotor.pushed / body.radial_stiffness if body.radial_stiffness > 0.0 else 0.0
         reason = f"rotation shifts natural frequencies by up to {engineering(share, 2)} of them"
-        return Verdict(share > SHARE, True, reason, min(share, 1.0) * deflection)
+        return Verdict(on=share > SHARE, possible=True, reason=reason, influence=min(share, 1.0) * deflection)
 
     def frame_terms(self, mechanism: Mechanism, connections: Connections, index: int) -> Sequence[FrameTerm]:
         """Return the terms of a shaft of spin w in a frame of speed W (0: fixed).

@@ -53,10 +53,20 @@ class ToothDeviations(MeshEffect):
             return _of_assumed_class(mesh)
         nominal, text = nominal_table(made), f"the table repeats after {made.period} base pitches"
         if nominal is made:
-            return Verdict(True, False, f"{text}, whose positions differ: it has no mean of one", 0.0)
+            return Verdict(
+                on=True,
+                possible=False,
+                reason=f"{text}, whose positions differ: it has no mean of one",
+                influence=0.0,
+            )
         mean = _static_error(nominal, mesh.force)
         size = float(np.max(np.abs(_static_error(made, mesh.force).reshape(-1, mean.size) - mean)))
-        return Verdict(True, True, f"{text}, which differ from their mean by up to {_um(size)}", size)
+        return Verdict(
+            on=True,
+            possible=True,
+            reason=f"{text}, which differ from their mean by up to {_um(size)}",
+            influence=size,
+        )
 
 
 def _of_assumed_class(mesh: LoadedMesh) -> Verdict:
@@ -72,7 +82,7 @@ def _of_assumed_class(mesh: LoadedMesh) -> Verdict:
         f"all teeth are alike, deviations neglected: run-out of class {ASSUMED_CLASS} (assumed) makes order "
         f"1 of the shafts {_um(first)} (driver) and {_um(second)} (driven) beside mesh order 1, {_um(order)}"
     )
-    return Verdict(False, False, reason, first + second)
+    return Verdict(on=False, possible=False, reason=reason, influence=first + second)
 
 
 @identity_cached

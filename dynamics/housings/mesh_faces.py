@@ -105,9 +105,9 @@ class Bore:
             return
         element = Quantity(float(np.ptp(along, axis=1).max()), "m", digits=3)
         bound = "one between whose ends elements of the wall lie"
-        there = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
+        wall = Text.of("The wall of this diameter is there, of elements up to ", element, " along the axis ")
         remedy = "that reach beyond this length. State the whole length of the wall, or mesh it finer."
-        raise InputError("length", self.length, bound, Text.of(there, remedy))
+        raise InputError("length", self.length, bound, Text.of(wall, remedy))
 
     def _refuse(self, area: float, radii: FloatArray) -> NoReturn:
         """Refuse a bore of whose wall too small an area, m^2, exists; `radii`, m: those of other walls."""
@@ -116,8 +116,8 @@ class Bore:
         if radii.size:
             nearest = Quantity(2.0 * float(radii.min()), "m", digits=3)
             others = Text.of("the nearest wall that faces the axis has a diameter of ", nearest)
-        there = f" ({share:.0%} is)" if share > 0.0 else ""
-        bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{there}"
+        present_share = f" ({share:.0%} is)" if share > 0.0 else ""
+        bound = f"that of a bore of the mesh, of which at least {COVERED:.0%} is there{present_share}"
         x, y, z = (Quantity(value, "m", digits=6) for value in self.position)
         location = Text.of("Its middle is expected at ", x, ", ", y, ", ", z, ". Check ")
         remedy = Text.of(location, "position, axis, length and the unit of the mesh: ", others, ".")

@@ -191,7 +191,13 @@ def _point_on_branch(
     z = np.append(orbit.state / problem.size, orbit.speed / scale)
     jacobian = _jacobian(problem, scale, PeriodMap(problem, orbit.speed), orbit.state, orbit.monodromy)
     tangent = np.linalg.svd(jacobian)[2][-1]  # the null vector: the last right singular vector
-    return _Point(z, tangent if tangent @ along >= 0.0 else -tangent, orbit, jacobian, renewed)
+    return _Point(
+        z=z,
+        tangent=tangent if tangent @ along >= 0.0 else -tangent,
+        orbit=orbit,
+        jacobian=jacobian,
+        renewed=renewed,
+    )
 
 
 def _jacobian(

@@ -65,12 +65,12 @@ class _AxisChecks:
         if farthest > 0.0:
             reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
         return Check(
-            self._system.ledger.effect_adding(FIELDS[axis]),
-            f"{WHAT[axis]} inside the table",
-            self._system.scene.meshes[mesh].name,
-            farthest <= 0.0,
-            reason,
-            {"beyond": self._beyond[axis, mesh] / self._samples, "farthest": farthest},
+            effect=self._system.ledger.effect_adding(FIELDS[axis]),
+            assumption=f"{WHAT[axis]} inside the table",
+            part=self._system.scene.meshes[mesh].name,
+            holds=farthest <= 0.0,
+            reason=reason,
+            figures={"beyond": self._beyond[axis, mesh] / self._samples, "farthest": farthest},
         )
 
     def _ends(self, axis: int, mesh: int) -> tuple[float, float]:
@@ -150,7 +150,15 @@ def _force_check(scene: Scene, index: int, largest: float, share: Mapping[str, f
         )
     figures = {**share, "largest": largest}
     name, valid = scene.meshes[index].name, times <= STRAIGHT_ON
-    return Check("", "force inside the table", name, times <= 1.0, reason, figures, valid)
+    return Check(
+        effect="",
+        assumption="force inside the table",
+        part=name,
+        holds=times <= 1.0,
+        reason=reason,
+        figures=figures,
+        valid=valid,
+    )
 
 
 def _highest(scene: Scene, index: int) -> float:

@@ -221,16 +221,20 @@ def housing_vibration(
     rate = 2j * np.pi * response.frequency[..., None] * motion
     rows = point_rows(housing, points)
     weight = 0.0 * housing.mass if housing.surface is None else surface_weight(housing)
+    floor, floor_error = (
+        (None, None) if response.floor is None else _point_floor(response.floor, housing, bearings, rows)
+    )
     return HousingVibration(
-        tuple(point.name for point in housing.points) if points is None else tuple(points),
-        response.speed,
-        response.order,
-        response.frequency,
-        force,
-        np.einsum("kcr,shr->kcsh", rows, rate),
-        mean_square(rate, weight),
-        housing.valid_frequency,
-        *(_point_floor(response.floor, housing, bearings, rows) if response.floor is not None else ()),
+        point=tuple(point.name for point in housing.points) if points is None else tuple(points),
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        seat_force=force,
+        velocity=np.einsum("kcr,shr->kcsh", rows, rate),
+        mean_square_velocity=mean_square(rate, weight),
+        highest_valid_frequency=housing.valid_frequency,
+        floor=floor,
+        floor_error=floor_error,
     )
 
 

@@ -227,19 +227,19 @@ def measured_vibration(response: BearingHarmonics, housing: MeasuredMobility) ->
     square = np.abs(force) ** 2
     measured = {(response.bearing.index(part.name), part.axis) for part in housing.excitation}
     omitted = [at for at in np.ndindex(*square.shape[:2]) if at not in measured and np.any(square[at])]
-    lost = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
+    omitted_square = np.sum([square[at] for at in omitted], axis=0) + np.zeros(covered.shape)
     total = square.sum(axis=(0, 1))
     return MeasuredVibration(
-        housing.points,
-        response.speed,
-        response.order,
-        response.frequency,
-        _velocity(housing, response, force),
-        covered,
-        tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
-        np.divide(lost, total, out=np.zeros(covered.shape), where=total > 0.0),
-        bool(np.any(response.bearing_force[:, 3:])),
-        response.floor is not None,
+        point=housing.points,
+        speed=response.speed,
+        order=response.order,
+        frequency=response.frequency,
+        velocity=_velocity(housing, response, force),
+        covered=covered,
+        omitted=tuple(Direction(response.bearing[bearing], axis) for bearing, axis in omitted),
+        omitted_force=np.divide(omitted_square, total, out=np.zeros(covered.shape), where=total > 0.0),
+        moments=bool(np.any(response.bearing_force[:, 3:])),
+        floor=response.floor is not None,
     )
 
 

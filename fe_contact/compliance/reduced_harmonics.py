@@ -22,13 +22,11 @@ from fe_contact.types import ComplexArray, FloatArray
 from model_studies.progress import Report
 
 MIN_SIGNIFICANT = 1e-12
-"""Share of A's largest entry: compliance by forces that flank loads pass to the cuts, below which it is
+"""Share of A's largest entry below which the compliance by forces on the cuts, passed on by flank loads, is
 rounding.
 """
 MIN_PASSED = 1e-7
-"""Share of A's largest entry: the same below which loads are not solved for, where not every harmonic is
-solved.
-"""
+"""Share of A's largest entry below which this compliance is left out, where not every harmonic is solved."""
 MIN_ENERGY = 1e-8
 """Share of A's largest entry: energy under unit loads below which a direction is left out of the space."""
 LARGEST_ERROR = 3e-7
@@ -119,7 +117,13 @@ def solve_few(
     parts /= parts.sum()
     turns = np.exp(2j * np.pi / ring.teeth * np.outer(np.arange(ring.teeth), list(known)))
     solved = np.tensordot(parts * turns, np.stack(list(known.values())), axes=1).real
-    return ClosedRing(basis, solutions, solved, turns.real @ parts, float(residual.sum(axis=0).max()))
+    return ClosedRing(
+        basis=basis,
+        solutions=solutions,
+        solved=solved,
+        shares=turns.real @ parts,
+        error=float(residual.sum(axis=0).max()),
+    )
 
 
 def _extended(basis: FloatArray, columns: FloatArray, minimum: float) -> FloatArray:

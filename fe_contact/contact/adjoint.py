@@ -80,7 +80,7 @@ def adjoint(pair: ParallelAxes, problem: ContactProblem, solution: ContactSoluti
     stiffness, of_arm = np.einsum("rplm,pm->rpl", pushed, c.motion_arm)
     weight, added_arm = pushed[0] / stiffness[..., None], of_arm / stiffness
     arm_weight = (added_arm[..., None] * pushed[0] - pushed[1]) / solution.load[:, None]
-    return _Adjoint(weight, arm_weight, added_arm, middle, half)
+    return _Adjoint(weight=weight, arm_weight=arm_weight, added_arm=added_arm, middle=middle, half=half)
 
 
 @njit(cache=True, error_model="numpy")

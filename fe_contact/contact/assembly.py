@@ -83,13 +83,15 @@ def contact_problem(
     planes, modulus = half_planes(compliances)
     diagonal = np.arange(slices.pair.size)
     tilt[:, diagonal, diagonal] += _logarithm_at_edges(slices, planes)
+    half_plane_1, half_plane_2 = planes
     return ContactProblem(
         candidates,
         compliance / slices.width,
         modulus,
-        *planes,
-        tilt / slices.width,
-        share_of_pinion(*diagonals),
+        half_plane_1,
+        half_plane_2,
+        tilt=tilt / slices.width,
+        share_1=share_of_pinion(*diagonals),
     )
 
 

@@ -152,7 +152,8 @@ def _corner(edge: FloatArray, i: int, force: float) -> tuple[float, float]:
     if part == 0.0 and offset <= 0.0:
         return 0.0, 0.0  # the local law has all of the corner's softness
     scaled = max(softness * force, _SHORTEST * radius)
-    # half is h, far is h_G, `rigid` half the softness times the integral of F/h over h (by parts, below)
+    # half is h, far is h_G. By parts the integral of ln h over F is F ln h less that of F/h over h, and
+    # `rigid` is half the softness times the latter.
     half, rigid, reached, far = math.sqrt(scaled * radius), 0.25 * scaled, 0.0, offset
     if half >= offset:  # the strip reaches the edge
         half = far = edge_position(offset, radius, softness, force)[1]

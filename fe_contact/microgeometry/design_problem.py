@@ -159,12 +159,12 @@ class DesignProblem(SearchProblem):
         design = joined(self.evaluator, [*chain(*executor.run(_linearized_nodes, self, tasks))])
         objective, violation = self._assessed(design.evaluation)
         merit = LinearMerit(
-            design.evaluation.ste / self.scale,
-            design.curves * (self.ranges / self.scale),
-            self.evaluator.nodes.weight,
-            self.objective.rows(self.evaluator.load.size),
-            tuple((value, by * self.ranges) for value, by in design.limits),
-            PENALTY,
+            curves=design.evaluation.ste / self.scale,
+            by=design.curves * (self.ranges / self.scale),
+            node_weight=self.evaluator.nodes.weight,
+            load_weight=self.objective.rows(self.evaluator.load.size),
+            limits=tuple((value, by * self.ranges) for value, by in design.limits),
+            penalty=PENALTY,
         )
         return self._with_merit(objective, violation), merit
 

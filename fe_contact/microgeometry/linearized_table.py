@@ -96,7 +96,7 @@ def _tabled(
     roots: RootInfluence | None,
 ) -> TabledLoads:
     if not names:
-        return TabledLoads(LoadFigures.of(problem, solution, roots), table, {}, ())
+        return TabledLoads(figures=LoadFigures.of(problem, solution, roots), table=table, by={}, limits=())
     design = differentiated(pair, problem, solution, names, roots)
     arm = np.stack([design.strips.arm_change(gap) for gap in design.opened])
     by = {
@@ -104,4 +104,4 @@ def _tabled(
         "tangent_compliance": np.gradient(design.ste, solution.load, axis=2),
         "load_arm": arm,
     }
-    return TabledLoads(design.figures, table, by, limit_rows(design, limits))
+    return TabledLoads(figures=design.figures, table=table, by=by, limits=limit_rows(design, limits))

@@ -45,7 +45,7 @@ class TangentModel:
         state, value, by = (
             np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("state", "value", "by")
         )
-        return TangentModel(self.minimum, state, value, by, self.correction)
+        return TangentModel(minimum=self.minimum, state=state, value=value, by=by, correction=self.correction)
 
     def corrected(self, deviation: FloatArray, ste: FloatArray) -> TangentModel:
         """Subtract the mean error over pairs (n, d) whose curves (n, P, L) were solved."""

@@ -60,8 +60,8 @@ class Usage:
     def refuse_beyond(self, name: str, maximum: int | None) -> None:
         """Raise `TooManyHeld` if a holder has `maximum`, `TooManyRequests` if all together have `in_all`."""
         if maximum is not None and self._counts[name] >= maximum:
-            who = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
-            text = f"{who} {maximum} {self._what}, the limit. End one of them, or try again."
+            subject = "Callers without a key hold" if name == NOBODY else f"Key {name!r} holds"
+            text = f"{subject} {maximum} {self._what}, the limit. End one of them, or try again."
             raise TooManyHeld.after(_RETRY_S, text)
         if self._in_all is not None and self._counts.total() >= self._in_all:
             raise TooManyRequests(f"There are {self._in_all} {self._what} in all. Try again soon.")
@@ -96,9 +96,9 @@ class RateLimits:
             return 0
         with self._lock:
             left, instant = self._level(key.name, limit)
-            taken = left >= 1.0
-            self._left[key.name] = (left - 1.0 if taken else left, instant)
-        return 0 if taken else math.ceil((1.0 - left) * _MINUTE_S / limit)
+            granted = left >= 1.0
+            self._left[key.name] = (left - 1.0 if granted else left, instant)
+        return 0 if granted else math.ceil((1.0 - left) * _MINUTE_S / limit)
 
     def quota(self, key: Holder) -> Quota | None:
         """Return the quota of a holder and its remainder; None: no limit."""

@@ -123,8 +123,8 @@ class Claims:
         values = {"attempts": attempt, "started": row.started or now(), "state": "running"}
         values |= {"message": "Starts.", "updated": now()}
         with writing(self._engine) as connection:
-            begun = update(computations).where(table.id == row.id, waits).values(**values)
-            return connection.execute(begun).rowcount > 0
+            change = update(computations).where(table.id == row.id, waits).values(**values)
+            return connection.execute(change).rowcount > 0
 
     def note_runs(self, claims: Collection[Claim]) -> None:
         """Count runs that have begun as lost runs, until their end is recorded."""

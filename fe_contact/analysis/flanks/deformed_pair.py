@@ -160,7 +160,14 @@ def _placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: 
     angle_1, angle_2 = mesh_angles(pair, position)
     wheel = gears[1].turned_over() if pair.internal else gears[1]
     pinion, wheel = gears[0].placed(angle_1, (0.0, 0.0, 0.0)), wheel.placed(angle_2, center)
-    return DeformedPair(position, deflection, pinion, wheel, sign * pair.wheel.base_radius, center)
+    return DeformedPair(
+        position=position,
+        deflection=deflection,
+        pinion=pinion,
+        wheel=wheel,
+        wheel_base_radius=sign * pair.wheel.base_radius,
+        wheel_center=center,
+    )
 
 
 def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:

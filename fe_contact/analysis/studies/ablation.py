@@ -222,9 +222,11 @@ def _figures(checked: Checked, run: Run) -> Figures:
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
     predicted = checked.predicted(checked.planned(run.cache), None)
     return Figures(
-        np.array([curve.mean.value for curve in curves]),
-        np.array([curve.peak_to_peak.value for curve in curves]),
-        float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
-        np.array([[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]),
-        predicted.cpu_seconds,
+        mean=np.array([curve.mean.value for curve in curves]),
+        peak_to_peak=np.array([curve.peak_to_peak.value for curve in curves]),
+        cpu_seconds=float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
+        harmonics=np.array(
+            [[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]
+        ),
+        predicted_cpu_seconds=predicted.cpu_seconds,
     )

@@ -112,7 +112,7 @@ def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
     deviation: FloatArray = getattr(table, axis)
     ripples = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
     values, errors = (np.array([getattr(ripple, name) for ripple in ripples]) for name in ("value", "error"))
-    return RippleCurve(deviation, values, errors, _carrying(table))
+    return RippleCurve(deviation=deviation, peak_to_peak=values, error=errors, carrying=_carrying(table))
 
 
 def _carrying(table: SteDatabase) -> FloatArray:

@@ -42,14 +42,14 @@ class Layout:
     def of(cls, unit: GearUnit) -> Layout:
         """Return the layout; the account says what is left out."""
         stages, sets = unit.stages, unit.planetary_sets
-        places = _shaft_places(unit, stages, sets)
+        placements = _shaft_places(unit, stages, sets)
         root = next(iter(unit.of_type("gear_unit")), None)
         first = [shaft.id for stage in stages if stage.is_cylindrical for shaft in stage.shafts]
-        lines = [places[shaft] for shaft in (*first, *places) if shaft in places]
+        lines = [placements[shaft] for shaft in (*first, *placements) if shaft in placements]
         axes = SceneAxes.of(None if root is None else Placement.of(root), lines)
         shafts = {}
         for part in unit.of_type("shaft"):
-            placement = places.get(part.id)
+            placement = placements.get(part.id)
             if placement is None:
                 continue
             if axes.sense(placement) == 0:
@@ -125,43 +125,43 @@ def _shaft_places(
     planetary set.
     """
     shafts = unit.of_type("shaft")
-    places = {shaft.id: placement for shaft in shafts if (placement := Placement.of(shaft)) is not None}
-    if not places and stages:
+    placements = {shaft.id: placement for shaft in shafts if (placement := Placement.of(shaft)) is not None}
+    if not placements and stages:
         first = stages[0].shafts[0]
-        places[first.id] = FIXED
+        placements[first.id] = FIXED
         first.say("support_vector", "defaulted", "no shaft has a place; the first is the origin")
-    _spread(unit, stages, places)
+    _spread(unit, stages, placements)
     for planets in sets:
         pins = {pin.id for pin in planets.pins}
         for shaft in planets.carrier:
-            base = next((places[part.id] for part in planets.central if part.id in places), None)
-            if shaft.type == "shaft" and base is not None and shaft.id not in {*places, *pins}:
-                places[shaft.id] = base
+            base = next((placements[part.id] for part in planets.central if part.id in placements), None)
+            if shaft.type == "shaft" and base is not None and shaft.id not in {*placements, *pins}:
+                placements[shaft.id] = base
                 text = "on the axis of the central shafts, its begin at theirs"
                 shaft.say("support_vector", "defaulted", text)
-    _spread(unit, stages, places)
+    _spread(unit, stages, placements)
     for shaft in shafts:
-        if shaft.id not in places:
+        if shaft.id not in placements:
             shaft.say("", "refused", "neither a place, a stage nor a coupling says where it stands")
-    return places
+    return placements
 
 
-def _spread(unit: GearUnit, stages: Sequence[GearStage], places: dict[int, Placement]) -> None:
+def _spread(unit: GearUnit, stages: Sequence[GearStage], placements: dict[int, Placement]) -> None:
     """Add the placements that follow from known ones by stages, couplings and bearings, until none does."""
     connections = (*unit.couplings, *unit.bearings)
     while True:
-        before = len(places)
+        before = len(placements)
         for stage in stages:
-            _by_stage(stage, places)
+            _by_stage(stage, placements)
         for entry in connections:
-            _by_coupling(entry, places)
-        if len(places) == before:
+            _by_coupling(entry, placements)
+        if len(placements) == before:
             return
 
 
-def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
+def _by_stage(stage: GearStage, placements: dict[int, Placement]) -> None:
     """Add the placement of a shaft of a cylindrical stage if that of the other shaft alone is known."""
-    known = [shaft.id in places for shaft in stage.shafts]
+    known = [shaft.id in placements for shaft in stage.shafts]
     if not stage.is_cylindrical or known[0] == known[1]:
         return
     center_distance = stage.stage.number("center_distance", "center distance of the stage, mm")
@@ -170,30 +170,32 @@ def _by_stage(stage: GearStage, places: dict[int, Placement]) -> None:
     angle = stage.stage.number(_ANGLE, "direction from gear 1 to gear 2, deg", 0.0, "0 deg")
     sign = 1.0 if known[0] else -1.0  # from the first shaft to the second, or back
     base, new = (stage.shafts[index] for index in ((0, 1) if known[0] else (1, 0)))
-    u, v, w = places[base.id].axes
+    u, v, w = placements[base.id].axes
     across = sign * center_distance * (math.sin(angle) * v + math.cos(angle) * w)
     ends = [_u(gear, "u_coordinate_on_shaft") for gear in stage.gears]
     offset = across + sign * (ends[0] - ends[1]) * u
-    _add_shaft(new, base, offset, f"center distance and {_ANGLE} of component {stage.stage.id}", places)
+    _add_shaft(new, base, offset, f"center distance and {_ANGLE} of component {stage.stage.id}", placements)
 
 
-def _by_coupling(coupling: Connection, places: dict[int, Placement]) -> None:
+def _by_coupling(coupling: Connection, placements: dict[int, Placement]) -> None:
     """Add the placement of a shaft of a coupling or bearing if that of the other shaft alone is known."""
     sides = (coupling.inner, coupling.outer)
-    known = [side.id in places for side in sides]
+    known = [side.id in placements for side in sides]
     if known[0] == known[1] or any(side.type != "shaft" for side in sides):
         return
     base, new = sides if known[0] else sides[::-1]
     inner, outer = (_u(coupling.part, f"u_coordinate_on_shaft_{side}_side") for side in ("inner", "outer"))
-    offset = (1.0 if known[0] else -1.0) * (inner - outer) * places[base.id].u
-    _add_shaft(new, base, offset, f"coaxial: component {coupling.part.id}", places)
+    offset = (1.0 if known[0] else -1.0) * (inner - outer) * placements[base.id].u
+    _add_shaft(new, base, offset, f"coaxial: component {coupling.part.id}", placements)
 
 
 def _u(part: Part, item: str) -> float:
     return part.number(item, "place along the shaft, mm") or 0.0
 
 
-def _add_shaft(shaft: Part, base: Part, offset: FloatArray, text: str, places: dict[int, Placement]) -> None:
-    base_placement = places[base.id]
-    places[shaft.id] = Placement(np.asarray(base_placement.origin + offset), base_placement.axes)
+def _add_shaft(
+    shaft: Part, base: Part, offset: FloatArray, text: str, placements: dict[int, Placement]
+) -> None:
+    base_placement = placements[base.id]
+    placements[shaft.id] = Placement(np.asarray(base_placement.origin + offset), base_placement.axes)
     shaft.say("support_vector", "derived", text)

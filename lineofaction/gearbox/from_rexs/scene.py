@@ -79,10 +79,10 @@ class SceneTable:
             for stage, mesh in zip(shafts.stages, meshes, strict=True)
         ]
         return SceneTable(
-            {key: value for key, value in table.items() if value != []},
-            motion.drivers[0] if motion.drivers else None,
-            forces,
-            scene_parts(layout, flow, shafts, bearings.seats, named),
+            table={key: value for key, value in table.items() if value != []},
+            leader=motion.drivers[0] if motion.drivers else None,
+            forces=forces,
+            parts=scene_parts(layout, flow, shafts, bearings.seats, named),
         )
 
 
@@ -142,14 +142,14 @@ def _planets(layout: Layout, names: dict[int, str]) -> list[dict[str, Any]]:
         if first.id not in names:
             planets.stage.say("", "refused", "no stage of the scene has its planets")
             continue
-        places = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
+        positions = [layout.shafts[p.id].origin[:2] for p in planets.planets if p.id in layout.shafts]
         central = next((layout.shafts[c.id] for c in planets.central if c.id in layout.shafts), None)
-        middle = np.mean(places, axis=0) if central is None else central.origin[:2]
-        offsets = [position - middle for position in places]
+        middle = np.mean(positions, axis=0) if central is None else central.origin[:2]
+        offsets = [position - middle for position in positions]
         angles = [math.degrees(math.atan2(y, x)) for x, y in offsets]
         turned = sorted((angle - angles[0]) % 360.0 for angle in angles)
-        table: dict[str, Any] = {"planet": names[first.id], "number": len(places)}
-        equal = [index * 360.0 / len(places) for index in range(len(places))]
+        table: dict[str, Any] = {"planet": names[first.id], "number": len(positions)}
+        equal = [index * 360.0 / len(positions) for index in range(len(positions))]
         if not np.allclose(turned, equal, atol=1e-6):
             table["angles_deg"] = turned
         for planet in planets.planets[1:]:

@@ -188,15 +188,15 @@ def population(gears: Sequence[InspectedGear], name: str) -> Population:
             pitches[trait].append(value)
     of_gears = np.array([block.mean(axis=0) for block in rows])
     return Population(
-        tuple(gear.name for gear in gears),
-        tuple(names),
-        sum(map(len, rows)),
-        of_gears.mean(axis=0),
-        between,
-        within,
-        of_gears,
-        {trait: np.array(values) for trait, values in pitches.items()},
-        _traces(gears),
+        gears=tuple(gear.name for gear in gears),
+        names=tuple(names),
+        teeth=sum(map(len, rows)),
+        mean=of_gears.mean(axis=0),
+        between=between,
+        within=within,
+        of_gears=of_gears,
+        pitches={trait: np.array(values) for trait, values in pitches.items()},
+        traces=_traces(gears),
     )
 
 

@@ -98,7 +98,9 @@ class _Table(Element):
         else:
             value = _value(kind, plain, location)
         unit, origin = self.optional_text("unit"), self.optional_text("origin")
-        return Attribute(name, kind, value, unit, code, origin, self.extra())
+        return Attribute(
+            id=name, kind=kind, value=value, unit=unit, code=code, origin=origin, extra=self.extra()
+        )
 
     def _decoded(self, kind: str, code: str) -> Value:
         """Return the value of an array or a matrix in base64."""
@@ -144,7 +146,7 @@ def _spectra(further: dict[str, Any], types: dict[int, str]) -> Iterator[LoadSpe
     if further.get("accumulation") is not None:
         parts = _Table.of(further["accumulation"], "model.accumulation").parts("component")
         accumulation = tuple(part.component(types) for part in parts)
-    yield LoadSpectrum(number, loads, accumulation, extra)
+    yield LoadSpectrum(id=number, cases=loads, accumulation=accumulation, extra=extra)
 
 
 def _json(data: bytes) -> Any:

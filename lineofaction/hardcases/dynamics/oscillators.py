@@ -124,12 +124,12 @@ def _table(
         return np.broadcast_to(np.asarray(values, float), (position.size, level.size))[None, None].copy()
 
     return PlainTable(
-        position,
-        level,
-        np.zeros(1),
-        np.zeros(1),
-        spread(deflection),
-        spread(deflection_slope),
-        spread(stiffness),
-        spread(stiffness_slope),
+        position=position,
+        level=level,
+        misalignment=np.zeros(1),
+        center_distance_change=np.zeros(1),
+        deflection=spread(deflection),
+        deflection_slope=spread(deflection_slope),
+        stiffness=spread(stiffness),
+        stiffness_slope=spread(stiffness_slope),
     )

@@ -72,7 +72,8 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     along = y.fraction(np.array([note.y for note in notes]), y_range)
     size = 0.5 * _POINT_WIDTH, 0.5 * _POINT_HEIGHT
     taken = [
-        _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
+        _Box(left=a - size[0], right=a + size[0], low=b - size[1], high=b + size[1])
+        for a, b in zip(across, along, strict=True)
     ]
     shifted, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
@@ -87,7 +88,7 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     """Return the box of a text at the point (x, y)."""
     width, low = _CHARACTER * len(text), y + row * _HEIGHT - 0.5 * _HEIGHT + (_RISE if row >= 0 else 0.0)
     start = x - _GAP - width if left else x + _GAP
-    return _Box(start, start + width, low, low + _HEIGHT)
+    return _Box(left=start, right=start + width, low=low, high=low + _HEIGHT)
 
 
 def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
@@ -120,7 +121,7 @@ def line_labels(panel: Panel, row: float) -> list[_LineLabel]:
     at = np.clip(panel.y.fraction(ends, vertical_limits(panel)), 0.0, 1.0) if lines else ends
     middles = spread_positions(at, heights)
     return [
-        _LineLabel(line.label, line.color, float(end), float(middle))
+        _LineLabel(text=line.label, color=line.color, end=float(end), middle=float(middle))
         for line, end, middle in zip(lines, at, middles, strict=True)
     ]
 

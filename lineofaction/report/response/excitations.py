@@ -110,10 +110,18 @@ def _panel(rows: list[Excitation], quantity: _Quantity, meshes: list[str]) -> Pa
         amplitudes = [quantity.amplitude(row) for row in mesh_rows]
         size = quantity.scale * np.array([value for value, _ in amplitudes])
         error = quantity.scale * np.array([error or 0.0 for _, error in amplitudes])
-        bars.append(Bars(mesh, at, size, 0.0, width, palette.category(index)))
+        bars.append(Bars(name=mesh, x=at, top=size, base=0.0, width=width, color=palette.category(index)))
         # the error bar is narrower, and drawn pale over the end of the amplitude's bar
         bars.append(
-            Bars("error", at, size + error, np.maximum(size - error, 0.0), 0.4 * width, palette.INK, True)
+            Bars(
+                name="error",
+                x=at,
+                top=size + error,
+                base=np.maximum(size - error, 0.0),
+                width=0.4 * width,
+                color=palette.INK,
+                veiled=True,
+            )
         )
     names = tuple((float(k), str(k)) for k in range(1, MAX_HARMONIC + 1))
     x = Axis("harmonic of the mesh", limits=(0.4, MAX_HARMONIC + 0.6), names=names)

@@ -108,11 +108,11 @@ def _lines(states: SteadyStates, values: FloatArray) -> Iterator[Line]:
             line = np.where(in_part | joined, values[on], np.nan)
             yield Line(name, states.speed[on] / RPM, line, palette.INK, dash, 1.3)
     for curve, name, color in _SWEEPS:
-        there = np.flatnonzero(states.curve == curve)
-        if there.size:
-            few = there.size <= MARKED
+        rows = np.flatnonzero(states.curve == curve)
+        if rows.size:
+            few = rows.size <= MARKED
             yield Line(
-                name, states.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
+                name, states.speed[rows] / RPM, values[rows], color, width=0.0 if few else 1.4, markers=few
             )
 
 
