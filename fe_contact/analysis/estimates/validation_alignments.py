@@ -53,7 +53,7 @@ ROUNDING = 1e-9
 class AlignmentErrors:
     """Error between the nodes of an axis of alignments."""
 
-    made: SolvedTable
+    solved_table: SolvedTable
     """Solved table with the inserted alignments."""
     error: FloatArray
     """Largest difference of interpolant and solution in the interval after each node, m. Shape (I, F)."""
